@@ -1,0 +1,14 @@
+//! Sevenbar's core: closing spatial loops, following them, differentiating them.
+//!
+//! No input or output, no printing, no clock, no global state. Angles are radians; lengths are in whatever unit the caller
+//! uses, the same in and out.
+
+pub mod error;
+pub mod rigid;
+pub mod rssr;
+pub mod simd;
+pub mod taylor;
+mod trigonometric;
+mod vector_math;
+
+pub use error::Error;

@@ -1,0 +1,223 @@
+//! Both branches of the closed form for many inputs at once, with derivatives by time.
+
+use super::pair::{DEAD_CENTRE_SHARE, Pair, REACH_ROUNDING};
+use crate::error::Error;
+use crate::simd::{Kernel, dispatch, multiply_add};
+use crate::vector_math::{LARGEST_ANGLE, atan2, sin_cos};
+use std::f64::consts::TAU;
+
+/// The highest derivative: jerk.
+pub const MAX_ORDER: usize = 3;
+
+/// Inputs handled together; the scratch arrays of a block stay in the nearest cache.
+const BLOCK: usize = 64;
+
+/// How the input moves at each sample.
+#[derive(Clone, Copy, Debug)]
+pub enum BatchRates<'a> {
+    /// The same speed [rad/s] everywhere.
+    Constant(f64),
+    /// Speed, acceleration and jerk of each sample; only as many as the order needs are read.
+    Law([&'a [f64]; 3]),
+}
+
+impl Pair {
+    /// The output and its derivatives up to `outputs.len() - 1` for each input, first all of branch 0, then all of branch 1.
+    ///
+    /// Out of reach everything is NaN; at a dead centre of the input the rates are.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] for an input or rate, [`Error::Lengths`], [`Error::Order`].
+    pub fn outputs(&self, inputs: &[f64], rates: BatchRates, outputs: &mut [&mut [f64]]) -> Result<(), Error> {
+        let order = outputs.len().wrapping_sub(1);
+        if order > MAX_ORDER {
+            return Err(Error::Order { got: order, highest: MAX_ORDER });
+        }
+        for output in outputs.iter() {
+            if output.len() != 2 * inputs.len() {
+                return Err(Error::Lengths { what: "output", got: output.len(), want: 2 * inputs.len() });
+            }
+        }
+        finite("input", inputs)?;
+        if let BatchRates::Law(law) = rates {
+            for (what, values) in ["speed", "acceleration", "jerk"].into_iter().zip(law).take(order) {
+                if values.len() != inputs.len() {
+                    return Err(Error::Lengths { what, got: values.len(), want: inputs.len() });
+                }
+                finite(what, values)?;
+            }
+        }
+        let kernel = Blocks { pair: self, inputs, rates, outputs };
+        match order {
+            0 => dispatch(Ordered::<0>(kernel)),
+            1 => dispatch(Ordered::<1>(kernel)),
+            2 => dispatch(Ordered::<2>(kernel)),
+            _ => dispatch(Ordered::<3>(kernel)),
+        }
+        Ok(())
+    }
+}
+
+fn finite(what: &'static str, values: &[f64]) -> Result<(), Error> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(Error::NotFinite { what, index, value: values[index] }),
+    }
+}
+
+struct Blocks<'a, 'b> {
+    pair: &'a Pair,
+    inputs: &'a [f64],
+    rates: BatchRates<'a>,
+    outputs: &'a mut [&'b mut [f64]],
+}
+
+struct Ordered<'a, 'b, const ORDER: usize>(Blocks<'a, 'b>);
+
+/// Results of a block: branch, derivative, sample.
+type Scratch = [[[f64; BLOCK]; MAX_ORDER + 1]; 2];
+
+impl<const ORDER: usize> Kernel for Ordered<'_, '_, ORDER> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Blocks { pair, inputs, rates, outputs } = self.0;
+        let count = inputs.len();
+        let mut angles = [0.0; BLOCK];
+        let mut law = [[0.0; BLOCK]; MAX_ORDER];
+        if let BatchRates::Constant(speed) = rates {
+            law[0] = [speed; BLOCK];
+        }
+        let mut scratch: Scratch = [[[0.0; BLOCK]; MAX_ORDER + 1]; 2];
+        let mut start = 0;
+        while start < count {
+            let size = BLOCK.min(count - start);
+            let mut largest = 0.0_f64;
+            for (slot, &x) in angles.iter_mut().zip(&inputs[start..start + size]) {
+                *slot = x;
+                largest = if x.abs() > largest { x.abs() } else { largest };
+            }
+            if largest > LARGEST_ANGLE {
+                for x in &mut angles {
+                    let (s, c) = x.sin_cos();
+                    *x = s.atan2(c);
+                }
+            }
+            if let BatchRates::Law(given) = rates {
+                for (slots, values) in law.iter_mut().zip(given).take(ORDER) {
+                    slots[..size].copy_from_slice(&values[start..start + size]);
+                }
+            }
+            block::<FUSED, ORDER>(pair, &angles, &law, &mut scratch);
+            for (branch, derivatives) in scratch.iter().enumerate() {
+                for (output, values) in outputs.iter_mut().zip(derivatives) {
+                    let first = branch * count + start;
+                    output[first..first + size].copy_from_slice(&values[..size]);
+                }
+            }
+            start += size;
+        }
+    }
+}
+
+/// The closed form of [`Pair::reach`], [`Pair::angle`] and the implicit derivatives of the closure, written without branches.
+///
+/// With `u = p - B` and the follower's radius r the closure `(|u|^2 - L2^2)/2 = 0` has the derivatives `u . p'` by the
+/// input and `r (x sin - y cos)` by the output; the paper's Q, R, S, T of eq. (13) are the second ones.
+#[inline(always)]
+fn block<const FUSED: bool, const ORDER: usize>(
+    pair: &Pair,
+    angles: &[f64; BLOCK],
+    law: &[[f64; BLOCK]; MAX_ORDER],
+    results: &mut Scratch,
+) {
+    let radius = pair.radius;
+    let radius_inverse = 1.0 / radius;
+    let coupler = pair.coupler;
+    let driver_square = pair.driver_radius * pair.driver_radius;
+    let cut = pair.phase_cut();
+    let signs = [pair.branch_sign(0), pair.branch_sign(1)];
+    let [first, second] = results;
+    for i in 0..BLOCK {
+        let (s, c) = sin_cos::<FUSED>(angles[i]);
+        let turning = |c1: f64, s1: f64| multiply_add::<FUSED>(c1, c, s1 * s);
+        let (qx, qy, qz) = (
+            turning(pair.x.c1, pair.x.s1),
+            turning(pair.y.c1, pair.y.s1),
+            turning(pair.z.c1, pair.z.s1),
+        );
+        let (x, y, z) = (pair.x.c0 + qx, pair.y.c0 + qy, pair.z.c0 + qz);
+        let square = multiply_add::<FUSED>(x, x, y * y);
+        let height = square.sqrt();
+        let (inner, outer) = (height - radius, height + radius);
+        let axial = (coupler - z) * (coupler + z);
+        let near = multiply_add::<FUSED>(-inner, inner, axial);
+        let far = multiply_add::<FUSED>(outer, outer, -axial);
+        let rounding = -REACH_ROUNDING * coupler * (outer + z.abs());
+        let k = 0.25 * (far - near);
+        let product = 0.25 * (near.max(0.0) * far.max(0.0));
+        let reached = (near >= rounding) & (far >= rounding);
+        let slope = if reached { product.sqrt() } else { f64::NAN };
+
+        let spread = atan2::<FUSED>(slope, k);
+        let phase = atan2::<FUSED>(y, x);
+        let phase = if phase < cut { phase + TAU } else { phase };
+        first[0][i] = multiply_add::<FUSED>(-signs[0], spread, phase);
+        second[0][i] = multiply_add::<FUSED>(-signs[1], spread, phase);
+        if ORDER == 0 {
+            continue;
+        }
+
+        let has_rates = product > DEAD_CENTRE_SHARE * radius * radius * square;
+        let slope = if has_rates { slope } else { f64::NAN };
+        let slope_inverse = 1.0 / slope;
+        let unscale = radius_inverse / square;
+        let quarter = |c1: f64, s1: f64| multiply_add::<FUSED>(s1, c, -c1 * s);
+        let (dx, dy, dz) = (
+            quarter(pair.x.c1, pair.x.s1),
+            quarter(pair.y.c1, pair.y.s1),
+            quarter(pair.z.c1, pair.z.s1),
+        );
+        let (d1, d2, d3) = (law[0][i], law[1][i], law[2][i]);
+        for (branch, sign) in signs.into_iter().enumerate() {
+            let signed = sign * slope;
+            let sine = multiply_add::<FUSED>(k, y, -signed * x) * unscale;
+            let cosine = multiply_add::<FUSED>(k, x, signed * y) * unscale;
+            let over = sign * slope_inverse;
+            let (ux, uy) = (
+                multiply_add::<FUSED>(-radius, cosine, x),
+                multiply_add::<FUSED>(-radius, sine, y),
+            );
+            let along = |a: f64, b: f64, e: f64| {
+                multiply_add::<FUSED>(a, ux, multiply_add::<FUSED>(b, uy, e * z))
+            };
+            let across = |a: f64, b: f64| radius * multiply_add::<FUSED>(a, sine, -b * cosine);
+            let outward = |a: f64, b: f64| radius * multiply_add::<FUSED>(a, cosine, b * sine);
+            let f_a = along(dx, dy, dz);
+            let v = f_a * over;
+            let target = if branch == 0 { &mut *first } else { &mut *second };
+            target[1][i] = v * d1;
+            if ORDER == 1 {
+                continue;
+            }
+            let f_aa = driver_square - along(qx, qy, qz);
+            let f_ab = across(dx, dy);
+            let f_bb = outward(x, y);
+            let a = (f_aa + v * multiply_add::<FUSED>(v, f_bb, 2.0 * f_ab)) * over;
+            target[2][i] = multiply_add::<FUSED>(a * d1, d1, v * d2);
+            if ORDER == 2 {
+                continue;
+            }
+            // third derivatives of the closure: by the input -f_a, by the output -(x sin - y cos) r = +sign slope
+            let f_aab = -across(qx, qy);
+            let f_abb = outward(dx, dy);
+            let cubic = multiply_add::<FUSED>(
+                v,
+                3.0 * multiply_add::<FUSED>(v, f_abb, f_aab) + v * v * signed,
+                -f_a,
+            );
+            let mixed = 3.0 * a * multiply_add::<FUSED>(v, f_bb, f_ab);
+            let j = (cubic + mixed) * over;
+            target[3][i] = multiply_add::<FUSED>(j * d1 * d1, d1, multiply_add::<FUSED>(3.0 * a * d1, d2, v * d3));
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Extremes of the output's rates over a full turn of the input, located by root finding.
+
+use super::pair::Pair;
+use crate::taylor::Taylor;
+use std::f64::consts::TAU;
+
+/// Cells in which a turn is searched; two stationary points within one cell are told apart as well.
+const CELLS: usize = 360;
+
+/// An extreme value and the input at which it occurs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extreme {
+    /// The input angle.
+    pub input: f64,
+    /// The value, per radian of input to the power of its order.
+    pub value: f64,
+}
+
+/// The derivatives of the output by the input, from order 0.
+type Derivatives = [f64; 5];
+
+/// Lowest and highest first derivative, then lowest and highest second, on a branch without dead centres.
+pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 2] {
+    let at = |input: f64| -> Derivatives {
+        pair.follower_taylor(Taylor::<5>::variable(input), branch)
+            .map_or([f64::NAN; 5], |x| std::array::from_fn(|k| x.derivative(k)))
+    };
+    let nodes: Vec<(f64, Derivatives)> = (0..=CELLS)
+        .map(|k| TAU * k as f64 / CELLS as f64)
+        .map(|input| (input, at(input)))
+        .collect();
+    [1, 2].map(|order| {
+        let mut candidates = vec![(nodes[0].0, nodes[0].1[order])];
+        for cell in nodes.windows(2) {
+            for input in stationary(&at, cell[0], cell[1], order) {
+                candidates.push((input, at(input)[order]));
+            }
+        }
+        let extreme = |best: Option<&(f64, f64)>| {
+            let &(input, value) = best.unwrap_or(&(f64::NAN, f64::NAN));
+            Extreme {
+                input: input.rem_euclid(TAU),
+                value,
+            }
+        };
+        [
+            extreme(candidates.iter().min_by(|a, b| a.1.total_cmp(&b.1))),
+            extreme(candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1))),
+        ]
+    })
+}
+
+/// Zeros of derivative `order + 1` in a cell: one where its sign changes; two where it only dips to the other sign,
+/// which its own derivative betrays by pointing towards zero at both ends.
+fn stationary(
+    at: &impl Fn(f64) -> Derivatives,
+    (low, f_low): (f64, Derivatives),
+    (high, f_high): (f64, Derivatives),
+    order: usize,
+) -> Vec<f64> {
+    let k = order + 1;
+    if f_low[k] * f_high[k] <= 0.0 {
+        return vec![zero(at, low, high, k)];
+    }
+    let dips = f_low[k] * f_low[k + 1] < 0.0 && f_high[k] * f_high[k + 1] > 0.0;
+    if !dips {
+        return Vec::new();
+    }
+    let turn = zero(at, low, high, k + 1);
+    if at(turn)[k] * f_low[k] > 0.0 {
+        return Vec::new();
+    }
+    vec![zero(at, low, turn, k), zero(at, turn, high, k)]
+}
+
+/// The zero of derivative `k` between two inputs at which its signs differ: regula falsi (Illinois), then halving where slow.
+fn zero(at: &impl Fn(f64) -> Derivatives, low: f64, high: f64, k: usize) -> f64 {
+    let (mut a, mut b) = (low, high);
+    let (mut fa, mut fb) = (at(a)[k], at(b)[k]);
+    for step in 0..200 {
+        if fa == 0.0 {
+            return a;
+        }
+        if fb == 0.0 || (b - a).abs() <= 4.0 * f64::EPSILON * b.abs().max(1.0) {
+            return b;
+        }
+        let secant = b - fb * (b - a) / (fb - fa);
+        let x = if step % 4 == 3 { 0.5 * (a + b) } else { secant };
+        let fx = at(x)[k];
+        if fx * fb < 0.0 {
+            (a, fa) = (b, fb);
+        } else {
+            fa *= 0.5;
+        }
+        (b, fb) = (x, fx);
+    }
+    b
+}

@@ -1,0 +1,167 @@
+//! The RSSR in closed form.
+//!
+//! Crank and rocker carry their balls `A` and `B` round two circles, skew at any angle and any distance; the
+//! coupler holds `|A - B| = L2`. With one of the two angles held, the other solves
+//! `E cos x + F sin x = K` (Sun and Zhou, eq. (4)), so there are at most two assembly modes; an angle is a limit
+//! where the two meet: `E^2 + F^2 = K^2`, a quartic in the tangent of its half.
+
+mod batch;
+mod circuits;
+mod extremes;
+mod frames;
+mod motion;
+mod pair;
+mod rates;
+
+pub use batch::{BatchRates, MAX_ORDER};
+pub use circuits::{Row, RowStatus};
+pub use extremes::Extreme;
+pub use motion::{Circuit, DeadCentre, DeadCentreKind, Extent, Motion, MotionType, TransmissionExtreme};
+pub use pair::{Pair, Reach};
+
+use crate::error::Error;
+use crate::rigid::{Pose, Vec3, cross, norm, scale, sub};
+
+/// Which of the two turning joints is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// The first joint of the loop; the other angle is `beta = f(alpha)`.
+    Crank,
+    /// The last joint of the loop; the other angle is `alpha = phi(beta)`.
+    Rocker,
+}
+
+/// The circle on which a side link carries its ball.
+#[derive(Clone, Copy, Debug)]
+pub struct Circle {
+    /// The foot of the ball on the axis.
+    pub centre: Vec3,
+    /// The length of the side link.
+    pub radius: f64,
+    /// The unit vector of the axis.
+    pub axis: Vec3,
+    /// The unit vector to the ball at angle zero.
+    pub zero: Vec3,
+    /// The unit vector to the ball at a quarter turn.
+    pub quarter: Vec3,
+}
+
+impl Circle {
+    fn new(centre: Vec3, axis: Vec3, arm: Vec3) -> Self {
+        let radius = norm(arm);
+        let zero = scale(arm, 1.0 / radius);
+        Self {
+            centre,
+            radius,
+            axis,
+            zero,
+            quarter: cross(axis, zero),
+        }
+    }
+
+    /// The ball at an angle.
+    pub fn at(&self, angle: f64) -> Vec3 {
+        let (s, c) = angle.sin_cos();
+        std::array::from_fn(|i| self.centre[i] + self.radius * (c * self.zero[i] + s * self.quarter[i]))
+    }
+}
+
+/// A spatial four-bar of two turning joints and two balls, in units of `unit`.
+///
+/// Inside, lengths are divided by `unit`, a power of two near the greatest dimension: nothing overflows and no bit
+/// is lost. Everything that leaves this module is in the caller's unit again.
+#[derive(Clone, Copy, Debug)]
+pub struct Rssr {
+    unit: f64,
+    crank: Circle,
+    rocker: Circle,
+    coupler: f64,
+    /// The frame of joint 1 in the report frame.
+    base: Pose,
+    /// From each joint's frame to the next one's, the last back to joint 1.
+    links: [Pose; 4],
+    /// The side of joint 4 that belongs to the ground, in the report frame.
+    ground: Pose,
+}
+
+impl Rssr {
+    /// From the closed loop `Z(q1) G1 S G2 S G3 Z(q8) G4 = 1`.
+    ///
+    /// `base` is the frame of joint 1 in the report frame, `links` the four fixed transforms G.
+    ///
+    /// # Errors
+    /// [`Error::NoLength`] where a ball lies on the axis it turns about or the two balls coincide;
+    /// [`Error::NotFinite`].
+    pub fn new(base: Pose, links: [Pose; 4]) -> Result<Self, Error> {
+        for (index, pose) in links.iter().chain([&base]).enumerate() {
+            let numbers = pose.rotation.iter().flatten().chain(&pose.translation);
+            if let Some(&value) = numbers.into_iter().find(|x| !x.is_finite()) {
+                return Err(Error::NotFinite { what: "transform", index, value });
+            }
+        }
+        let ground = base.then(&links[3].inverse());
+        let to_b = links[2].inverse().translation;
+        let to_a = links[0].translation;
+        let greatest = [
+            to_a[0].hypot(to_a[1]),
+            to_b[0].hypot(to_b[1]),
+            norm(links[1].translation),
+            norm(sub(base.carry([0.0, 0.0, to_a[2]]), ground.carry([0.0, 0.0, to_b[2]]))),
+        ]
+        .into_iter()
+        .fold(0.0, f64::max);
+        let unit = if greatest > 0.0 { greatest.log2().floor().exp2() } else { 1.0 };
+        let shrink = |pose: Pose| Pose {
+            translation: pose.translation.map(|x| x / unit),
+            ..pose
+        };
+        let (base, ground, links) = (shrink(base), shrink(ground), links.map(shrink));
+        let (to_a, to_b) = (to_a.map(|x| x / unit), to_b.map(|x| x / unit));
+
+        let crank = Circle::new(
+            base.carry([0.0, 0.0, to_a[2]]),
+            base.column(2),
+            base.turn([to_a[0], to_a[1], 0.0]),
+        );
+        // joint 4 turns the ground against the rocker, so the rocker turns about the axis reversed
+        let rocker = Circle::new(
+            ground.carry([0.0, 0.0, to_b[2]]),
+            scale(ground.column(2), -1.0),
+            ground.turn([to_b[0], to_b[1], 0.0]),
+        );
+        let coupler = norm(links[1].translation);
+        for (index, length) in [crank.radius, coupler, rocker.radius].into_iter().enumerate() {
+            // a link shorter than the rounding of the others has no direction
+            if length.is_nan() || length <= f64::EPSILON {
+                return Err(Error::NoLength { link: index + 1 });
+            }
+        }
+        Ok(Self {
+            unit,
+            crank,
+            rocker,
+            coupler,
+            base,
+            links,
+            ground,
+        })
+    }
+
+    /// The lengths of crank, coupler and rocker.
+    pub fn lengths(&self) -> [f64; 3] {
+        [self.crank.radius, self.coupler, self.rocker.radius].map(|x| x * self.unit)
+    }
+
+    /// The greatest dimension, rounded down to a power of two; residuals are given in parts of it.
+    pub fn size(&self) -> f64 {
+        self.unit
+    }
+
+    /// The closure seen from the input.
+    pub fn pair(&self, input: Input) -> Pair {
+        match input {
+            Input::Crank => Pair::new(&self.crank, &self.rocker, self.coupler, input),
+            Input::Rocker => Pair::new(&self.rocker, &self.crank, self.coupler, input),
+        }
+    }
+}

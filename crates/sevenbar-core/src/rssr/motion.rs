@@ -1,0 +1,454 @@
+//! The whole motion of an RSSR: where it can go, its circuits, its motion type, and its dead centres.
+
+use super::extremes::{Extreme, rate_extremes};
+use super::pair::Pair;
+use super::{Input, Rssr};
+use std::f64::consts::{PI, TAU};
+
+/// What input and output can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionType {
+    /// The input turns fully, the output rocks.
+    CrankRocker,
+    /// The input rocks, the output turns fully.
+    RockerCrank,
+    /// Both turn fully.
+    DoubleCrank,
+    /// Both rock.
+    DoubleRocker,
+    /// Two limits meet, or nearly do: the least change of a dimension decides.
+    ChangePoint,
+    /// No input closes the loop.
+    CannotAssemble,
+}
+
+impl MotionType {
+    /// The name in the field's words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CrankRocker => "crank-rocker",
+            Self::RockerCrank => "rocker-crank",
+            Self::DoubleCrank => "double-crank",
+            Self::DoubleRocker => "double-rocker",
+            Self::ChangePoint => "change-point",
+            Self::CannotAssemble => "cannot-assemble",
+        }
+    }
+}
+
+/// The range of one turning joint on one circuit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// Every angle.
+    Full,
+    /// From a first angle to a greater last one.
+    Arc(f64, f64),
+}
+
+impl Extent {
+    /// How far `angle` lies outside, going round; 0 inside.
+    fn distance(&self, angle: f64) -> f64 {
+        match *self {
+            Self::Full => 0.0,
+            Self::Arc(start, end) => {
+                let beyond = (angle - start).rem_euclid(TAU) - (end - start);
+                if beyond <= 0.0 { 0.0 } else { beyond.min(TAU - (end - start) - beyond) }
+            }
+        }
+    }
+
+    /// The same range moved by whole turns so that it holds, or nearly holds, `angle`.
+    fn holding(&self, angle: f64) -> Self {
+        match *self {
+            Self::Full => Self::Full,
+            Self::Arc(start, end) => {
+                let turns = ((angle - 0.5 * (start + end)) / TAU).round() * TAU;
+                Self::Arc(start + turns, end + turns)
+            }
+        }
+    }
+}
+
+/// Where a turning joint can be.
+#[derive(Clone, Debug)]
+struct Domain {
+    extents: Vec<Extent>,
+    /// Angles inside an extent where the two solutions meet and part again.
+    touches: Vec<f64>,
+    limits: Vec<f64>,
+    /// True where rounding decides how many extents there are.
+    degenerate: bool,
+}
+
+impl Domain {
+    fn new(pair: &Pair) -> Self {
+        let discriminant = pair.discriminant();
+        let Some(zeros) = discriminant.zeros(pair.discriminant_noise()) else {
+            return Self {
+                extents: vec![Extent::Full],
+                touches: Vec::new(),
+                limits: Vec::new(),
+                degenerate: true,
+            };
+        };
+        let degenerate = zeros.iter().any(|z| z.multiple);
+        let angles: Vec<f64> = zeros
+            .iter()
+            .map(|z| if z.multiple { z.angle } else { pair.polished_limit(z.angle).rem_euclid(TAU) })
+            .collect();
+        let count = angles.len();
+        if count == 0 {
+            let assembles = discriminant.value(0.0) > 0.0;
+            return Self {
+                extents: if assembles { vec![Extent::Full] } else { Vec::new() },
+                touches: Vec::new(),
+                limits: Vec::new(),
+                degenerate,
+            };
+        }
+        let next = |i: usize| if i + 1 < count { angles[i + 1] } else { angles[0] + TAU };
+        let open: Vec<bool> = (0..count)
+            .map(|i| discriminant.value(0.5 * (angles[i] + next(i))) > 0.0)
+            .collect();
+        let before = |i: usize| open[(i + count - 1) % count];
+
+        let mut domain = Self {
+            extents: Vec::new(),
+            touches: (0..count).filter(|&i| open[i] && before(i)).map(|i| angles[i]).collect(),
+            limits: (0..count).filter(|&i| open[i] != before(i)).map(|i| angles[i]).collect(),
+            // a simple zero that changes no sign is one that rounding made
+            degenerate: degenerate || (0..count).any(|i| !zeros[i].multiple && open[i] == before(i)),
+        };
+        if domain.limits.is_empty() && open[0] {
+            domain.extents.push(Extent::Full);
+        }
+        for start in (0..count).filter(|&i| open[i] && !before(i)) {
+            let mut last = start;
+            while open[(last + 1) % count] {
+                last += 1;
+            }
+            let turns = if last + 1 >= count { TAU } else { 0.0 };
+            domain.extents.push(Extent::Arc(angles[start], angles[(last + 1) % count] + turns));
+        }
+        domain
+    }
+
+    fn turns_fully(&self) -> bool {
+        matches!(self.extents[..], [Extent::Full])
+    }
+}
+
+/// Which joint stands still at a dead centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeadCentreKind {
+    /// The input can go no further; rates per input grow without bound.
+    Input,
+    /// The output turns back.
+    Output,
+}
+
+/// A dead centre of a circuit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeadCentre {
+    /// Whose it is.
+    pub kind: DeadCentreKind,
+    /// The input angle.
+    pub input: f64,
+    /// The output angle.
+    pub output: f64,
+    /// The pass between input dead centres on which it lies; for one of the input the pass that starts there.
+    pub branch: usize,
+    /// How much a relative change of the squared dimensions is magnified in its place.
+    pub condition: f64,
+}
+
+/// The least or greatest transmission angle on a circuit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransmissionExtreme {
+    /// The input angle where it occurs.
+    pub input: f64,
+    /// The transmission angle in [0, pi/2].
+    pub angle: f64,
+}
+
+/// One connected motion.
+#[derive(Clone, Debug)]
+pub struct Circuit {
+    /// Its own type.
+    pub motion_type: MotionType,
+    /// The range of the input.
+    pub input: Extent,
+    /// The range of the output, in the turn in which the circuit's first row lies.
+    pub output: Extent,
+    /// The branch of the closed form on the first pass.
+    pub first_branch: usize,
+    /// Change points within: angles of the input where the circuit goes over to the other branch, rising.
+    pub touches: Vec<f64>,
+    /// Turns of the input until it closes on itself; 0 for one that rocks.
+    pub turns: usize,
+    /// Dead centres: those of the input first, then those of the output by input angle.
+    pub dead_centres: Vec<DeadCentre>,
+    /// The least and the greatest transmission angle.
+    pub transmission: [TransmissionExtreme; 2],
+    /// Lowest and highest d(output)/d(input); `None` where there is no bound or a change point lies within.
+    pub velocity: Option<[Extreme; 2]>,
+    /// Lowest and highest second derivative of output by input.
+    pub acceleration: Option<[Extreme; 2]>,
+}
+
+/// All circuits of a linkage for one choice of input.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// Which joint drives.
+    pub input: Input,
+    /// The type that the circuits share.
+    pub motion_type: MotionType,
+    /// Input dead centres in [0, 2 pi), rising.
+    pub limits: Vec<f64>,
+    /// Input angles at which two limits meet or nearly meet.
+    pub change_points: Vec<f64>,
+    /// The circuits: by branch for a full turn, by their first input otherwise.
+    pub circuits: Vec<Circuit>,
+}
+
+impl Rssr {
+    /// The motion type from the number of extents of input and output, each counted from its own quartic.
+    ///
+    /// On the torus of both angles each input has at most two outputs and each output at most two inputs. A circuit on
+    /// which an angle rocks has therefore exactly two limits of that angle, and one on which it turns uses up one of the two
+    /// solutions everywhere. So the only counts are: both full; one full and the other two arcs; as many arcs as arcs. Any
+    /// other pair of counts is a change point that rounding has torn open.
+    fn motion_type(input: &Domain, output: &Domain) -> MotionType {
+        if input.degenerate || output.degenerate {
+            return MotionType::ChangePoint;
+        }
+        match (input.turns_fully(), output.turns_fully()) {
+            (true, true) => MotionType::DoubleCrank,
+            (true, false) if output.extents.len() == 2 => MotionType::CrankRocker,
+            (false, true) if input.extents.len() == 2 => MotionType::RockerCrank,
+            (false, false) if input.extents.is_empty() && output.extents.is_empty() => MotionType::CannotAssemble,
+            (false, false) if input.extents.len() == output.extents.len() => MotionType::DoubleRocker,
+            _ => MotionType::ChangePoint,
+        }
+    }
+
+    /// The motion type alone: two quartics, no circuits.
+    pub fn classify(&self, input: Input) -> MotionType {
+        let [forward, backward] = self.pairs(input);
+        Self::motion_type(&Domain::new(&forward), &Domain::new(&backward))
+    }
+
+    /// From input to output, and back.
+    fn pairs(&self, input: Input) -> [Pair; 2] {
+        let output = match input {
+            Input::Crank => Input::Rocker,
+            Input::Rocker => Input::Crank,
+        };
+        [self.pair(input), self.pair(output)]
+    }
+
+    /// Every circuit, with its dead centres and measures.
+    pub fn motion(&self, input: Input) -> Motion {
+        let [forward, backward] = self.pairs(input);
+        let (inputs, outputs) = (Domain::new(&forward), Domain::new(&backward));
+        let motion_type = Self::motion_type(&inputs, &outputs);
+
+        let mut circuits = Vec::new();
+        for extent in &inputs.extents {
+            let touches: Vec<f64> = match *extent {
+                Extent::Full => inputs.touches.clone(),
+                Extent::Arc(start, _) => {
+                    let mut inside: Vec<f64> = inputs
+                        .touches
+                        .iter()
+                        .filter(|&&t| extent.distance(t) == 0.0)
+                        .map(|&t| start + (t - start).rem_euclid(TAU))
+                        .collect();
+                    inside.sort_by(f64::total_cmp);
+                    inside
+                }
+            };
+            let full = *extent == Extent::Full;
+            let turns = if full { 1 + touches.len() % 2 } else { 0 };
+            let branches = if turns == 1 { 2 } else { 1 };
+            for first_branch in 0..branches {
+                circuits.push(circuit(
+                    &forward,
+                    &outputs,
+                    Circuit {
+                        motion_type,
+                        input: *extent,
+                        output: Extent::Full,
+                        first_branch,
+                        touches: touches.clone(),
+                        turns,
+                        dead_centres: Vec::new(),
+                        transmission: transmission(&forward, *extent, first_branch),
+                        velocity: None,
+                        acceleration: None,
+                    },
+                ));
+            }
+        }
+        place_output_dead_centres(&mut circuits, &forward, &backward, &outputs);
+        let degenerate_angles = || {
+            let zeros = forward.discriminant().zeros(forward.discriminant_noise());
+            zeros.unwrap_or_default().into_iter().filter(|z| z.multiple).map(|z| z.angle).collect()
+        };
+        Motion {
+            input,
+            motion_type,
+            limits: inputs.limits,
+            change_points: if motion_type == MotionType::ChangePoint { degenerate_angles() } else { Vec::new() },
+            circuits,
+        }
+    }
+}
+
+/// Completes a circuit: the range of its output, its input dead centres, its rates' extremes.
+fn circuit(forward: &Pair, outputs: &Domain, mut circuit: Circuit) -> Circuit {
+    let first = match circuit.input {
+        Extent::Full => 0.0,
+        Extent::Arc(start, _) => start,
+    };
+    let inside = match circuit.input {
+        Extent::Full => first,
+        Extent::Arc(start, end) => 0.5 * (start + end),
+    };
+    let output_at = |driver: f64| {
+        let reach = forward.reach(driver);
+        forward.angle(&reach, reach.slope.unwrap_or(0.0), circuit.first_branch)
+    };
+    let nearest = outputs
+        .extents
+        .iter()
+        .min_by(|a, b| a.distance(output_at(inside)).total_cmp(&b.distance(output_at(inside))));
+    circuit.output = nearest.map_or(Extent::Full, |e| e.holding(output_at(first)));
+    if let Extent::Arc(start, end) = circuit.input {
+        for (branch, driver) in [start, end].into_iter().enumerate() {
+            let reach = forward.reach(driver);
+            let output = forward.angle(&reach, 0.0, circuit.first_branch);
+            circuit.dead_centres.push(DeadCentre {
+                kind: DeadCentreKind::Input,
+                input: driver,
+                output: in_turn_of(&circuit.output, output),
+                branch,
+                condition: condition(forward, driver),
+            });
+        }
+    } else if circuit.motion_type != MotionType::ChangePoint {
+        [circuit.velocity, circuit.acceleration] = rate_extremes(forward, circuit.first_branch).map(Some);
+    }
+    circuit
+}
+
+/// Gives every output dead centre to the circuit that passes through it.
+fn place_output_dead_centres(circuits: &mut [Circuit], forward: &Pair, backward: &Pair, outputs: &Domain) {
+    for &output in &outputs.limits {
+        let input = backward.angle(&backward.reach(output), 0.0, 0).rem_euclid(TAU);
+        let reach = forward.reach(input);
+        let slope = reach.slope.unwrap_or(0.0);
+        let [d0, d1] = [0, 1].map(|b| turn_between(forward.angle(&reach, slope, b), output).abs());
+        let branch = usize::from(d1 < d0);
+        let home = circuits.iter_mut().min_by(|a, b| {
+            let apart = |c: &Circuit| match c.input {
+                Extent::Full if c.turns == 1 && branch_at(c, input) != branch => f64::INFINITY,
+                extent => extent.distance(input),
+            };
+            apart(a).total_cmp(&apart(b))
+        });
+        if let Some(circuit) = home {
+            let (input, pass) = match circuit.input {
+                Extent::Full => (input, 0),
+                Extent::Arc(start, _) => (
+                    start + (input - start).rem_euclid(TAU),
+                    usize::from(branch_at(circuit, input) != branch),
+                ),
+            };
+            circuit.dead_centres.push(DeadCentre {
+                kind: DeadCentreKind::Output,
+                input,
+                output: in_turn_of(&circuit.output, output),
+                branch: pass,
+                condition: condition(backward, output),
+            });
+        }
+    }
+    for circuit in circuits {
+        circuit.dead_centres.sort_by(|a, b| {
+            let rank = |d: &DeadCentre| (d.kind == DeadCentreKind::Output, d.input);
+            rank(a).partial_cmp(&rank(b)).unwrap_or(std::cmp::Ordering::Equal)
+        });
+    }
+}
+
+/// The branch of the closed form that a circuit's first pass follows at an input: each change point swaps it.
+pub(super) fn branch_at(circuit: &Circuit, input: f64) -> usize {
+    let start = match circuit.input {
+        Extent::Full => 0.0,
+        Extent::Arc(start, _) => start,
+    };
+    let turns = ((input - start) / TAU).floor();
+    let here = input - turns * TAU;
+    let passed = circuit.touches.iter().filter(|&&t| t <= here).count();
+    let whole = circuit.touches.len() * (turns.rem_euclid(2.0) as usize);
+    (circuit.first_branch + passed + whole) % 2
+}
+
+/// The signed turn in [-pi, pi) that leads from one angle to another.
+pub(super) fn turn_between(from: f64, to: f64) -> f64 {
+    (to - from + PI).rem_euclid(TAU) - PI
+}
+
+/// The angle moved by whole turns into the range of its circuit.
+fn in_turn_of(extent: &Extent, angle: f64) -> f64 {
+    match *extent {
+        Extent::Full => angle,
+        Extent::Arc(start, end) => {
+            let centre = 0.5 * (start + end);
+            centre + turn_between(centre, angle)
+        }
+    }
+}
+
+/// The condition number of a limit: the sum of the discriminant's terms over its slope there.
+fn condition(pair: &Pair, driver: f64) -> f64 {
+    let terms = pair.discriminant_noise() / (8.0 * f64::EPSILON);
+    (terms / pair.discriminant().derivative().value(driver)).abs()
+}
+
+/// The least and the greatest transmission angle: where `rho^2 - K^2` is stationary, and at the limits.
+fn transmission(pair: &Pair, extent: Extent, branch: usize) -> [TransmissionExtreme; 2] {
+    let slope = pair.discriminant().derivative();
+    let mut inputs: Vec<f64> = slope
+        .zeros(pair.discriminant_noise())
+        .unwrap_or_default()
+        .into_iter()
+        .map(|z| z.angle)
+        .filter(|&x| extent.distance(x) == 0.0)
+        .collect();
+    match extent {
+        Extent::Full => inputs.push(0.0),
+        Extent::Arc(start, end) => inputs.extend([start, end]),
+    }
+    let angle_at = |&input: &f64| TransmissionExtreme {
+        input,
+        angle: pair.transmission_angle(input, branch),
+    };
+    let least = inputs.iter().map(angle_at).min_by(|a, b| a.angle.total_cmp(&b.angle));
+    let greatest = inputs.iter().map(angle_at).max_by(|a, b| a.angle.total_cmp(&b.angle));
+    let nowhere = TransmissionExtreme { input: f64::NAN, angle: f64::NAN };
+    [least.unwrap_or(nowhere), greatest.unwrap_or(nowhere)]
+}
+
+impl Pair {
+    /// 90 degrees less the angle between the coupler's line and the direction in which its far ball moves.
+    pub fn transmission_angle(&self, driver: f64, branch: usize) -> f64 {
+        let reach = self.reach(driver);
+        let slope = reach.slope.unwrap_or(0.0);
+        let (sine, cosine) = self.direction(&reach, slope, branch);
+        let [x, y, z] = reach.ball;
+        let radial = x * cosine + y * sine - self.radius;
+        (slope / self.radius).atan2(radial.hypot(z))
+    }
+}

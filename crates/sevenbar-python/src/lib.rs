@@ -1,0 +1,245 @@
+//! The only crate that knows Python: arrays in, arrays out, the interpreter free while the core works.
+
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use sevenbar_core::error::Error;
+use sevenbar_core::rigid::Pose;
+use sevenbar_core::rssr::{self, BatchRates, Circuit, DeadCentreKind, Extent, Extreme, Input, Row};
+use sevenbar_core::taylor::Taylor;
+
+pyo3::create_exception!(_core, CoreError, PyValueError, "A request that the core cannot take.");
+
+fn raise(error: Error) -> PyErr {
+    CoreError::new_err(error.to_string())
+}
+
+fn input_named(name: &str) -> PyResult<Input> {
+    match name {
+        "crank" => Ok(Input::Crank),
+        "rocker" => Ok(Input::Rocker),
+        _ => Err(CoreError::new_err(format!("input: '{name}' is not a side link; give crank or rocker"))),
+    }
+}
+
+/// A contiguous array as a slice.
+fn flat<'a>(what: &str, array: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
+    array
+        .as_slice()
+        .map_err(|_| CoreError::new_err(format!("{what}: the array is not contiguous")))
+}
+
+/// The RSSR in closed form.
+#[pyclass(frozen, module = "sevenbar._core")]
+struct Rssr(rssr::Rssr);
+
+#[pymethods]
+impl Rssr {
+    /// From the frame of joint 1 (4, 4) and the fixed transforms of the four links (4, 4, 4).
+    #[new]
+    fn new(base: PyReadonlyArray2<'_, f64>, links: PyReadonlyArray3<'_, f64>) -> PyResult<Self> {
+        let (base, links) = (base.as_array(), links.as_array());
+        if base.shape() != [4, 4] || links.shape() != [4, 4, 4] {
+            return Err(CoreError::new_err("base needs shape (4, 4) and links shape (4, 4, 4)"));
+        }
+        let base = Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| base[[i, j]])));
+        let links = std::array::from_fn(|n| {
+            Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| links[[n, i, j]])))
+        });
+        rssr::Rssr::new(base, links).map(Self).map_err(raise)
+    }
+
+    /// The lengths of crank, coupler and rocker.
+    #[getter]
+    fn lengths(&self) -> [f64; 3] {
+        self.0.lengths()
+    }
+
+    /// The size of which residuals are parts.
+    #[getter]
+    fn size(&self) -> f64 {
+        self.0.size()
+    }
+
+    /// Both branches for many inputs: `order + 1` arrays of shape (2, n).
+    #[pyo3(signature = (inputs, order, input, speed, law=None))]
+    fn outputs<'py>(
+        &self,
+        py: Python<'py>,
+        inputs: PyReadonlyArray1<'py, f64>,
+        order: usize,
+        input: &str,
+        speed: f64,
+        law: Option<[PyReadonlyArray1<'py, f64>; 3]>,
+    ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+        let pair = self.0.pair(input_named(input)?);
+        let values = flat("input", &inputs)?;
+        let arrays: Vec<_> = (0..=order.min(rssr::MAX_ORDER + 1))
+            .map(|_| PyArray2::<f64>::zeros(py, [2, values.len()], false))
+            .collect();
+        let rates = match &law {
+            None => BatchRates::Constant(speed),
+            Some([d1, d2, d3]) => BatchRates::Law([flat("speed", d1)?, flat("acceleration", d2)?, flat("jerk", d3)?]),
+        };
+        {
+            let mut guards: Vec<_> = arrays.iter().map(|a| a.readwrite()).collect();
+            let mut slices = Vec::with_capacity(guards.len());
+            for guard in &mut guards {
+                slices.push(guard.as_slice_mut().map_err(|e| CoreError::new_err(e.to_string()))?);
+            }
+            py.detach(|| pair.outputs(values, rates, &mut slices)).map_err(raise)?;
+        }
+        Ok(arrays)
+    }
+
+    /// The motion type alone.
+    fn classify(&self, input: &str) -> PyResult<&'static str> {
+        Ok(self.0.classify(input_named(input)?).name())
+    }
+
+    /// The whole motion: its type, limits, change points, and a dictionary for each circuit.
+    #[pyo3(signature = (input, samples, speed, law=None))]
+    fn motion<'py>(
+        &self,
+        py: Python<'py>,
+        input: &str,
+        samples: usize,
+        speed: f64,
+        law: Option<PyReadonlyArray2<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let input = input_named(input)?;
+        let law: Option<Vec<[f64; 4]>> = law.map(|rows| {
+            let rows = rows.as_array();
+            rows.outer_iter().map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0))).collect()
+        });
+        let (motion, rows) = py.detach(|| {
+            let motion = self.0.motion(input);
+            let rows: Vec<Vec<Row>> = motion
+                .circuits
+                .iter()
+                .map(|circuit| match &law {
+                    None => self.0.rows(&motion, circuit, samples, speed),
+                    Some(law) => self.0.law_rows(&motion, circuit, law).concat(),
+                })
+                .collect();
+            (motion, rows)
+        });
+        let circuits = motion
+            .circuits
+            .iter()
+            .zip(&rows)
+            .map(|(circuit, rows)| circuit_dict(py, circuit, rows))
+            .collect::<PyResult<Vec<_>>>()?;
+        let result = PyDict::new(py);
+        result.set_item("motion_type", motion.motion_type.name())?;
+        result.set_item("limits", motion.limits.into_pyarray(py))?;
+        result.set_item("change_points", motion.change_points.into_pyarray(py))?;
+        result.set_item("circuits", circuits)?;
+        Ok(result)
+    }
+
+    /// A point of a link with three derivatives by time, (4, n, 3), from the joints' (n, 4) at crank and rocker.
+    fn point<'py>(
+        &self,
+        py: Python<'py>,
+        link: usize,
+        at: [f64; 3],
+        crank: PyReadonlyArray2<'py, f64>,
+        rocker: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (crank, rocker) = (crank.as_array(), rocker.as_array());
+        if crank.shape() != rocker.shape() || crank.shape().get(1) != Some(&4) {
+            return Err(CoreError::new_err("crank and rocker need the same shape (n, 4)"));
+        }
+        let count = crank.shape()[0];
+        let mut out = vec![0.0; 4 * count * 3];
+        for n in 0..count {
+            let row = |joint: &numpy::ndarray::ArrayView2<'_, f64>| -> [f64; 4] { std::array::from_fn(|k| joint[[n, k]]) };
+            let (a, b) = (row(&crank), row(&rocker));
+            let has_rates = a.iter().chain(&b).all(|x| x.is_finite());
+            let columns: [[f64; 3]; 4] = if has_rates {
+                let moved = self.0.point(link, at, Taylor::<4>::from_derivatives(&a), Taylor::from_derivatives(&b));
+                let moved = moved.map_err(raise)?;
+                std::array::from_fn(|k| std::array::from_fn(|i| moved[i].derivative(k)))
+            } else {
+                let still = self.0.point(link, at, Taylor::<1>::constant(a[0]), Taylor::constant(b[0])).map_err(raise)?;
+                let mut columns = [[f64::NAN; 3]; 4];
+                columns[0] = std::array::from_fn(|i| still[i].value());
+                columns
+            };
+            for (k, column) in columns.iter().enumerate() {
+                out[(k * count + n) * 3..(k * count + n) * 3 + 3].copy_from_slice(column);
+            }
+        }
+        PyArray1::from_vec(py, out).reshape([4, count, 3])
+    }
+}
+
+fn circuit_dict<'py>(py: Python<'py>, circuit: &Circuit, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    let column = |pick: &dyn Fn(&Row) -> f64| rows.iter().map(pick).collect::<Vec<f64>>().into_pyarray(py);
+    let count = |pick: &dyn Fn(&Row) -> usize| rows.iter().map(|r| pick(r) as i64).collect::<Vec<i64>>().into_pyarray(py);
+    let mut joints = Vec::with_capacity(rows.len() * 32);
+    for order in 0..4 {
+        for row in rows {
+            joints.extend(row.joints.iter().map(|q| q[order]));
+        }
+    }
+    let columns = rows.first().map_or(8, |r| r.joints.len());
+    result.set_item("joints", PyArray1::from_vec(py, joints).reshape([4, rows.len(), columns])?)?;
+    result.set_item("status", count(&|r| r.status as usize))?;
+    result.set_item("branch", count(&|r| r.branch))?;
+    result.set_item("mode", count(&|r| r.mode))?;
+    result.set_item("residual", column(&|r| r.residual))?;
+    result.set_item("condition", column(&|r| r.condition))?;
+    result.set_item("motion_type", circuit.motion_type.name())?;
+    result.set_item("input", extent(&circuit.input))?;
+    result.set_item("output", extent(&circuit.output))?;
+    result.set_item("turns", circuit.turns)?;
+    let dead_centres: Vec<_> = circuit
+        .dead_centres
+        .iter()
+        .map(|d| {
+            let kind = match d.kind {
+                DeadCentreKind::Input => "input",
+                DeadCentreKind::Output => "output",
+            };
+            (kind, d.input, d.output, d.branch, d.condition)
+        })
+        .collect();
+    result.set_item("dead_centres", dead_centres)?;
+    result.set_item("transmission", circuit.transmission.map(|t| (t.angle, t.input)))?;
+    result.set_item("velocity", circuit.velocity.map(extremes))?;
+    result.set_item("acceleration", circuit.acceleration.map(extremes))?;
+    Ok(result)
+}
+
+fn extent(extent: &Extent) -> Option<(f64, f64)> {
+    match *extent {
+        Extent::Full => None,
+        Extent::Arc(start, end) => Some((start, end)),
+    }
+}
+
+fn extremes(pair: [Extreme; 2]) -> [(f64, f64); 2] {
+    pair.map(|e| (e.value, e.input))
+}
+
+/// The vector unit that batches run on.
+#[pyfunction]
+fn simd_level() -> &'static str {
+    sevenbar_core::simd::level()
+}
+
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::{CoreError, Rssr, simd_level};
+
+    #[pymodule_init]
+    fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        use pyo3::types::PyModuleMethods;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
