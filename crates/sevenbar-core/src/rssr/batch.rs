@@ -59,10 +59,31 @@ impl Pair {
 }
 
 fn finite(what: &'static str, values: &[f64]) -> Result<(), Error> {
-    match values.iter().position(|x| !x.is_finite()) {
-        None => Ok(()),
-        Some(index) => Err(Error::NotFinite { what, index, value: values[index] }),
+    let mut largest = 0;
+    dispatch(LargestBits { values, largest: &mut largest });
+    if largest < f64::INFINITY.to_bits() {
+        return Ok(());
     }
+    let index = values.iter().position(|x| !x.is_finite()).unwrap_or(0);
+    Err(Error::NotFinite { what, index, value: values[index] })
+}
+
+/// The greatest absolute value, as its bits: their order is that of the values, with infinity and NaN on top.
+struct LargestBits<'a> {
+    values: &'a [f64],
+    largest: &'a mut u64,
+}
+
+impl Kernel for LargestBits<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        *self.largest = largest_bits(self.values);
+    }
+}
+
+#[inline(always)]
+fn largest_bits(values: &[f64]) -> u64 {
+    values.iter().fold(0, |largest, x| x.abs().to_bits().max(largest))
 }
 
 struct Blocks<'a, 'b> {
@@ -91,12 +112,8 @@ impl<const ORDER: usize> Kernel for Ordered<'_, '_, ORDER> {
         let mut start = 0;
         while start < count {
             let size = BLOCK.min(count - start);
-            let mut largest = 0.0_f64;
-            for (slot, &x) in angles.iter_mut().zip(&inputs[start..start + size]) {
-                *slot = x;
-                largest = if x.abs() > largest { x.abs() } else { largest };
-            }
-            if largest > LARGEST_ANGLE {
+            angles[..size].copy_from_slice(&inputs[start..start + size]);
+            if largest_bits(&angles) > LARGEST_ANGLE.to_bits() {
                 for x in &mut angles {
                     let (s, c) = x.sin_cos();
                     *x = s.atan2(c);
