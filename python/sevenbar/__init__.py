@@ -1,1 +1,50 @@
-"""x"""
+"""Kinematics of closed spatial linkages: every assembly mode, whole circuits, exact rates.
+
+import sevenbar as sb
+
+linkage = sb.load("rssr")
+motion = linkage.motion()
+print(motion.motion_type)
+"""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+
+from sevenbar import errors
+from sevenbar._core import __version__
+from sevenbar.files import load, loads
+from sevenbar.forms import from_axes, rssr
+from sevenbar.linkage import Drive, Joint, Linkage, Point
+from sevenbar.motion import Circuit, DeadCentre, Extremes, Law, Modes, Motion, Output, Trace
+
+__all__ = [
+    "Circuit",
+    "DeadCentre",
+    "Drive",
+    "Extremes",
+    "Joint",
+    "Law",
+    "Linkage",
+    "Modes",
+    "Motion",
+    "Output",
+    "Point",
+    "Trace",
+    "__version__",
+    "errors",
+    "from_axes",
+    "load",
+    "loads",
+    "rssr",
+]
+
+#: Modules that bring large libraries with them, imported at their first use.
+_ON_DEMAND = ("plot", "report")
+
+
+def __getattr__(name: str) -> ModuleType:
+    if name in _ON_DEMAND:
+        return importlib.import_module(f"sevenbar.{name}")
+    raise AttributeError(f"module 'sevenbar' has no attribute '{name}'")

@@ -23,6 +23,8 @@ fn input_named(name: &str) -> PyResult<Input> {
     }
 }
 
+type AssemblyModes<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
 /// A contiguous array as a slice.
 fn flat<'a>(what: &str, array: &'a PyReadonlyArray1<'_, f64>) -> PyResult<&'a [f64]> {
     array
@@ -91,6 +93,15 @@ impl Rssr {
             py.detach(|| pair.outputs(values, rates, &mut slices)).map_err(raise)?;
         }
         Ok(arrays)
+    }
+
+    /// Joint values (m, 8) and closure errors (m,) of each assembly mode at one input.
+    fn assembly_modes<'py>(&self, py: Python<'py>, theta: f64, input: &str) -> PyResult<AssemblyModes<'py>> {
+        let modes = self.0.assembly_modes(input_named(input)?, theta);
+        let joints = modes.iter().flat_map(|m| m.0).collect::<Vec<f64>>();
+        let residuals = modes.iter().map(|m| m.1).collect::<Vec<f64>>();
+        let columns = modes.first().map_or(8, |m| m.0.len());
+        Ok((PyArray1::from_vec(py, joints).reshape([modes.len(), columns])?, residuals.into_pyarray(py)))
     }
 
     /// The motion type alone.

@@ -90,6 +90,25 @@ impl Rssr {
             .collect()
     }
 
+    /// Joint values and closure error of each assembly mode at one input, angles in (-pi, pi]: none, two, or one at a limit.
+    pub fn assembly_modes(&self, input: Input, driver: f64) -> Vec<([f64; JOINT_COLUMNS], f64)> {
+        let pair = self.pair(input);
+        let reach = pair.reach(driver);
+        let Some(slope) = reach.slope else {
+            return Vec::new();
+        };
+        let count = if slope == 0.0 { 1 } else { 2 };
+        (0..count)
+            .map(|branch| {
+                let follower = pair.angle(&reach, slope, branch);
+                let (crank, rocker) = Self::in_loop_order(input, driver, follower);
+                let joints = self.joints(Taylor::<1>::constant(crank), Taylor::constant(rocker));
+                let wrapped = joints.map(|q| -turn_between(q.value(), 0.0));
+                (wrapped, self.residual(crank, rocker))
+            })
+            .collect()
+    }
+
     fn walk(&self, motion: &Motion, circuit: &Circuit, drivers: &[(Stop, Taylor<4>)]) -> Vec<Row> {
         let pair = self.pair(motion.input);
         let mut rows: Vec<Row> = Vec::with_capacity(drivers.len());

@@ -1,0 +1,36 @@
+"""The Rust core: arrays in, arrays out."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+_Floats = npt.NDArray[np.float64]
+
+__version__: str
+
+class CoreError(ValueError):
+    """A request that the core cannot take."""
+
+class Rssr:
+    """The RSSR in closed form."""
+
+    def __new__(cls, base: _Floats, links: _Floats) -> Rssr: ...
+    @property
+    def lengths(self) -> list[float]: ...
+    @property
+    def size(self) -> float: ...
+    def outputs(
+        self,
+        inputs: _Floats,
+        order: int,
+        input: str,
+        speed: float,
+        law: tuple[_Floats, ...] | None = None,
+    ) -> list[_Floats]: ...
+    def assembly_modes(self, theta: float, input: str) -> tuple[_Floats, _Floats]: ...
+    def classify(self, input: str) -> str: ...
+    def motion(self, input: str, samples: int, speed: float, law: _Floats | None = None) -> dict[str, Any]: ...
+    def point(self, link: int, at: _Floats, crank: _Floats, rocker: _Floats) -> _Floats: ...
+
+def simd_level() -> str: ...

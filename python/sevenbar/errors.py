@@ -1,0 +1,65 @@
+"""The mistakes a caller can make. Every one derives from `SevenbarError` and says what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+
+class SevenbarError(Exception):
+    """A mistake of the caller; its text names the place, the value and what is allowed."""
+
+
+class RequestError(SevenbarError, ValueError):
+    """An argument that a function cannot take."""
+
+
+class NotCoveredError(SevenbarError):
+    """A linkage that is well described but that this version does not analyse."""
+
+
+class OutputError(SevenbarError):
+    """A file or folder that cannot be written; nothing was changed."""
+
+
+class MissingExtraError(SevenbarError, ImportError):
+    """An optional package that is asked for but not installed."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong in a description: where it stands and what is the matter."""
+
+    place: str
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.message}" if self.place else self.message
+
+
+class DescriptionError(SevenbarError):
+    """A linkage description with mistakes: all of them at once, in `problems`."""
+
+    def __init__(self, problems: Sequence[Problem], source: str = "") -> None:
+        self.problems = tuple(problems)
+        self.source = source
+        prefix = f"{source}: " if source else ""
+        super().__init__("\n".join(f"{prefix}{problem}" for problem in self.problems))
+
+
+def shown(value: object, longest: int = 60) -> str:
+    """A value as it is quoted in a message: its repr, cut short."""
+    try:
+        text = repr(value)
+    except (RecursionError, ValueError):  # nested without end; an integer too long to print
+        text = f"a {type(value).__name__} too large to print"
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """`did you mean 'L1'? ` for a word near a known one, else nothing."""
+    known = list(known)
+    lowered = {k.lower(): k for k in known}
+    near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=0.6)
+    return f"did you mean '{lowered[near[0]]}'? " if near else ""

@@ -1,0 +1,295 @@
+"""What a linkage does: its assembly modes, its circuits, the traces of its points. Values made from the core's arrays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.errors import MissingExtraError, RequestError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from sevenbar.linkage import Linkage
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+Words = npt.NDArray[np.str_]
+
+#: What a row can hold, by the core's number: all; the pose but no rates (two reasons); nothing; all but the balls' turns.
+STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
+
+#: The status of a row of a trace on the coupler where the spin's rule names no direction.
+SPIN_UNDEFINED = "spin-undefined"
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """The lowest and the highest value of a quantity, and the input [rad] at which each occurs."""
+
+    lowest: float
+    lowest_at: float
+    highest: float
+    highest_at: float
+
+
+@dataclass(frozen=True)
+class DeadCentre:
+    """A pose where the input (`kind` "input") or the output ("output") stands still.
+
+    `input` and `output` are the two angles [rad], `branch` the pass on which it lies, `condition` how much a relative change of
+    the squared dimensions is magnified in its place.
+    """
+
+    kind: Literal["input", "output"]
+    input: float
+    output: float
+    branch: int
+    condition: float
+
+
+@dataclass(frozen=True, eq=False)
+class Output:
+    """Both branches of the closed form on an array of inputs; arrays of shape (2, n), `None` above the order asked for.
+
+    `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without solution keeps its place as
+    NaN; so do the rates at an input dead centre. `status` tells which.
+    """
+
+    position: Floats
+    velocity: Floats | None = None
+    acceleration: Floats | None = None
+    jerk: Floats | None = None
+
+    @property
+    def status(self) -> Words:
+        """The status of each value, (2, n): "ok", "dead-centre" (from order 1 on), "no-solution"."""
+        status = np.full(self.position.shape, "ok", dtype="<U15")
+        if self.velocity is not None:
+            status[np.isnan(self.velocity)] = "dead-centre"
+        status[np.isnan(self.position)] = "no-solution"
+        return status
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """All assembly modes at one input: joint values (m, columns) with angles in (-pi, pi], and how that was established."""
+
+    q: Floats
+    residual: Floats
+    completeness: Literal["closed-form", "algebraic", "searched"]
+    columns: tuple[str, ...]
+    input: float
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """A point of a link along a circuit, in the report frame; arrays of shape (n, 3).
+
+    `position` [length], `velocity` [length/s], `acceleration` [length/s^2], `jerk` [length/s^3]. Rows without a value are NaN,
+    with a status.
+    """
+
+    position: Floats
+    velocity: Floats
+    acceleration: Floats
+    jerk: Floats
+    status: Words
+
+
+@dataclass(frozen=True)
+class Law:
+    """An input law: time [s], input [rad] and its derivatives by time, each of shape (n,)."""
+
+    t: Floats
+    q: Floats
+    dq: Floats
+    ddq: Floats
+    dddq: Floats
+
+    @staticmethod
+    def of(t: npt.ArrayLike, q: npt.ArrayLike, dq: npt.ArrayLike, ddq: npt.ArrayLike, dddq: npt.ArrayLike = 0.0) -> Law:
+        """A law from array-likes; a single number stands for every sample."""
+        arrays = {"t": t, "q": q, "dq": dq, "ddq": ddq, "dddq": dddq}
+        checked = {name: finite_array(name, values) for name, values in arrays.items()}
+        count = checked["t"].size
+        if count == 0:
+            raise RequestError("t: a law needs at least one sample")
+        for name, values in checked.items():
+            if values.size not in (1, count):
+                raise RequestError(f"{name}: {values.size} values where t has {count}; give {count}, or one number")
+        if np.any(np.diff(checked["t"]) <= 0):
+            raise RequestError("t: times must rise from sample to sample")
+        return Law(**{name: np.ascontiguousarray(np.broadcast_to(v, (count,))) for name, v in checked.items()})
+
+
+@dataclass(frozen=True, eq=False)
+class Circuit:
+    """One connected motion, row by row along it.
+
+    `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n, columns), unwrapped [rad and
+    derivatives by s]. `time` [s]; `status`, `branch` (the pass between input dead centres), `mode` (the branch of the closed form),
+    `residual` (closure error in the length unit), `condition` (how much a relative error of the closure is magnified in the velocity),
+    each (n,).
+    """
+
+    index: int
+    motion_type: str
+    closed: bool
+    turns: int
+    columns: tuple[str, ...]
+    q: Floats
+    dq: Floats
+    ddq: Floats
+    dddq: Floats
+    time: Floats
+    status: Words
+    branch: Integers
+    mode: Integers
+    residual: Floats
+    condition: Floats
+    dead_centres: tuple[DeadCentre, ...]
+    #: Ranges [rad] of input and output; `None` for one that turns fully.
+    input_range: tuple[float, float] | None
+    output_range: tuple[float, float] | None
+    #: The transmission angle [rad].
+    transmission: Extremes
+    #: Of the output's velocity [rad/s] and acceleration [rad/s^2]; `None` where they grow without bound.
+    velocity: Extremes | None
+    acceleration: Extremes | None
+    input_column: int
+    output_column: int
+    _point: Callable[[int, tuple[float, float, float], Floats], Trace] = field(repr=False)
+
+    @property
+    def input(self) -> Floats:
+        """The input angle [rad], (n,)."""
+        return self.q[:, self.input_column]
+
+    @property
+    def output(self) -> Floats:
+        """The output angle [rad], (n,)."""
+        return self.q[:, self.output_column]
+
+    @property
+    def angle(self) -> Extremes | None:
+        """The extremes of the output angle [rad]: its dead centres; `None` for an output that turns fully."""
+        ends = [d for d in self.dead_centres if d.kind == "output"]
+        if self.output_range is None or len(ends) < 2:
+            return None
+        low, high = min(ends, key=lambda d: d.output), max(ends, key=lambda d: d.output)
+        return Extremes(low.output, low.input, high.output, high.input)
+
+    @property
+    def swing(self) -> float | None:
+        """The angle [rad] through which the output rocks; `None` for one that turns fully."""
+        return None if self.output_range is None else self.output_range[1] - self.output_range[0]
+
+    @property
+    def time_ratio(self) -> float | None:
+        """Time of the slower stroke over time of the quicker at constant input speed, >= 1; for a crank with a rocking output."""
+        if self.angle is None or self.input_range is not None:
+            return None
+        stroke = (self.angle.highest_at - self.angle.lowest_at) % math.tau
+        return max(stroke, math.tau - stroke) / min(stroke, math.tau - stroke)
+
+    def point(self, link: int, at: tuple[float, float, float]) -> Trace:
+        """A point of link 1, 2, .. along the circuit.
+
+        `at` is written as for the points of the file: in the link's frame for the dimension forms, in ground coordinates of
+        the drawn pose for the joint form.
+        """
+        ends = [0, len(self.columns) - 1]
+        rates = np.stack([self.q[:, ends], self.dq[:, ends], self.ddq[:, ends], self.dddq[:, ends]], axis=-1)
+        return self._point(link, at, rates)
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The circuits of a linkage over the whole input range."""
+
+    linkage: Linkage
+    input: str
+    output: str
+    #: d(input)/dt [rad/s]; NaN where a law drives.
+    speed: float
+    samples: int
+    motion_type: str
+    #: Input dead centres [rad] in [0, 2 pi), rising.
+    limits: Floats
+    #: Inputs [rad] where two limits meet, or come nearer than 1e-6 rad.
+    change_points: Floats
+    circuits: tuple[Circuit, ...]
+    completeness: Literal["closed-form", "algebraic", "searched"]
+    idle: tuple[str, ...]
+    redundant: tuple[str, ...]
+    law: Law | None = None
+
+    def __iter__(self) -> Iterator[Circuit]:
+        return iter(self.circuits)
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """Every row of every circuit, column by column; each name ends in its unit."""
+        unit = self.linkage.length_unit
+        parts = [_circuit_columns(circuit, self.linkage, unit) for circuit in self.circuits]
+        if not parts:
+            return {}
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def to_frame(self) -> pd.DataFrame:
+        """`columns` as a pandas table (extra `[frame]`)."""
+        try:
+            import pandas as pd
+        except ImportError:
+            raise MissingExtraError("to_frame needs pandas; install it with: pip install 'sevenbar[frame]'") from None
+        return pd.DataFrame(self.columns())
+
+
+def _circuit_columns(circuit: Circuit, linkage: Linkage, unit: str) -> dict[str, npt.NDArray[Any]]:
+    count = len(circuit.time)
+    columns: dict[str, npt.NDArray[Any]] = {
+        "circuit": np.full(count, circuit.index),
+        "branch": circuit.branch,
+        "sample": np.arange(count),
+        "status": circuit.status,
+        "time_s": circuit.time,
+    }
+    for index, name in enumerate(circuit.columns):
+        columns[f"{name}_deg"] = np.degrees(circuit.q[:, index])
+    for suffix, values in (("rad_s", circuit.dq), ("rad_s2", circuit.ddq), ("rad_s3", circuit.dddq)):
+        for index, name in enumerate(circuit.columns):
+            columns[f"{name}_{suffix}"] = values[:, index]
+    for point in linkage.points:
+        trace = circuit.point(point.link, point.at)
+        for letter, suffix, values in (
+            ("", unit, trace.position),
+            ("v", f"{unit}_s", trace.velocity),
+            ("a", f"{unit}_s2", trace.acceleration),
+        ):
+            for axis, name in enumerate("xyz"):
+                columns[f"{point.name}_{letter}{name}_{suffix}"] = values[:, axis]
+    columns[f"residual_{unit}"] = circuit.residual
+    return columns
+
+
+def finite_array(name: str, values: npt.ArrayLike) -> Floats:
+    """A one-dimensional contiguous array of finite numbers, or `RequestError` naming the first that is none."""
+    try:
+        array = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise RequestError(f"{name}: not an array of numbers") from None
+    if array.ndim > 1:
+        raise RequestError(f"{name}: an array of shape {array.shape} does not fit; give one dimension")
+    array = array.reshape(-1)
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise RequestError(f"{name}[{bad[0]}]: {array[bad[0]]} is not a finite number")
+    return array
