@@ -63,3 +63,8 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     lowered = {k.lower(): k for k in known}
     near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=0.6)
     return f"did you mean '{lowered[near[0]]}'? " if near else ""
+
+
+def no_joint(name: object, names: Sequence[str]) -> str:
+    """The message for a joint that does not exist."""
+    return f"no joint {shown(name)}; {suggestion(str(name), names)}this linkage has {', '.join(names)}"

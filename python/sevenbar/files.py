@@ -11,8 +11,10 @@ from sevenbar.forms import from_form
 from sevenbar.gallery import names, text
 from sevenbar.linkage import Linkage
 
-#: A linkage has some dozen numbers; a larger file is something else.
-LARGEST_FILE = 1_000_000
+#: A linkage has some dozen numbers; a larger file [bytes] or a longer line [characters] is something else, and could keep the
+#: TOML reader busy for hours.
+LARGEST_FILE = 100_000
+LONGEST_LINE = 2_000
 
 
 def load(source: str | os.PathLike[str]) -> Linkage:
@@ -34,13 +36,16 @@ def loads(content: str, source: str = "text") -> Linkage:
     """The linkage described by a TOML text; `source` is its name in messages."""
     from sevenbar import schema
 
+    for number, line in enumerate(content.splitlines(), 1):
+        if len(line) > LONGEST_LINE:
+            raise _unreadable(source, f"line {number} has {len(line)} characters; a linkage file has at most {LONGEST_LINE}")
     try:
         raw = tomllib.loads(content)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # not TOML, or an integer of thousands of digits
         raise _unreadable(source, f"not valid TOML: {str(error)[:200]}; see the examples for the form of a linkage file") from None
     except RecursionError:
         raise _unreadable(source, "nested too deep; a linkage file has tables of plain keys only") from None
-    return from_form(schema.check(schema.LinkageForm, raw, source=source), source)
+    return from_form(schema.check(raw, source=source), source)
 
 
 def _read(path: Path) -> str:

@@ -14,7 +14,7 @@ from sevenbar.linkage import Drive, Joint, Linkage, Point
 from sevenbar.motion import Floats
 
 if TYPE_CHECKING:
-    from sevenbar.schema import JointForm, LinkageForm, PointForm, RssrForm
+    from sevenbar.schema import JointForm, LinkageForm, RssrForm
 
 #: Below this share of the size of a drawn pose a link has no length.
 NO_LENGTH = 1e-12
@@ -69,7 +69,7 @@ def rssr(
         "drive": {"speed": speed},
         "rssr": {key: _plain(value) for key, value in dimensions.items()},
     }
-    return from_form(schema.check(schema.LinkageForm, raw))
+    return from_form(schema.check(raw))
 
 
 def from_axes(
@@ -105,7 +105,7 @@ def from_axes(
         "joint": _plain(joints),
         "point": _plain(points),
     }
-    return from_form(schema.check(schema.LinkageForm, raw))
+    return from_form(schema.check(raw))
 
 
 def _plain(value: Any) -> Any:
@@ -121,42 +121,32 @@ def _plain(value: Any) -> Any:
 
 def from_form(form: LinkageForm, source: str = "") -> Linkage:
     """The linkage that a checked description tells of."""
-    written = [key for key in ("rssr", "joint", "link") if getattr(form, key) is not None]
-    if len(written) != 1:
-        what = f"{' and '.join(written)} are all given" if written else "no linkage is described"
-        message = f"{what}; give exactly one of [rssr], [[joint]] or [[link]]"
-        raise DescriptionError([Problem("", message)], source)
     if form.rssr is not None:
         linkage = _from_dimensions(form.rssr)
     elif form.joint is not None:
         linkage = _from_drawing(form.joint, source)
     else:
         raise NotCoveredError(
-            f"{source + ': ' if source else ''}link: Denavit-Hartenberg rows are not analysed by this version; "
-            "it takes [rssr] or [[joint]]"
+            f"{_prefix(source)}link: Denavit-Hartenberg rows are not analysed by this version; it takes [rssr] or [[joint]]"
         )
-    problems: list[Problem] = []
-    points = linkage.points + tuple(_named_point(p, i, linkage, problems) for i, p in enumerate(form.point))
-    linkage = replace(linkage, name=form.name, length_unit=form.length_unit, points=points)
+    points = linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point)
+    drive = form.drive
     try:
-        joint, output = form.drive.joint, form.drive.output
-        _, input_name, output_name = linkage.sides(joint or linkage.drive.joint, output)
-        linkage = replace(linkage, drive=Drive(input_name, output_name, form.drive.speed))
+        _, input_name, output_name = linkage.sides(drive.joint, drive.output)
     except RequestError as error:
-        problems.append(Problem("", "drive." + str(error).replace("input:", "joint:", 1)))
-    if problems:
-        raise DescriptionError(problems, source)
-    return linkage
+        place, message = str(error).replace("input:", "joint:", 1).split(": ", 1)
+        raise DescriptionError([Problem(f"drive.{place}", message)], source) from None
+    return replace(
+        linkage,
+        name=form.name,
+        length_unit=form.length_unit,
+        points=points,
+        drive=Drive(input_name, output_name, drive.speed),
+    )
 
 
-def _named_point(point: PointForm, index: int, linkage: Linkage, problems: list[Problem]) -> Point:
-    place = f"point[{index + 1}]"
-    if point.link > len(linkage.joints):
-        count = len(linkage.joints)
-        problems.append(Problem(f"{place}.link", f"{point.link} is not a link; give 1 to {count}, the last is the ground"))
-    if point.name in [p.name for p in linkage.points]:
-        problems.append(Problem(f"{place}.name", f"'{point.name}' is a ball of this linkage; give another name"))
-    return Point(point.name, point.link, point.at)
+def _prefix(source: str) -> str:
+    return f"{source}: " if source else ""
 
 
 def _from_dimensions(form: RssrForm) -> Linkage:
@@ -171,10 +161,11 @@ def _from_dimensions(form: RssrForm) -> Linkage:
             inverse(ground) @ base,
         ]
     )
-    joints = (Joint("R", "crank"), Joint("S", "ball_a"), Joint("S", "ball_b"), Joint("R", "rocker"))
+    from sevenbar.schema import RSSR_JOINTS
+
     return Linkage(
         name="RSSR",
-        joints=joints,
+        joints=tuple(Joint(kind, name) for name, kind in RSSR_JOINTS),
         base=base,
         transforms=transforms,
         point_frames=np.stack([np.eye(4)] * 4),
@@ -185,23 +176,11 @@ def _from_dimensions(form: RssrForm) -> Linkage:
 
 
 def _from_drawing(forms: tuple[JointForm, ...], source: str) -> Linkage:
-    kinds = "".join(form.kind for form in forms)
-    problems = [
-        Problem(f"joint[{i + 1}].{key}", message)
-        for i, form in enumerate(forms)
-        for key, message in _misfits(form)
-    ]
-    names = [form.name or f"theta_{i + 1}" for i, form in enumerate(forms)]
-    problems += [
-        Problem(f"joint[{i + 1}].name", f"'{name}' is taken already; give each joint its own name")
-        for i, name in enumerate(names)
-        if name in names[:i]
-    ]
-    if problems:
-        raise DescriptionError(problems, source)
-    if kinds != "RSSR":
+    kinds = " ".join(form.kind for form in forms)
+    names = [form.name or f"theta_{i}" for i, form in enumerate(forms, 1)]
+    if kinds != "R S S R":
         raise NotCoveredError(
-            f"{source + ': ' if source else ''}joint: a loop {' '.join(kinds) or 'without joints'} is not analysed by this version; "
+            f"{_prefix(source)}joint: a loop {kinds or 'without joints'} is not analysed by this version; "
             "it takes R S S R, in this order"
         )
     crank, ball_a, ball_b, rocker = (np.array(form.at) for form in forms)
@@ -230,14 +209,6 @@ def _from_drawing(forms: tuple[JointForm, ...], source: str) -> Linkage:
         drive=Drive(names[0], names[3]),
         points=(Point("A", 1, forms[1].at), Point("B", 3, forms[2].at)),
     )
-
-
-def _misfits(form: JointForm) -> list[tuple[str, str]]:
-    """Keys that a joint of this kind needs and has not, or has and cannot use."""
-    needs = {"R": {"axis"}, "P": {"axis"}, "C": {"axis"}, "H": {"axis", "pitch"}, "U": {"axes"}, "S": set()}[form.kind]
-    given = {key for key in ("axis", "axes", "pitch") if getattr(form, key) is not None}
-    missing = [(key, f"is missing; a joint of kind {form.kind} needs it") for key in sorted(needs - given)]
-    return missing + [(key, f"does not belong to a joint of kind {form.kind}; leave it out") for key in sorted(given - needs)]
 
 
 def _frame_about(axis: npt.ArrayLike | None, towards: Floats) -> Floats:

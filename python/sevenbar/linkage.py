@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar import _core
-from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
+from sevenbar.errors import NotCoveredError, RequestError, no_joint, shown
 from sevenbar.motion import (
     SPIN_UNDEFINED,
     STATUSES,
@@ -107,9 +107,7 @@ class Linkage:
     @cached_property
     def _rssr(self) -> _core.Rssr:
         if self.kind != "RSSR":
-            raise NotCoveredError(
-                f"joint: a loop {' '.join(self.kind)} is not analysed by this version; it takes R S S R, in this order"
-            )
+            raise NotCoveredError(f"a loop {' '.join(self.kind)} is not analysed by this version; it takes R S S R")
         return _core.Rssr(self.base, self.transforms)
 
     def side(self, joint: str | None, default: str, key: str) -> str:
@@ -117,9 +115,7 @@ class Linkage:
         name = default if joint is None else joint
         known = [j.name for j in self.joints]
         if name not in known:
-            raise RequestError(
-                f"{key}: no joint {shown(name)}; {suggestion(str(name), known)}this linkage has {', '.join(known)}"
-            )
+            raise RequestError(f"{key}: {no_joint(name, known)}")
         index = known.index(name)
         if index not in (0, len(known) - 1):
             raise RequestError(

@@ -6,19 +6,22 @@ This is the only model of the file format; `check` turns its errors into the mes
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, TypeVar
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from sevenbar.errors import DescriptionError, Problem, RequestError, shown, suggestion
+from sevenbar.errors import DescriptionError, Problem, RequestError, no_joint, shown, suggestion
 from sevenbar.units import ANGLES, LENGTHS, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
 LARGEST_DIMENSION = 1e100
 
 JOINT_KINDS = ("R", "P", "H", "C", "U", "S")
+
+#: Names and kinds of the joints of a linkage written as [rssr].
+RSSR_JOINTS = (("crank", "R"), ("ball_a", "S"), ("ball_b", "S"), ("rocker", "R"))
 
 
 def _refuse(message: str) -> PydanticCustomError:
@@ -31,8 +34,10 @@ def _number(value: object) -> float:
         raise _refuse(f"{shown(value)} is text; give a number without quotes")
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise _refuse(f"{shown(value)} is not a number; give a number")
-    if not abs(value) <= LARGEST_DIMENSION:  # also where it is not a number
-        raise _refuse(f"{shown(value)} is out of range; give a finite number up to {LARGEST_DIMENSION:g} in size")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise _refuse(f"{shown(value)} is not a finite number; give a finite number")
+    if abs(value) > LARGEST_DIMENSION:
+        raise _refuse(f"{shown(value)} is out of range; give a number up to {LARGEST_DIMENSION:g} in size")
     return float(value)
 
 
@@ -152,31 +157,81 @@ class LinkageForm(_Form):
     point: tuple[PointForm, ...] = ()
 
 
-FormT = TypeVar("FormT", bound=_Form)
-
-
-def check(form: type[FormT], raw: object, *, place: str = "", source: str = "") -> FormT:
-    """The description as a checked form, or `DescriptionError` with every problem in it.
-
-    `place` is the path of `raw` within the whole, `source` the file it came from.
-    """
+def check(raw: object, *, source: str = "") -> LinkageForm:
+    """The description as a checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
     try:
-        return form.model_validate(raw)
+        form = LinkageForm.model_validate(raw)
+        problems = []
     except ValidationError as error:
-        problems = [_problem(detail, form, place) for detail in error.errors(include_url=False)]
-        raise DescriptionError(problems, source) from None
+        problems = [_problem(detail) for detail in error.errors(include_url=False)]
+    if isinstance(raw, Mapping):
+        problems += _contradictions(raw)
+    if problems:
+        raise DescriptionError(problems, source)
+    return form
 
 
-def _problem(detail: ErrorDetails, form: type[_Form], place: str) -> Problem:
+def _contradictions(raw: Mapping[str, Any]) -> list[Problem]:
+    """What is wrong between keys that may each be right; reads only what has the right form, the rest is told already."""
+    written = [key for key in ("rssr", "joint", "link") if key in raw]
+    if len(written) != 1:
+        what = f"{' and '.join(written)} are given together" if written else "no linkage is described"
+        return [Problem("", f"{what}; give exactly one of [rssr], [[joint]] or [[link]]")]
+    problems = []
+    if written == ["rssr"]:
+        joints = list(RSSR_JOINTS)
+    else:
+        tables = [(i, t) for i, t in enumerate(_tables(raw, "joint"), 1) if t.get("kind") in JOINT_KINDS]
+        problems = [Problem(f"joint[{i}].{key}", message) for i, t in tables for key, message in _misfits(t)]
+        joints = [(str(t.get("name") or f"theta_{i}").strip(), str(t["kind"])) for i, t in tables]
+    names = [name for name, _ in joints]
+    problems += [
+        Problem(f"joint[{i + 1}].name", f"{shown(name)} is taken already; give each joint its own name")
+        for i, name in enumerate(names)
+        if name in names[:i]
+    ]
+    points = [(i, t) for i, t in enumerate(_tables(raw, "point"), 1)]
+    taken = {"A", "B"}
+    for i, table in points:
+        link, name = table.get("link"), table.get("name")
+        if isinstance(link, int) and link > len(joints) > 0:
+            last = f"give 1 to {len(joints)}, the last is the ground"
+            problems.append(Problem(f"point[{i}].link", f"{shown(link)} is not a link; {last}"))
+        if isinstance(name, str) and name.strip() in taken:
+            problems.append(Problem(f"point[{i}].name", f"{shown(name)} is taken already; give each point its own name"))
+        taken.add(str(name).strip())
+    drive = raw.get("drive")
+    for key in ("joint", "output"):
+        name = drive.get(key) if isinstance(drive, Mapping) else None
+        if isinstance(name, str) and names and name.strip() not in names:
+            problems.append(Problem(f"drive.{key}", no_joint(name, names)))
+    return problems
+
+
+def _tables(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
+    rows = raw.get(key)
+    return [row if isinstance(row, Mapping) else {} for row in rows] if isinstance(rows, list) else []
+
+
+def _misfits(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Keys that a joint of this kind needs and has not, or has and cannot use."""
+    kind = joint["kind"]
+    needs = {"R": {"axis"}, "P": {"axis"}, "C": {"axis"}, "H": {"axis", "pitch"}, "U": {"axes"}, "S": set()}[kind]
+    given = joint.keys() & {"axis", "axes", "pitch"}
+    missing = [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
+    return missing + [(key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)]
+
+
+def _problem(detail: ErrorDetails) -> Problem:
     location = [part for part in detail["loc"] if part != "tuple"]
     value = shown(detail["input"])
-    owner = _form_at(form, location[:-1])
+    owner = _form_at(location[:-1])
     keys = ", ".join(owner.model_fields) if owner else ""
     match detail["type"]:
         case "sevenbar":
             message = str(detail["ctx"]["message"])
         case "missing":
-            message = f"is missing; it is one of {keys}" if owner else "is missing"
+            message = _missing(str(location[-1]), owner)
         case "extra_forbidden":
             near = suggestion(str(location[-1]), owner.model_fields if owner else ())
             message = f"is not known here; {near}allowed: {keys}"
@@ -190,7 +245,7 @@ def _problem(detail: ErrorDetails, form: type[_Form], place: str) -> Problem:
             message = f"{value} is not a link; give its number, counted from 1"
         case _:
             message = f"{value} is not allowed; {detail['msg'].lower()}"
-    path = place
+    path = ""
     for part in location:
         path += f"[{part + 1}]" if isinstance(part, int) else f".{shown_key(part)}"
     return Problem(path.lstrip("."), message)
@@ -201,23 +256,23 @@ def shown_key(key: str) -> str:
     return key if key.isprintable() and len(key) <= 60 else shown(key)
 
 
+def _missing(key: str, owner: type[_Form] | None) -> str:
+    if key == "format":
+        return "is missing; give format = 1"
+    needed = [name for name, field in owner.model_fields.items() if field.is_required()] if owner else []
+    return f"is missing; needed here: {', '.join(needed)}"
+
+
 def _array_hint(location: list[int | str]) -> str:
     if location and location[-1] == "axes":
         return "give two directions, as in [[1, 0, 0], [0, 1, 0]]"
     return f"write [[{location[-1] if location else 'joint'}]] before each one"
 
 
-def _form_at(form: type[_Form], location: list[int | str]) -> type[_Form] | None:
-    """The form that owns a place: follows the tables of a path."""
-    tables: dict[str, type[_Form]] = {
-        "rssr": RssrForm,
-        "joint": JointForm,
-        "point": PointForm,
-        "drive": DriveForm,
-    }
-    for part in location:
-        if isinstance(part, str):
-            if form is not LinkageForm or part not in tables:
-                return None
-            form = tables[part]
-    return form
+def _form_at(location: list[int | str]) -> type[_Form] | None:
+    """The form that owns a place: the file's own, or that of the table that the path enters."""
+    words = [part for part in location if isinstance(part, str)]
+    tables: dict[str, type[_Form]] = {"rssr": RssrForm, "joint": JointForm, "point": PointForm, "drive": DriveForm}
+    if not words:
+        return LinkageForm
+    return tables.get(words[0]) if len(words) == 1 else None
