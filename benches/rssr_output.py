@@ -1,7 +1,7 @@
-"""Ratios of `output(alpha, order=2)` against vectorised NumPy of the same closed form, in one process, in turn.
+"""Ratios of `output(alpha, order=2)` against vectorised NumPy of the same closed form, in one process.
 
-Counted per pose: both give two branches, so two poses an input. Medians of paired runs; ratios are to be trusted, absolute
-times only guide. Run: `python benches/rssr_output.py`
+Counted per pose: both give two branches, so two poses an input. Medians of paired runs; ratios are to be
+trusted, absolute times only guide. Run: `python benches/rssr_output.py`
 """
 
 import os

@@ -24,7 +24,9 @@ app = typer.Typer(
 
 
 @app.callback(invoke_without_command=True)
-def _root(version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False) -> None:
+def _root(
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
     if version:
         typer.echo(sb.__version__)
         raise typer.Exit
@@ -32,14 +34,28 @@ def _root(version: Annotated[bool, typer.Option("--version", help="Print the ver
 
 @app.command()
 def analyze(
-    linkage: Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")],
+    linkage: Annotated[
+        str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")
+    ],
     samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 360,
-    input_joint: Annotated[str | None, typer.Option("--input", help="The joint that drives; the file's by default.")] = None,
-    speed: Annotated[str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for report.json, motion.csv and the figures.")] = None,
-    figures: Annotated[list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")] = None,
-    animate: Annotated[Path | None, typer.Option(help="Write the moving linkage to this .gif or .mp4.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print the report as one JSON object and nothing else.")] = False,
+    input_joint: Annotated[
+        str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
+    ] = None,
+    speed: Annotated[
+        str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for report.json, motion.csv and the figures.")
+    ] = None,
+    figures: Annotated[
+        list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+    ] = None,
+    animate: Annotated[
+        Path | None, typer.Option(help="Write the moving linkage to this .gif or .mp4.")
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the report as one JSON object and nothing else.")
+    ] = False,
 ) -> None:
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar import report
@@ -74,7 +90,9 @@ def _figure_formats(given: list[str] | None, allowed: tuple[str, ...]) -> tuple[
     endings = tuple(dict.fromkeys(word.lower().removeprefix(".") for word in given or ["png"]))
     for ending in endings:
         if ending not in allowed:
-            raise RequestError(f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(allowed)}")
+            raise RequestError(
+                f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(allowed)}"
+            )
     return endings
 
 
@@ -99,7 +117,9 @@ def main() -> NoReturn:
         sys.exit(2)
     except Exception:
         traceback.print_exc()
-        sys.stderr.write("sevenbar: this is a fault of Sevenbar, not yours; please report it with the lines above\n")
+        sys.stderr.write(
+            "sevenbar: this is a fault of Sevenbar, not yours; please report it with the lines above\n"
+        )
         sys.exit(1)
     sys.exit(0)
 

@@ -1,4 +1,4 @@
-"""From a checked description to a linkage: the RSSR paper's dimensions, or the joints as drawn in one assembled pose."""
+"""From a checked description to a linkage: the RSSR paper's dimensions, or joints as drawn."""
 
 from __future__ import annotations
 
@@ -48,8 +48,9 @@ def rssr(
 ) -> Linkage:
     """The RSSR in the layout of Sun and Zhou: crank about z at height N, rocker about x at (M, D, 0).
 
-    `A = (L1 cos alpha, L1 sin alpha, N)`, `B = (M, D + L3 cos beta, L3 sin beta)`, `|A - B| = L2`; lengths in `length_unit`. L2 left out
-    is `|A1 B1|`, `L2^2 = (L1 - M)^2 + L3^2 + N^2`. Raises `DescriptionError` with all that is wrong.
+    `A = (L1 cos alpha, L1 sin alpha, N)`, `B = (M, D + L3 cos beta, L3 sin beta)`, `|A - B| = L2`; lengths
+    in `length_unit`. L2 left out is `|A1 B1|`, `L2^2 = (L1 - M)^2 + L3^2 + N^2`. Raises `DescriptionError`
+    with all that is wrong.
 
         >>> import sevenbar as sb
         >>> sb.rssr(M=700, N=700, L1=250, L3=550, D=0).motion().motion_type
@@ -82,8 +83,8 @@ def from_axes(
 ) -> Linkage:
     """A linkage from its joints as drawn in one assembled pose, in loop order: kind, point, direction.
 
-    Each joint is a mapping with `kind`, `at` (three coordinates), `axis` (three numbers; none for S), and perhaps `name`. Link i lies between
-    joints i and i + 1, the last is the ground.
+    Each joint is a mapping with `kind`, `at` (three coordinates), `axis` (three numbers; none for S), and
+    perhaps `name`. Link i lies between joints i and i + 1, the last is the ground.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_axes([
@@ -127,7 +128,8 @@ def from_form(form: LinkageForm, source: str = "") -> Linkage:
         linkage = _from_drawing(form.joint, source)
     else:
         raise NotCoveredError(
-            f"{_prefix(source)}link: Denavit-Hartenberg rows are not analysed by this version; it takes [rssr] or [[joint]]"
+            f"{_prefix(source)}link: Denavit-Hartenberg rows are not analysed by this version; "
+            "it takes [rssr] or [[joint]]"
         )
     points = linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point)
     drive = form.drive
@@ -186,20 +188,29 @@ def _from_drawing(forms: tuple[JointForm, ...], source: str) -> Linkage:
     crank, ball_a, ball_b, rocker = (np.array(form.at) for form in forms)
     base = pose(_frame_about(forms[0].axis, ball_a - crank), crank)
     ground = pose(_frame_about(forms[3].axis, ball_b - rocker), rocker)
-    size = max(np.linalg.norm(ball_a - crank), np.linalg.norm(ball_b - ball_a), np.linalg.norm(ball_b - rocker))
+    size = max(
+        np.linalg.norm(ball_a - crank), np.linalg.norm(ball_b - ball_a), np.linalg.norm(ball_b - rocker)
+    )
     to_a, to_b = (inverse(base) @ [*ball_a, 1.0])[:2], (inverse(ground) @ [*ball_b, 1.0])[:2]
     arms = ((2, np.hypot(*to_a), names[0]), (3, np.hypot(*to_b), names[3]))
     problems = [
-        Problem(f"joint[{i}].at", f"{list(forms[i - 1].at)} lies on the axis of {axis}; the link between has no length")
+        Problem(
+            f"joint[{i}].at",
+            f"{list(forms[i - 1].at)} lies on the axis of {axis}; the link between has no length",
+        )
         for i, arm, axis in arms
         if not arm > NO_LENGTH * size
     ]
     if not np.linalg.norm(ball_b - ball_a) > NO_LENGTH * size:
-        problems.append(Problem("joint[3].at", f"{list(forms[2].at)} is the place of joint[2]; the coupler has no length"))
+        problems.append(
+            Problem("joint[3].at", f"{list(forms[2].at)} is the place of joint[2]; the coupler has no length")
+        )
     if problems:
         raise DescriptionError(problems, source)
     at_a, at_b = pose(np.eye(3), ball_a), pose(np.eye(3), ball_b)
-    transforms = np.stack([inverse(base) @ at_a, inverse(at_a) @ at_b, inverse(at_b) @ ground, inverse(ground) @ base])
+    transforms = np.stack(
+        [inverse(base) @ at_a, inverse(at_a) @ at_b, inverse(at_b) @ ground, inverse(ground) @ base]
+    )
     return Linkage(
         name="linkage",
         joints=tuple(Joint(form.kind, name) for form, name in zip(forms, names, strict=True)),

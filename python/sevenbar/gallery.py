@@ -13,4 +13,6 @@ def names() -> tuple[str, ...]:
 
 def text(name: str) -> str:
     """The TOML text of a linkage of the gallery."""
-    return (resources.files(__package__ or "sevenbar") / "gallery" / f"{name}.toml").read_text(encoding="utf-8")
+    return (resources.files(__package__ or "sevenbar") / "gallery" / f"{name}.toml").read_text(
+        encoding="utf-8"
+    )

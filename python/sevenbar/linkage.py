@@ -1,4 +1,4 @@
-"""The linkage: joints, fixed transforms, named points, drive. A frozen value that knows how to ask the core for its motion."""
+"""The linkage, a frozen value: joints, fixed transforms, named points, drive; it asks the core for its motion."""
 
 from __future__ import annotations
 
@@ -69,9 +69,9 @@ class Drive:
 class Linkage:
     """A closed loop `Z(q1) G1 Z(q2) G2 .. Z(qn) Gn = 1`.
 
-    `transforms` (n, 4, 4) are the G's, from each joint's frame to the next one's; `base` (4, 4) is the frame of joint 1 in the report
-    frame. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame. `dimensions` are the named numbers of
-    the form it was written in.
+    `transforms` (n, 4, 4) are the G's, from each joint's frame to the next one's; `base` (4, 4) is the
+    frame of joint 1 in the report frame. `point_frames` (n, 4, 4) take a point as it is written to its
+    link's own frame. `dimensions` are the named numbers of the form it was written in.
     """
 
     name: str
@@ -107,7 +107,9 @@ class Linkage:
     @cached_property
     def _rssr(self) -> _core.Rssr:
         if self.kind != "RSSR":
-            raise NotCoveredError(f"a loop {' '.join(self.kind)} is not analysed by this version; it takes R S S R")
+            raise NotCoveredError(
+                f"a loop {' '.join(self.kind)} is not analysed by this version; it takes R S S R"
+            )
         return _core.Rssr(self.base, self.transforms)
 
     def side(self, joint: str | None, default: str, key: str) -> str:
@@ -119,18 +121,21 @@ class Linkage:
         index = known.index(name)
         if index not in (0, len(known) - 1):
             raise RequestError(
-                f"{key}: joint '{name}' is a ball; give a joint that turns about one axis: {known[0]} or {known[-1]}"
+                f"{key}: joint '{name}' is a ball; "
+                f"give a joint that turns about one axis: {known[0]} or {known[-1]}"
             )
         return "crank" if index == 0 else "rocker"
 
-    def sides(self, input: str | None, output: str | None) -> tuple[str, str, str]:  # noqa: A002
+    def sides(self, input: str | None, output: str | None) -> tuple[str, str, str]:
         """The core's word for the input, and the names of input and output."""
         side = self.side(input, self.drive.joint, "input")
         ends = (self.joints[0].name, self.joints[-1].name)
         names = ends if side == "crank" else ends[::-1]
         # without a word on it, the output is the other turning joint
         if output is not None and self.side(output, output, "output") == side:
-            raise RequestError(f"output: joint '{output}' is the input; the output is the other one, {names[1]}")
+            raise RequestError(
+                f"output: joint '{output}' is the input; the output is the other one, {names[1]}"
+            )
         return side, *names
 
     def _speed(self, speed: object) -> float:
@@ -149,13 +154,14 @@ class Linkage:
         *,
         acceleration: npt.ArrayLike | None = None,
         jerk: npt.ArrayLike | None = None,
-        input: str | None = None,  # noqa: A002
+        input: str | None = None,
     ) -> Output:
         """Both branches of the other joint at many inputs: the closed form, vectorised.
 
-        `values` (n,) [rad] are inputs; `order` 0 to 3 how many derivatives. The input moves at `speed` [rad/s] (the drive's where none
-        is given); `speed`, `acceleration` [rad/s^2] and `jerk` [rad/s^3] may also be arrays (n,), an input law. Branch 0
-        of `beta = f(alpha)` is eq. (8) of Sun and Zhou; with `input` the last joint, branch 0 of `alpha = phi(beta)` is eq. (9).
+        `values` (n,) [rad] are inputs; `order` 0 to 3 how many derivatives. The input moves at `speed`
+        [rad/s] (the drive's where none is given); `speed`, `acceleration` [rad/s^2] and `jerk` [rad/s^3]
+        may also be arrays (n,), an input law. Branch 0 of `beta = f(alpha)` is eq. (8) of Sun and Zhou;
+        with `input` the last joint, branch 0 of `alpha = phi(beta)` is eq. (9).
 
         Raises `RequestError` for values that are not finite, lengths that differ, an order out of range.
 
@@ -178,14 +184,16 @@ class Linkage:
         else:
             first = self._speed(speed) if plain else speed
             rates = {"speed": first, "acceleration": acceleration, "jerk": jerk}
-            law = tuple(_rate(name, 0.0 if value is None else value, array.size) for name, value in rates.items())
+            law = tuple(
+                _rate(name, 0.0 if value is None else value, array.size) for name, value in rates.items()
+            )
         try:
             return Output(*self._rssr.outputs(array, int(order), side, constant, law))
         except _core.CoreError as error:
             raise RequestError(str(error)) from None
 
-    def assembly_modes(self, theta: float, *, input: str | None = None) -> Modes:  # noqa: A002
-        """Every assembly mode at one input [rad], complete by the closed form; none where the loop does not close."""
+    def assembly_modes(self, theta: float, *, input: str | None = None) -> Modes:
+        """Every assembly mode at one input [rad], by the closed form; none where the loop does not close."""
         side, _, _ = self.sides(input, None)
         (value,) = finite_array("theta", theta)
         q, residual = self._rssr.assembly_modes(value, side)
@@ -195,18 +203,25 @@ class Linkage:
         self,
         samples: int = 360,
         *,
-        input: str | None = None,  # noqa: A002
+        input: str | None = None,
         output: str | None = None,
         speed: float | str | None = None,
         law: Law | None = None,
     ) -> Motion:
         """Every circuit over the whole input range.
 
-        `samples` inputs in a full turn. The input moves at `speed` [rad/s], the drive's where none is given, or by a `law`, whose
-        samples then take the place of the grid: a circuit that rocks holds them once for each of its two passes.
+        `samples` inputs in a full turn. The input moves at `speed` [rad/s], the drive's where none is
+        given, or by a `law`, whose samples then take the place of the grid: a circuit that rocks holds them
+        once for each of its two passes.
         """
-        side, input_name, output_name = self.sides(input, self.drive.output if output is None and input is None else output)
-        if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or not 4 <= samples <= MOST_SAMPLES:
+        side, input_name, output_name = self.sides(
+            input, self.drive.output if output is None and input is None else output
+        )
+        if (
+            isinstance(samples, bool)
+            or not isinstance(samples, (int, np.integer))
+            or not 4 <= samples <= MOST_SAMPLES
+        ):
             raise RequestError(f"samples: {shown(samples)} is not a count; give 4 to {MOST_SAMPLES}")
         rate = self._speed(speed)
         table = None if law is None else np.column_stack([law.q, law.dq, law.ddq, law.dddq])
@@ -281,7 +296,9 @@ class Linkage:
         """A point along rows of the first and last joint's angles with derivatives, (n, 2, 4)."""
         count = len(self.joints)
         if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
-            raise RequestError(f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground")
+            raise RequestError(
+                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
+            )
         place = finite_array("at", at)
         if place.size != 3:
             raise RequestError(f"at: {place.size} numbers; give three")
@@ -300,7 +317,9 @@ class Linkage:
 def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:
     array = finite_array(name, value)
     if array.size not in (1, count):
-        raise RequestError(f"{name}: {array.size} values where the input has {count}; give {count}, or one number")
+        raise RequestError(
+            f"{name}: {array.size} values where the input has {count}; give {count}, or one number"
+        )
     return np.ascontiguousarray(np.broadcast_to(array, (count,)))
 
 

@@ -1,4 +1,4 @@
-"""What a linkage does: its assembly modes, its circuits, the traces of its points. Values made from the core's arrays."""
+"""What a linkage does: assembly modes, circuits, traces of points. Values made from the core's arrays."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 Words = npt.NDArray[np.str_]
 
-#: What a row can hold, by the core's number: all; the pose but no rates (two reasons); nothing; all but the balls' turns.
+#: What a row can hold, by the core's number: all; the pose but no rates (two reasons); nothing; all but the
+#: balls' turns.
 STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
 
 #: The status of a row of a trace on the coupler where the spin's rule names no direction.
@@ -42,8 +43,8 @@ class Extremes:
 class DeadCentre:
     """A pose where the input (`kind` "input") or the output ("output") stands still.
 
-    `input` and `output` are the two angles [rad], `branch` the pass on which it lies, `condition` how much a relative change of
-    the squared dimensions is magnified in its place.
+    `input` and `output` are the two angles [rad], `branch` the pass on which it lies, `condition` how much
+    a relative change of the squared dimensions is magnified in its place.
     """
 
     kind: Literal["input", "output"]
@@ -55,10 +56,10 @@ class DeadCentre:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """Both branches of the closed form on an array of inputs; arrays of shape (2, n), `None` above the order asked for.
+    """Both branches of the closed form on n inputs; arrays (2, n), `None` above the order asked for.
 
-    `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without solution keeps its place as
-    NaN; so do the rates at an input dead centre. `status` tells which.
+    `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without
+    solution keeps its place as NaN; so do the rates at an input dead centre. `status` tells which.
     """
 
     position: Floats
@@ -78,7 +79,7 @@ class Output:
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """All assembly modes at one input: joint values (m, columns) with angles in (-pi, pi], and how that was established."""
+    """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi]."""
 
     q: Floats
     residual: Floats
@@ -94,8 +95,8 @@ class Modes:
 class Trace:
     """A point of a link along a circuit, in the report frame; arrays of shape (n, 3).
 
-    `position` [length], `velocity` [length/s], `acceleration` [length/s^2], `jerk` [length/s^3]. Rows without a value are NaN,
-    with a status.
+    `position` [length], `velocity` [length/s], `acceleration` [length/s^2], `jerk` [length/s^3]. Rows
+    without a value are NaN, with a status.
     """
 
     position: Floats
@@ -116,7 +117,9 @@ class Law:
     dddq: Floats
 
     @staticmethod
-    def of(t: npt.ArrayLike, q: npt.ArrayLike, dq: npt.ArrayLike, ddq: npt.ArrayLike, dddq: npt.ArrayLike = 0.0) -> Law:
+    def of(
+        t: npt.ArrayLike, q: npt.ArrayLike, dq: npt.ArrayLike, ddq: npt.ArrayLike, dddq: npt.ArrayLike = 0.0
+    ) -> Law:
         """A law from array-likes; a single number stands for every sample."""
         arrays = {"t": t, "q": q, "dq": dq, "ddq": ddq, "dddq": dddq}
         checked = {name: finite_array(name, values) for name, values in arrays.items()}
@@ -125,20 +128,24 @@ class Law:
             raise RequestError("t: a law needs at least one sample")
         for name, values in checked.items():
             if values.size not in (1, count):
-                raise RequestError(f"{name}: {values.size} values where t has {count}; give {count}, or one number")
+                raise RequestError(
+                    f"{name}: {values.size} values where t has {count}; give {count}, or one number"
+                )
         if np.any(np.diff(checked["t"]) <= 0):
             raise RequestError("t: times must rise from sample to sample")
-        return Law(**{name: np.ascontiguousarray(np.broadcast_to(v, (count,))) for name, v in checked.items()})
+        return Law(
+            **{name: np.ascontiguousarray(np.broadcast_to(v, (count,))) for name, v in checked.items()}
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Circuit:
     """One connected motion, row by row along it.
 
-    `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n, columns), unwrapped [rad and
-    derivatives by s]. `time` [s]; `status`, `branch` (the pass between input dead centres), `mode` (the branch of the closed form),
-    `residual` (closure error in the length unit), `condition` (how much a relative error of the closure is magnified in the velocity),
-    each (n,).
+    `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
+    columns), unwrapped [rad and derivatives by s]. `time` [s]; `status`, `branch` (the pass between input
+    dead centres), `mode` (the branch of the closed form), `residual` (closure error in the length unit),
+    `condition` (how much a relative error of the closure is magnified in the velocity), each (n,).
     """
 
     index: int
@@ -195,7 +202,7 @@ class Circuit:
 
     @property
     def time_ratio(self) -> float | None:
-        """Time of the slower stroke over time of the quicker at constant input speed, >= 1; for a crank with a rocking output."""
+        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output."""
         if self.angle is None or self.input_range is not None:
             return None
         stroke = (self.angle.highest_at - self.angle.lowest_at) % math.tau
@@ -204,8 +211,8 @@ class Circuit:
     def point(self, link: int, at: tuple[float, float, float]) -> Trace:
         """A point of link 1, 2, .. along the circuit.
 
-        `at` is written as for the points of the file: in the link's frame for the dimension forms, in ground coordinates of
-        the drawn pose for the joint form.
+        `at` is written as for the points of the file: in the link's frame for the dimension forms, in
+        ground coordinates of the drawn pose for the joint form.
         """
         ends = [0, len(self.columns) - 1]
         rates = np.stack([self.q[:, ends], self.dq[:, ends], self.ddq[:, ends], self.dddq[:, ends]], axis=-1)
@@ -249,7 +256,9 @@ class Motion:
         try:
             import pandas as pd
         except ImportError:
-            raise MissingExtraError("to_frame needs pandas; install it with: pip install 'sevenbar[frame]'") from None
+            raise MissingExtraError(
+                "to_frame needs pandas; install it with: pip install 'sevenbar[frame]'"
+            ) from None
         return pd.DataFrame(self.columns())
 
 
@@ -281,7 +290,7 @@ def _circuit_columns(circuit: Circuit, linkage: Linkage, unit: str) -> dict[str,
 
 
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
-    """A one-dimensional contiguous array of finite numbers, or `RequestError` naming the first that is none."""
+    """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
     try:
         array = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError):

@@ -30,7 +30,7 @@ FIGURE_FORMATS = ("png", "svg", "pdf")
 
 
 def as_dict(motion: Motion) -> dict[str, Any]:
-    """The report as one object of plain values: angles in radians, lengths in the linkage's unit, null beside a status."""
+    """The report as plain values: angles in radians, lengths in the linkage's unit, null beside a status."""
     linkage = motion.linkage
     report = {
         "format": 1,
@@ -42,7 +42,12 @@ def as_dict(motion: Motion) -> dict[str, Any]:
             "lengths": dict(zip(("crank", "coupler", "rocker"), linkage.lengths, strict=True)),
         },
         "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
-        "drive": {"input": motion.input, "output": motion.output, "speed": motion.speed, "law": motion.law is not None},
+        "drive": {
+            "input": motion.input,
+            "output": motion.output,
+            "speed": motion.speed,
+            "law": motion.law is not None,
+        },
         "samples": motion.samples,
         "motion_type": motion.motion_type,
         "limits": motion.limits.tolist(),
@@ -62,7 +67,10 @@ def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
         "closed": circuit.closed,
         "turns": circuit.turns,
         "rows": len(circuit.time),
-        "statuses": {str(word): int(count) for word, count in zip(*np.unique(circuit.status, return_counts=True), strict=True)},
+        "statuses": {
+            str(word): int(count)
+            for word, count in zip(*np.unique(circuit.status, return_counts=True), strict=True)
+        },
         "input_range": circuit.input_range,
         "output_range": circuit.output_range,
         "dead_centres": [vars(d) for d in circuit.dead_centres],
@@ -107,22 +115,31 @@ def text(motion: Motion) -> RenderableType:
     """The report for people, to be printed by rich; angles in degrees."""
     linkage = motion.linkage
     unit = linkage.length_unit
-    numbers = dict(linkage.dimensions) or dict(zip(("crank", "coupler", "rocker"), linkage.lengths, strict=True))
+    numbers = dict(linkage.dimensions) or dict(
+        zip(("crank", "coupler", "rocker"), linkage.lengths, strict=True)
+    )
     facts = Table.grid(padding=(0, 2))
     facts.add_column(style="dim")
     facts.add_column()
     facts.add_row("loop", " ".join(f"{j.kind} {j.name}" for j in linkage.joints))
-    facts.add_row("dimensions", "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items()) + f"  [{unit}]")
+    facts.add_row(
+        "dimensions", "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items()) + f"  [{unit}]"
+    )
     drive = "an input law" if motion.law is not None else f"{motion.speed:.6g} rad/s"
     facts.add_row("drive", f"{motion.input} at {drive}, output {motion.output}")
     facts.add_row("motion type", Text(motion.motion_type, style="bold"))
     facts.add_row("circuits", _circuit_count(motion))
-    facts.add_row("input limits", "  ".join(_degrees(x) for x in motion.limits) or "none: the input turns fully")
+    facts.add_row(
+        "input limits", "  ".join(_degrees(x) for x in motion.limits) or "none: the input turns fully"
+    )
     if motion.motion_type == "cannot-assemble":
         facts.add_row("input limits", "no input closes the loop: the coupler is too short or too long")
     if motion.change_points.size:
         where = "  ".join(_degrees(x) for x in motion.change_points)
-        facts.add_row("change point", f"input {where}: two limits lie within 1e-6 rad; the least change of a dimension decides")
+        facts.add_row(
+            "change point",
+            f"input {where}: two limits lie within 1e-6 rad; the least change of a dimension decides",
+        )
     facts.add_row("completeness", f"{motion.completeness}: all modes are found")
     facts.add_row("idle freedom", "; ".join(motion.idle) + ", held by convention")
     facts.add_row("redundant", "; ".join(motion.redundant) or "no constraints")
@@ -136,7 +153,11 @@ def _circuit_count(motion: Motion) -> str:
     turning = [c for c in motion.circuits if c.turns]
     if not motion.circuits:
         return "none"
-    how = f"each closes after {'one turn' if turning[0].turns == 1 else 'two turns'} of the input" if turning else "each goes forth and back"
+    how = (
+        f"each closes after {'one turn' if turning[0].turns == 1 else 'two turns'} of the input"
+        if turning
+        else "each goes forth and back"
+    )
     return f"{len(motion.circuits)}, {how if len(motion.circuits) > 1 else how.replace('each ', 'it ')}"
 
 
@@ -153,7 +174,10 @@ def _circuit_table(motion: Motion) -> Table:
         (f"swing of {output}", lambda c: "full turns" if c.swing is None else _degrees(c.swing)),
         ("time ratio", lambda c: "-" if c.time_ratio is None else f"{c.time_ratio:.6g}"),
         ("transmission angle min", lambda c: _at(_degrees(c.transmission.lowest), c.transmission.lowest_at)),
-        ("transmission angle max", lambda c: _at(_degrees(c.transmission.highest), c.transmission.highest_at)),
+        (
+            "transmission angle max",
+            lambda c: _at(_degrees(c.transmission.highest), c.transmission.highest_at),
+        ),
     ]
     quantities: list[tuple[str, str, Callable[[Circuit], Extremes | None]]] = [
         ("angle", "rad", lambda c: c.angle),
@@ -171,11 +195,19 @@ def _circuit_table(motion: Motion) -> Table:
     return table
 
 
-def _extreme_cell(pick: Callable[[Circuit], Extremes | None], end: str, name: str) -> Callable[[Circuit], str]:
+def _extreme_cell(
+    pick: Callable[[Circuit], Extremes | None], end: str, name: str
+) -> Callable[[Circuit], str]:
     def cell(circuit: Circuit) -> str:
         extremes = pick(circuit)
         if extremes is None:
-            return "turns fully" if name == "angle" else "no bound at limits" if circuit.input_range else "change point"
+            return (
+                "turns fully"
+                if name == "angle"
+                else "no bound at limits"
+                if circuit.input_range
+                else "change point"
+            )
         return _at(f"{getattr(extremes, end):.6g}", getattr(extremes, f"{end}_at"))
 
     return cell
@@ -206,7 +238,8 @@ def print_text(motion: Motion, console: Console | None = None) -> None:
 def write(motion: Motion, folder: str | os.PathLike[str], figures: Sequence[str] = ("png",)) -> list[Path]:
     """Writes report.json, motion.csv and the two figures into a folder, made if need be; returns their paths.
 
-    All files are finished in a folder beside it before the first is put in place. Raises `OutputError` where that cannot be done.
+    All files are finished in a folder beside it before the first is put in place. Raises `OutputError`
+    where that cannot be done.
     """
     from sevenbar import plot
 
@@ -233,7 +266,7 @@ def write_csv(motion: Motion, path: Path) -> None:
 
 
 def fill_folder(folder: Path, fill: Callable[[Path], None]) -> list[Path]:
-    """Lets `fill` write into a folder of its own, then moves its files into `folder`: whole, or not at all."""
+    """Lets `fill` write into a folder aside, then moves its files into `folder`: whole, or not at all."""
     made = [p for p in (folder, *folder.parents) if not p.exists()]
     staging = None
     try:
@@ -243,12 +276,16 @@ def fill_folder(folder: Path, fill: Callable[[Path], None]) -> list[Path]:
         files = sorted(staging.iterdir())
         for file in files:
             if (folder / file.name).is_dir():
-                raise OutputError(f"{folder / file.name}: is a folder where a file should go; give another folder")
+                raise OutputError(
+                    f"{folder / file.name}: is a folder where a file should go; give another folder"
+                )
         return [file.replace(folder / file.name) for file in files]
     except OSError as error:
         _undo(made, staging)
         reason = (error.strerror or str(error)).lower()
-        raise OutputError(f"{folder}: cannot be written: {reason}; give a folder that can be made or written") from None
+        raise OutputError(
+            f"{folder}: cannot be written: {reason}; give a folder that can be made or written"
+        ) from None
     except BaseException:
         _undo(made, staging)
         raise

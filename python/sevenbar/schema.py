@@ -6,7 +6,7 @@ This is the only model of the file format; `check` turns its errors into the mes
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
@@ -158,7 +158,7 @@ class LinkageForm(_Form):
 
 
 def check(raw: object, *, source: str = "") -> LinkageForm:
-    """The description as a checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
+    """The checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
     try:
         form = LinkageForm.model_validate(raw)
         problems = []
@@ -172,7 +172,7 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
 
 
 def _contradictions(raw: Mapping[str, Any]) -> list[Problem]:
-    """What is wrong between keys that may each be right; reads only what has the right form, the rest is told already."""
+    """What is wrong between keys that may each be right; reads only what has the right form."""
     written = [key for key in ("rssr", "joint", "link") if key in raw]
     if len(written) != 1:
         what = f"{' and '.join(written)} are given together" if written else "no linkage is described"
@@ -198,7 +198,9 @@ def _contradictions(raw: Mapping[str, Any]) -> list[Problem]:
             last = f"give 1 to {len(joints)}, the last is the ground"
             problems.append(Problem(f"point[{i}].link", f"{shown(link)} is not a link; {last}"))
         if isinstance(name, str) and name.strip() in taken:
-            problems.append(Problem(f"point[{i}].name", f"{shown(name)} is taken already; give each point its own name"))
+            problems.append(
+                Problem(f"point[{i}].name", f"{shown(name)} is taken already; give each point its own name")
+            )
         taken.add(str(name).strip())
     drive = raw.get("drive")
     for key in ("joint", "output"):
@@ -216,10 +218,14 @@ def _tables(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
 def _misfits(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Keys that a joint of this kind needs and has not, or has and cannot use."""
     kind = joint["kind"]
-    needs = {"R": {"axis"}, "P": {"axis"}, "C": {"axis"}, "H": {"axis", "pitch"}, "U": {"axes"}, "S": set()}[kind]
+    needs = {"R": {"axis"}, "P": {"axis"}, "C": {"axis"}, "H": {"axis", "pitch"}, "U": {"axes"}, "S": set()}[
+        kind
+    ]
     given = joint.keys() & {"axis", "axes", "pitch"}
     missing = [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
-    return missing + [(key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)]
+    return missing + [
+        (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)
+    ]
 
 
 def _problem(detail: ErrorDetails) -> Problem:
@@ -272,7 +278,12 @@ def _array_hint(location: list[int | str]) -> str:
 def _form_at(location: list[int | str]) -> type[_Form] | None:
     """The form that owns a place: the file's own, or that of the table that the path enters."""
     words = [part for part in location if isinstance(part, str)]
-    tables: dict[str, type[_Form]] = {"rssr": RssrForm, "joint": JointForm, "point": PointForm, "drive": DriveForm}
+    tables: dict[str, type[_Form]] = {
+        "rssr": RssrForm,
+        "joint": JointForm,
+        "point": PointForm,
+        "drive": DriveForm,
+    }
     if not words:
         return LinkageForm
     return tables.get(words[0]) if len(words) == 1 else None

@@ -23,11 +23,13 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\
 def unknown_unit(given: object, known: Iterable[str]) -> str:
     """The message for a unit that does not exist."""
     known = list(known)
-    return f"{shown(given)} is not a unit known here; {suggestion(str(given), known)}allowed: {', '.join(known)}"
+    return (
+        f"{shown(given)} is not a unit known here; {suggestion(str(given), known)}allowed: {', '.join(known)}"
+    )
 
 
 def turning_speed(value: object) -> float:
-    """The speed [rad/s] of `"10 rad/s"`, `"60 rpm"`, `"90 deg/s"`, `"1 rev/s"`, or of a plain number in rad/s.
+    """The speed [rad/s] of `"10 rad/s"`, `"60 rpm"`, `"90 deg/s"`, `"1 rev/s"`, or a number in rad/s.
 
     Raises `RequestError` for anything else, for zero, and for a number that is not finite.
     """
@@ -40,7 +42,9 @@ def turning_speed(value: object) -> float:
             raise RequestError(f"{shown(value)} is not a speed; {example}")
         number, unit = match.groups()
         if unit not in TURNING_SPEEDS:
-            raise RequestError(unknown_unit(unit, TURNING_SPEEDS) if unit else f"{shown(value)} has no unit; {example}")
+            raise RequestError(
+                unknown_unit(unit, TURNING_SPEEDS) if unit else f"{shown(value)} has no unit; {example}"
+            )
         speed = float(number) * TURNING_SPEEDS[unit]
     else:
         try:
@@ -48,5 +52,7 @@ def turning_speed(value: object) -> float:
         except OverflowError:
             speed = math.inf
     if not 1e-50 <= abs(speed) <= 1e50:
-        raise RequestError(f"{shown(value)} moves nothing; give a finite speed other than 0, as in '10 rad/s'")
+        raise RequestError(
+            f"{shown(value)} moves nothing; give a finite speed other than 0, as in '10 rad/s'"
+        )
     return speed

@@ -123,14 +123,8 @@ impl Pose {
     /// The inverse motion.
     pub fn inverse(&self) -> Self {
         let rotation = std::array::from_fn(|i| std::array::from_fn(|j| self.rotation[j][i]));
-        let back = Self {
-            rotation,
-            translation: [0.0; 3],
-        };
-        Self {
-            rotation,
-            translation: scale(back.turn(self.translation), -1.0),
-        }
+        let back = Self { rotation, translation: [0.0; 3] };
+        Self { rotation, translation: scale(back.turn(self.translation), -1.0) }
     }
 
     /// Column `j` of the rotation: the image of the j-th coordinate axis.

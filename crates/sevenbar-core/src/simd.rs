@@ -71,5 +71,9 @@ pub fn level() -> &'static str {
             return "avx2";
         }
     }
-    if cfg!(target_arch = "aarch64") { "neon" } else { "plain" }
+    if cfg!(target_arch = "aarch64") {
+        "neon"
+    } else {
+        "plain"
+    }
 }

@@ -112,22 +112,15 @@ impl TrigQuadratic {
 
         let mut found: Vec<Zero> = zeros
             .iter()
-            .map(|&t| Zero {
-                angle: angle(t),
-                multiple: false,
-            })
+            .map(|&t| Zero { angle: angle(t), multiple: false })
             .collect();
         let curvature = derivative(&derivative(&quartic));
         for &t in &stationary {
             let value = evaluate(&quartic, t);
             let weight = (1.0 + t * t) * (1.0 + t * t);
-            let distance =
-                4.0 * (2.0 * value / evaluate(&curvature, t)).abs().sqrt() / (1.0 + t * t);
+            let distance = 4.0 * (2.0 * value / evaluate(&curvature, t)).abs().sqrt() / (1.0 + t * t);
             if value.abs() <= noise * weight || distance < DOUBLE_ZERO_DISTANCE {
-                found.push(Zero {
-                    angle: angle(t),
-                    multiple: true,
-                });
+                found.push(Zero { angle: angle(t), multiple: true });
             }
         }
         Some(merged(found, noise / self.magnitude()))
@@ -175,10 +168,7 @@ fn merged(mut zeros: Vec<Zero>, relative_noise: f64) -> Vec<Zero> {
         .map(|group| {
             // the stationary point, where there is one, is the well-conditioned place of a double zero
             let best = group.iter().find(|z| z.multiple).unwrap_or(&group[0]);
-            Zero {
-                angle: best.angle,
-                multiple: group.len() > 1 || best.multiple,
-            }
+            Zero { angle: best.angle, multiple: group.len() > 1 || best.multiple }
         })
         .collect();
     joined.sort_by(|a, b| a.angle.total_cmp(&b.angle));

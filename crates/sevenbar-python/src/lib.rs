@@ -1,6 +1,9 @@
 //! The only crate that knows Python: arrays in, arrays out, the interpreter free while the core works.
 
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadonlyArray3,
+};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -9,7 +12,12 @@ use sevenbar_core::rigid::Pose;
 use sevenbar_core::rssr::{self, BatchRates, Circuit, DeadCentreKind, Extent, Extreme, Input, Row};
 use sevenbar_core::taylor::Taylor;
 
-pyo3::create_exception!(_core, CoreError, PyValueError, "A request that the core cannot take.");
+pyo3::create_exception!(
+    _core,
+    CoreError,
+    PyValueError,
+    "A request that the core cannot take."
+);
 
 fn raise(error: Error) -> PyErr {
     CoreError::new_err(error.to_string())
@@ -19,7 +27,9 @@ fn input_named(name: &str) -> PyResult<Input> {
     match name {
         "crank" => Ok(Input::Crank),
         "rocker" => Ok(Input::Rocker),
-        _ => Err(CoreError::new_err(format!("input: '{name}' is not a side link; give crank or rocker"))),
+        _ => Err(CoreError::new_err(format!(
+            "input: '{name}' is not a side link; give crank or rocker"
+        ))),
     }
 }
 
@@ -43,7 +53,9 @@ impl Rssr {
     fn new(base: PyReadonlyArray2<'_, f64>, links: PyReadonlyArray3<'_, f64>) -> PyResult<Self> {
         let (base, links) = (base.as_array(), links.as_array());
         if base.shape() != [4, 4] || links.shape() != [4, 4, 4] {
-            return Err(CoreError::new_err("base needs shape (4, 4) and links shape (4, 4, 4)"));
+            return Err(CoreError::new_err(
+                "base needs shape (4, 4) and links shape (4, 4, 4)",
+            ));
         }
         let base = Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| base[[i, j]])));
         let links = std::array::from_fn(|n| {
@@ -82,15 +94,22 @@ impl Rssr {
             .collect();
         let rates = match &law {
             None => BatchRates::Constant(speed),
-            Some([d1, d2, d3]) => BatchRates::Law([flat("speed", d1)?, flat("acceleration", d2)?, flat("jerk", d3)?]),
+            Some([d1, d2, d3]) => {
+                BatchRates::Law([flat("speed", d1)?, flat("acceleration", d2)?, flat("jerk", d3)?])
+            }
         };
         {
             let mut guards: Vec<_> = arrays.iter().map(|a| a.readwrite()).collect();
             let mut slices = Vec::with_capacity(guards.len());
             for guard in &mut guards {
-                slices.push(guard.as_slice_mut().map_err(|e| CoreError::new_err(e.to_string()))?);
+                slices.push(
+                    guard
+                        .as_slice_mut()
+                        .map_err(|e| CoreError::new_err(e.to_string()))?,
+                );
             }
-            py.detach(|| pair.outputs(values, rates, &mut slices)).map_err(raise)?;
+            py.detach(|| pair.outputs(values, rates, &mut slices))
+                .map_err(raise)?;
         }
         Ok(arrays)
     }
@@ -101,7 +120,10 @@ impl Rssr {
         let joints = modes.iter().flat_map(|m| m.0).collect::<Vec<f64>>();
         let residuals = modes.iter().map(|m| m.1).collect::<Vec<f64>>();
         let columns = modes.first().map_or(8, |m| m.0.len());
-        Ok((PyArray1::from_vec(py, joints).reshape([modes.len(), columns])?, residuals.into_pyarray(py)))
+        Ok((
+            PyArray1::from_vec(py, joints).reshape([modes.len(), columns])?,
+            residuals.into_pyarray(py),
+        ))
     }
 
     /// The motion type alone.
@@ -122,7 +144,9 @@ impl Rssr {
         let input = input_named(input)?;
         let law: Option<Vec<[f64; 4]>> = law.map(|rows| {
             let rows = rows.as_array();
-            rows.outer_iter().map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0))).collect()
+            rows.outer_iter()
+                .map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0)))
+                .collect()
         });
         let (motion, rows) = py.detach(|| {
             let motion = self.0.motion(input);
@@ -166,15 +190,25 @@ impl Rssr {
         let count = crank.shape()[0];
         let mut out = vec![0.0; 4 * count * 3];
         for n in 0..count {
-            let row = |joint: &numpy::ndarray::ArrayView2<'_, f64>| -> [f64; 4] { std::array::from_fn(|k| joint[[n, k]]) };
+            let row = |joint: &numpy::ndarray::ArrayView2<'_, f64>| -> [f64; 4] {
+                std::array::from_fn(|k| joint[[n, k]])
+            };
             let (a, b) = (row(&crank), row(&rocker));
             let has_rates = a.iter().chain(&b).all(|x| x.is_finite());
             let columns: [[f64; 3]; 4] = if has_rates {
-                let moved = self.0.point(link, at, Taylor::<4>::from_derivatives(&a), Taylor::from_derivatives(&b));
+                let moved = self.0.point(
+                    link,
+                    at,
+                    Taylor::<4>::from_derivatives(&a),
+                    Taylor::from_derivatives(&b),
+                );
                 let moved = moved.map_err(raise)?;
                 std::array::from_fn(|k| std::array::from_fn(|i| moved[i].derivative(k)))
             } else {
-                let still = self.0.point(link, at, Taylor::<1>::constant(a[0]), Taylor::constant(b[0])).map_err(raise)?;
+                let still = self
+                    .0
+                    .point(link, at, Taylor::<1>::constant(a[0]), Taylor::constant(b[0]))
+                    .map_err(raise)?;
                 let mut columns = [[f64::NAN; 3]; 4];
                 columns[0] = std::array::from_fn(|i| still[i].value());
                 columns
@@ -190,7 +224,12 @@ impl Rssr {
 fn circuit_dict<'py>(py: Python<'py>, circuit: &Circuit, rows: &[Row]) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let column = |pick: &dyn Fn(&Row) -> f64| rows.iter().map(pick).collect::<Vec<f64>>().into_pyarray(py);
-    let count = |pick: &dyn Fn(&Row) -> usize| rows.iter().map(|r| pick(r) as i64).collect::<Vec<i64>>().into_pyarray(py);
+    let count = |pick: &dyn Fn(&Row) -> usize| {
+        rows.iter()
+            .map(|r| pick(r) as i64)
+            .collect::<Vec<i64>>()
+            .into_pyarray(py)
+    };
     let mut joints = Vec::with_capacity(rows.len() * 32);
     for order in 0..4 {
         for row in rows {
@@ -198,7 +237,10 @@ fn circuit_dict<'py>(py: Python<'py>, circuit: &Circuit, rows: &[Row]) -> PyResu
         }
     }
     let columns = rows.first().map_or(8, |r| r.joints.len());
-    result.set_item("joints", PyArray1::from_vec(py, joints).reshape([4, rows.len(), columns])?)?;
+    result.set_item(
+        "joints",
+        PyArray1::from_vec(py, joints).reshape([4, rows.len(), columns])?,
+    )?;
     result.set_item("status", count(&|r| r.status as usize))?;
     result.set_item("branch", count(&|r| r.branch))?;
     result.set_item("mode", count(&|r| r.mode))?;

@@ -28,7 +28,12 @@ impl Pair {
     ///
     /// # Errors
     /// [`Error::NotFinite`] for an input or rate, [`Error::Lengths`], [`Error::Order`].
-    pub fn outputs(&self, inputs: &[f64], rates: BatchRates, outputs: &mut [&mut [f64]]) -> Result<(), Error> {
+    pub fn outputs(
+        &self,
+        inputs: &[f64],
+        rates: BatchRates,
+        outputs: &mut [&mut [f64]],
+    ) -> Result<(), Error> {
         let order = outputs.len().wrapping_sub(1);
         if order > MAX_ORDER {
             return Err(Error::Order { got: order, highest: MAX_ORDER });
@@ -204,9 +209,8 @@ fn block<const FUSED: bool, const ORDER: usize>(
                 multiply_add::<FUSED>(-radius, cosine, x),
                 multiply_add::<FUSED>(-radius, sine, y),
             );
-            let along = |a: f64, b: f64, e: f64| {
-                multiply_add::<FUSED>(a, ux, multiply_add::<FUSED>(b, uy, e * z))
-            };
+            let along =
+                |a: f64, b: f64, e: f64| multiply_add::<FUSED>(a, ux, multiply_add::<FUSED>(b, uy, e * z));
             let across = |a: f64, b: f64| radius * multiply_add::<FUSED>(a, sine, -b * cosine);
             let outward = |a: f64, b: f64| radius * multiply_add::<FUSED>(a, cosine, b * sine);
             let f_a = along(dx, dy, dz);
@@ -234,7 +238,8 @@ fn block<const FUSED: bool, const ORDER: usize>(
             );
             let mixed = 3.0 * a * multiply_add::<FUSED>(v, f_bb, f_ab);
             let j = (cubic + mixed) * over;
-            target[3][i] = multiply_add::<FUSED>(j * d1 * d1, d1, multiply_add::<FUSED>(3.0 * a * d1, d2, v * d3));
+            target[3][i] =
+                multiply_add::<FUSED>(j * d1 * d1, d1, multiply_add::<FUSED>(3.0 * a * d1, d2, v * d3));
         }
     }
 }

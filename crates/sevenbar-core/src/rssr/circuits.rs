@@ -83,7 +83,12 @@ impl Rssr {
             .map(|pass| {
                 let drivers: Vec<(Stop, Taylor<4>)> = law
                     .iter()
-                    .map(|d| (Stop { input: d[0], pass, at_limit: false }, Taylor::from_derivatives(d)))
+                    .map(|d| {
+                        (
+                            Stop { input: d[0], pass, at_limit: false },
+                            Taylor::from_derivatives(d),
+                        )
+                    })
                     .collect();
                 self.walk(motion, circuit, &drivers)
             })
@@ -137,17 +142,26 @@ impl Rssr {
             mode,
             joints: [[f64::NAN; 4]; JOINT_COLUMNS],
             residual: f64::NAN,
-            condition: if stop.at_limit { f64::INFINITY } else { reach.condition },
+            condition: if stop.at_limit {
+                f64::INFINITY
+            } else {
+                reach.condition
+            },
         };
         row.joints[driver_column(motion.input)] = std::array::from_fn(|k| driver.derivative(k));
         let slope = if stop.at_limit { Some(0.0) } else { reach.slope };
         // near a change point rounding may leave a gap that is none
         let gap = motion.motion_type == MotionType::ChangePoint
-            && circuit.touches.iter().any(|&t| turn_between(t, stop.input).abs() < 1e-6);
+            && circuit
+                .touches
+                .iter()
+                .any(|&t| turn_between(t, stop.input).abs() < 1e-6);
         let Some(slope) = slope.or(gap.then_some(0.0)) else {
             return row;
         };
-        let follower = (!stop.at_limit && !gap).then(|| pair.follower_taylor(driver, mode)).flatten();
+        let follower = (!stop.at_limit && !gap)
+            .then(|| pair.follower_taylor(driver, mode))
+            .flatten();
         if let Some(follower) = follower {
             let (crank, rocker) = Self::in_loop_order(motion.input, driver, follower);
             let joints = self.joints(crank, rocker);
@@ -158,7 +172,11 @@ impl Rssr {
             let (crank, rocker) = Self::in_loop_order(motion.input, stop.input, angle);
             let still = self.joints(Taylor::<1>::constant(crank), Taylor::constant(rocker));
             row.joints = still.map(|q| [q.value(), f64::NAN, f64::NAN, f64::NAN]);
-            row.status = if gap { RowStatus::ChangePoint } else { RowStatus::DeadCentre };
+            row.status = if gap {
+                RowStatus::ChangePoint
+            } else {
+                RowStatus::DeadCentre
+            };
         }
         if row.status == RowStatus::Ok && row.joints.iter().flatten().any(|x| x.is_nan()) {
             row.status = RowStatus::TurnsUndefined;
@@ -181,18 +199,9 @@ fn rocking_stops(start: f64, end: f64, step: f64, samples: usize) -> Vec<Stop> {
     let slack = SAME_ROW * step;
     let first = ((start + slack) / step).ceil() as i64;
     let last = ((end - slack) / step).floor() as i64;
-    let grid = |pass: usize| {
-        move |k: i64| Stop {
-            input: TAU * k as f64 / samples as f64,
-            pass,
-            at_limit: false,
-        }
-    };
-    let limit = |input: f64, pass: usize| Stop {
-        input,
-        pass,
-        at_limit: true,
-    };
+    let grid =
+        |pass: usize| move |k: i64| Stop { input: TAU * k as f64 / samples as f64, pass, at_limit: false };
+    let limit = |input: f64, pass: usize| Stop { input, pass, at_limit: true };
     let mut stops = vec![limit(start, 0)];
     stops.extend((first..=last).map(grid(0)));
     stops.push(limit(end, 1));
@@ -203,7 +212,13 @@ fn rocking_stops(start: f64, end: f64, step: f64, samples: usize) -> Vec<Stop> {
 /// The follower's angle moved by whole turns so that it continues from the row before.
 ///
 /// An output that rocks is placed in its range; one that turns is followed in steps short enough to be told from a turn.
-fn unwrap_follower(pair: &Pair, circuit: &Circuit, stop: Stop, angle: f64, previous: Option<(Stop, f64)>) -> f64 {
+fn unwrap_follower(
+    pair: &Pair,
+    circuit: &Circuit,
+    stop: Stop,
+    angle: f64,
+    previous: Option<(Stop, f64)>,
+) -> f64 {
     if let Extent::Arc(low, high) = circuit.output {
         let centre = 0.5 * (low + high);
         return centre + turn_between(centre, angle);
@@ -226,7 +241,8 @@ fn followed(solve: &impl Fn(f64) -> Option<f64>, from: (f64, f64), to: (f64, f64
     match solve(middle) {
         None => turn,
         Some(angle) => {
-            followed(solve, from, (middle, angle), depth - 1) + followed(solve, (middle, angle), to, depth - 1)
+            followed(solve, from, (middle, angle), depth - 1)
+                + followed(solve, (middle, angle), to, depth - 1)
         }
     }
 }

@@ -38,10 +38,7 @@ pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 2] {
         }
         let extreme = |best: Option<&(f64, f64)>| {
             let &(input, value) = best.unwrap_or(&(f64::NAN, f64::NAN));
-            Extreme {
-                input: input.rem_euclid(TAU),
-                value,
-            }
+            Extreme { input: input.rem_euclid(TAU), value }
         };
         [
             extreme(candidates.iter().min_by(|a, b| a.1.total_cmp(&b.1))),

@@ -6,8 +6,8 @@
 use super::{Input, Rssr};
 use crate::error::Error;
 use crate::rigid::{
-    Pose, Vec3, Vec3Taylor, cross, cross_taylor, dot, dot_taylor, most_perpendicular_axis, norm, scale, scale_taylor,
-    still, sub, unit,
+    Pose, Vec3, Vec3Taylor, cross, cross_taylor, dot, dot_taylor, most_perpendicular_axis, norm, scale,
+    scale_taylor, still, sub, unit,
 };
 use crate::taylor::Taylor;
 
@@ -34,7 +34,11 @@ impl<const N: usize> Frame<N> {
 
     /// The image of a fixed direction.
     fn turn(&self, v: Vec3) -> Vec3Taylor<N> {
-        std::array::from_fn(|i| (0..3).fold(Taylor::constant(0.0), |sum, j| sum + self.columns[j][i].scale(v[j])))
+        std::array::from_fn(|i| {
+            (0..3).fold(Taylor::constant(0.0), |sum, j| {
+                sum + self.columns[j][i].scale(v[j])
+            })
+        })
     }
 
     /// The image of a fixed point.
@@ -84,9 +88,15 @@ impl<const N: usize> Frame<N> {
 
 impl Rssr {
     /// The frames of crank, coupler and rocker; the coupler's is `None` where its spin is undefined.
-    fn frames<const N: usize>(&self, crank: Taylor<N>, rocker: Taylor<N>) -> (Frame<N>, Option<Frame<N>>, Frame<N>) {
+    fn frames<const N: usize>(
+        &self,
+        crank: Taylor<N>,
+        rocker: Taylor<N>,
+    ) -> (Frame<N>, Option<Frame<N>>, Frame<N>) {
         let first = Frame::from_pose(&self.base).turned(crank);
-        let third = Frame::from_pose(&self.ground).turned(-rocker).then(&self.links[2].inverse());
+        let third = Frame::from_pose(&self.ground)
+            .turned(-rocker)
+            .then(&self.links[2].inverse());
         let a = first.carry(self.links[0].translation);
         let b = third.origin;
         let line: Vec3Taylor<N> = std::array::from_fn(|i| b[i] - a[i]);
@@ -115,7 +125,11 @@ impl Rssr {
     }
 
     /// All joint values with their derivatives, in loop order; the turns of a ball are NaN where they are undefined.
-    pub(super) fn joints<const N: usize>(&self, crank: Taylor<N>, rocker: Taylor<N>) -> [Taylor<N>; JOINT_COLUMNS] {
+    pub(super) fn joints<const N: usize>(
+        &self,
+        crank: Taylor<N>,
+        rocker: Taylor<N>,
+    ) -> [Taylor<N>; JOINT_COLUMNS] {
         let (first, coupler, third) = self.frames(crank, rocker);
         let undefined = [Taylor([f64::NAN; N]); 3];
         let (ball_a, ball_b) = match coupler {
@@ -171,7 +185,10 @@ impl Rssr {
 }
 
 /// The two directions across `x`: z as near to `axis` as can be, and y = z x x.
-fn spin_rule<const N: usize>(x: Vec3Taylor<N>, axis: Vec3Taylor<N>) -> Option<(Vec3Taylor<N>, Vec3Taylor<N>)> {
+fn spin_rule<const N: usize>(
+    x: Vec3Taylor<N>,
+    axis: Vec3Taylor<N>,
+) -> Option<(Vec3Taylor<N>, Vec3Taylor<N>)> {
     let along = dot_taylor(axis, x);
     let across: Vec3Taylor<N> = std::array::from_fn(|i| axis[i] - x[i] * along);
     let square = dot_taylor(across, across);

@@ -50,13 +50,7 @@ impl Circle {
     fn new(centre: Vec3, axis: Vec3, arm: Vec3) -> Self {
         let radius = norm(arm);
         let zero = scale(arm, 1.0 / radius);
-        Self {
-            centre,
-            radius,
-            axis,
-            zero,
-            quarter: cross(axis, zero),
-        }
+        Self { centre, radius, axis, zero, quarter: cross(axis, zero) }
     }
 
     /// The ball at an angle.
@@ -106,15 +100,19 @@ impl Rssr {
             to_a[0].hypot(to_a[1]),
             to_b[0].hypot(to_b[1]),
             norm(links[1].translation),
-            norm(sub(base.carry([0.0, 0.0, to_a[2]]), ground.carry([0.0, 0.0, to_b[2]]))),
+            norm(sub(
+                base.carry([0.0, 0.0, to_a[2]]),
+                ground.carry([0.0, 0.0, to_b[2]]),
+            )),
         ]
         .into_iter()
         .fold(0.0, f64::max);
-        let unit = if greatest > 0.0 { greatest.log2().floor().exp2() } else { 1.0 };
-        let shrink = |pose: Pose| Pose {
-            translation: pose.translation.map(|x| x / unit),
-            ..pose
+        let unit = if greatest > 0.0 {
+            greatest.log2().floor().exp2()
+        } else {
+            1.0
         };
+        let shrink = |pose: Pose| Pose { translation: pose.translation.map(|x| x / unit), ..pose };
         let (base, ground, links) = (shrink(base), shrink(ground), links.map(shrink));
         let (to_a, to_b) = (to_a.map(|x| x / unit), to_b.map(|x| x / unit));
 
@@ -136,15 +134,7 @@ impl Rssr {
                 return Err(Error::NoLength { link: index + 1 });
             }
         }
-        Ok(Self {
-            unit,
-            crank,
-            rocker,
-            coupler,
-            base,
-            links,
-            ground,
-        })
+        Ok(Self { unit, crank, rocker, coupler, base, links, ground })
     }
 
     /// The lengths of crank, coupler and rocker.

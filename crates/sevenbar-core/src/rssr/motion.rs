@@ -52,7 +52,11 @@ impl Extent {
             Self::Full => 0.0,
             Self::Arc(start, end) => {
                 let beyond = (angle - start).rem_euclid(TAU) - (end - start);
-                if beyond <= 0.0 { 0.0 } else { beyond.min(TAU - (end - start) - beyond) }
+                if beyond <= 0.0 {
+                    0.0
+                } else {
+                    beyond.min(TAU - (end - start) - beyond)
+                }
             }
         }
     }
@@ -94,7 +98,13 @@ impl Domain {
         let degenerate = zeros.iter().any(|z| z.multiple);
         let angles: Vec<f64> = zeros
             .iter()
-            .map(|z| if z.multiple { z.angle } else { pair.polished_limit(z.angle).rem_euclid(TAU) })
+            .map(|z| {
+                if z.multiple {
+                    z.angle
+                } else {
+                    pair.polished_limit(z.angle).rem_euclid(TAU)
+                }
+            })
             .collect();
         let count = angles.len();
         if count == 0 {
@@ -106,7 +116,13 @@ impl Domain {
                 degenerate,
             };
         }
-        let next = |i: usize| if i + 1 < count { angles[i + 1] } else { angles[0] + TAU };
+        let next = |i: usize| {
+            if i + 1 < count {
+                angles[i + 1]
+            } else {
+                angles[0] + TAU
+            }
+        };
         let open: Vec<bool> = (0..count)
             .map(|i| discriminant.value(0.5 * (angles[i] + next(i))) > 0.0)
             .collect();
@@ -114,8 +130,14 @@ impl Domain {
 
         let mut domain = Self {
             extents: Vec::new(),
-            touches: (0..count).filter(|&i| open[i] && before(i)).map(|i| angles[i]).collect(),
-            limits: (0..count).filter(|&i| open[i] != before(i)).map(|i| angles[i]).collect(),
+            touches: (0..count)
+                .filter(|&i| open[i] && before(i))
+                .map(|i| angles[i])
+                .collect(),
+            limits: (0..count)
+                .filter(|&i| open[i] != before(i))
+                .map(|i| angles[i])
+                .collect(),
             // a simple zero that changes no sign is one that rounding made
             degenerate: degenerate || (0..count).any(|i| !zeros[i].multiple && open[i] == before(i)),
         };
@@ -128,7 +150,9 @@ impl Domain {
                 last += 1;
             }
             let turns = if last + 1 >= count { TAU } else { 0.0 };
-            domain.extents.push(Extent::Arc(angles[start], angles[(last + 1) % count] + turns));
+            domain
+                .extents
+                .push(Extent::Arc(angles[start], angles[(last + 1) % count] + turns));
         }
         domain
     }
@@ -226,7 +250,9 @@ impl Rssr {
             (true, true) => MotionType::DoubleCrank,
             (true, false) if output.extents.len() == 2 => MotionType::CrankRocker,
             (false, true) if input.extents.len() == 2 => MotionType::RockerCrank,
-            (false, false) if input.extents.is_empty() && output.extents.is_empty() => MotionType::CannotAssemble,
+            (false, false) if input.extents.is_empty() && output.extents.is_empty() => {
+                MotionType::CannotAssemble
+            }
             (false, false) if input.extents.len() == output.extents.len() => MotionType::DoubleRocker,
             _ => MotionType::ChangePoint,
         }
@@ -293,13 +319,22 @@ impl Rssr {
         place_output_dead_centres(&mut circuits, &forward, &backward, &outputs);
         let degenerate_angles = || {
             let zeros = forward.discriminant().zeros(forward.discriminant_noise());
-            zeros.unwrap_or_default().into_iter().filter(|z| z.multiple).map(|z| z.angle).collect()
+            zeros
+                .unwrap_or_default()
+                .into_iter()
+                .filter(|z| z.multiple)
+                .map(|z| z.angle)
+                .collect()
         };
         Motion {
             input,
             motion_type,
             limits: inputs.limits,
-            change_points: if motion_type == MotionType::ChangePoint { degenerate_angles() } else { Vec::new() },
+            change_points: if motion_type == MotionType::ChangePoint {
+                degenerate_angles()
+            } else {
+                Vec::new()
+            },
             circuits,
         }
     }
@@ -319,10 +354,10 @@ fn circuit(forward: &Pair, outputs: &Domain, mut circuit: Circuit) -> Circuit {
         let reach = forward.reach(driver);
         forward.angle(&reach, reach.slope.unwrap_or(0.0), circuit.first_branch)
     };
-    let nearest = outputs
-        .extents
-        .iter()
-        .min_by(|a, b| a.distance(output_at(inside)).total_cmp(&b.distance(output_at(inside))));
+    let nearest = outputs.extents.iter().min_by(|a, b| {
+        a.distance(output_at(inside))
+            .total_cmp(&b.distance(output_at(inside)))
+    });
     circuit.output = nearest.map_or(Extent::Full, |e| e.holding(output_at(first)));
     if let Extent::Arc(start, end) = circuit.input {
         for (branch, driver) in [start, end].into_iter().enumerate() {
@@ -431,12 +466,16 @@ fn transmission(pair: &Pair, extent: Extent, branch: usize) -> [TransmissionExtr
         Extent::Full => inputs.push(0.0),
         Extent::Arc(start, end) => inputs.extend([start, end]),
     }
-    let angle_at = |&input: &f64| TransmissionExtreme {
-        input,
-        angle: pair.transmission_angle(input, branch),
-    };
-    let least = inputs.iter().map(angle_at).min_by(|a, b| a.angle.total_cmp(&b.angle));
-    let greatest = inputs.iter().map(angle_at).max_by(|a, b| a.angle.total_cmp(&b.angle));
+    let angle_at =
+        |&input: &f64| TransmissionExtreme { input, angle: pair.transmission_angle(input, branch) };
+    let least = inputs
+        .iter()
+        .map(angle_at)
+        .min_by(|a, b| a.angle.total_cmp(&b.angle));
+    let greatest = inputs
+        .iter()
+        .map(angle_at)
+        .max_by(|a, b| a.angle.total_cmp(&b.angle));
     let nowhere = TransmissionExtreme { input: f64::NAN, angle: f64::NAN };
     [least.unwrap_or(nowhere), greatest.unwrap_or(nowhere)]
 }

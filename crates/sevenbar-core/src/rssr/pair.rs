@@ -106,8 +106,8 @@ impl Pair {
         let (near, far) = self.squares(height, z);
         let rounding = -REACH_ROUNDING * self.coupler * (height + self.radius + z.abs());
         let share = 4.0 * self.radius * height;
-        let slope = (near >= rounding && far >= rounding)
-            .then(|| 0.5 * near.max(0.0).sqrt() * far.max(0.0).sqrt());
+        let slope =
+            (near >= rounding && far >= rounding).then(|| 0.5 * near.max(0.0).sqrt() * far.max(0.0).sqrt());
         let root = slope.unwrap_or(0.0) * 4.0;
         Reach {
             ball: [x, y, z],

@@ -45,6 +45,9 @@ impl Pair {
         let signed = self.branch_sign(branch) * slope;
         let [x, y, _] = reach.ball;
         let scale = 1.0 / (self.radius * reach.height * reach.height);
-        ((reach.k * y - signed * x) * scale, (reach.k * x + signed * y) * scale)
+        (
+            (reach.k * y - signed * x) * scale,
+            (reach.k * x + signed * y) * scale,
+        )
     }
 }
