@@ -1,4 +1,4 @@
-"""The linkage, a frozen value: joints, fixed transforms, named points, drive; it asks the core for its motion."""
+"""The linkage: joints, fixed transforms, points, drive; a frozen value that asks the core for its motion."""
 
 from __future__ import annotations
 

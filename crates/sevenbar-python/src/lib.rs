@@ -262,7 +262,7 @@ fn circuit_dict<'py>(py: Python<'py>, circuit: &Circuit, rows: &[Row]) -> PyResu
         })
         .collect();
     result.set_item("dead_centres", dead_centres)?;
-    result.set_item("transmission", circuit.transmission.map(|t| (t.angle, t.input)))?;
+    result.set_item("transmission", extremes(circuit.transmission))?;
     result.set_item("velocity", circuit.velocity.map(extremes))?;
     result.set_item("acceleration", circuit.acceleration.map(extremes))?;
     Ok(result)

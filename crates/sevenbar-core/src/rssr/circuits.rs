@@ -1,7 +1,8 @@
 //! Rows along a circuit: the input grid, every joint with its derivatives, and what can be said of each row.
 
+use super::domain::{Extent, turn_between};
 use super::frames::JOINT_COLUMNS;
-use super::motion::{Circuit, Extent, branch_at, turn_between};
+use super::motion::{Circuit, branch_at};
 use super::pair::Pair;
 use super::{Input, Motion, MotionType, Rssr};
 use crate::taylor::Taylor;
@@ -219,9 +220,8 @@ fn unwrap_follower(
     angle: f64,
     previous: Option<(Stop, f64)>,
 ) -> f64 {
-    if let Extent::Arc(low, high) = circuit.output {
-        let centre = 0.5 * (low + high);
-        return centre + turn_between(centre, angle);
+    if circuit.output != Extent::Full {
+        return circuit.output.unwrap(angle);
     }
     let Some((last, before)) = previous else {
         return angle;

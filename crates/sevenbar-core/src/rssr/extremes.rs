@@ -1,5 +1,6 @@
-//! Extremes of the output's rates over a full turn of the input, located by root finding.
+//! Extremes of what a designer reads, located by root finding: the output's rates and the transmission angle.
 
+use super::domain::Extent;
 use super::pair::Pair;
 use crate::taylor::Taylor;
 use std::f64::consts::TAU;
@@ -12,7 +13,7 @@ const CELLS: usize = 360;
 pub struct Extreme {
     /// The input angle.
     pub input: f64,
-    /// The value, per radian of input to the power of its order.
+    /// The value: an angle, or a rate per radian of input to the power of its order.
     pub value: f64,
 }
 
@@ -92,4 +93,43 @@ fn zero(at: &impl Fn(f64) -> Derivatives, low: f64, high: f64, k: usize) -> f64 
         (b, fb) = (x, fx);
     }
     b
+}
+
+/// The least and the greatest transmission angle: where `rho^2 - K^2` is stationary, and at the limits.
+pub(super) fn transmission_extremes(pair: &Pair, extent: Extent, branch: usize) -> [Extreme; 2] {
+    let slope = pair.discriminant().derivative();
+    let mut inputs: Vec<f64> = slope
+        .zeros(pair.discriminant_noise())
+        .unwrap_or_default()
+        .into_iter()
+        .map(|z| z.angle)
+        .filter(|&x| extent.distance(x) == 0.0)
+        .collect();
+    match extent {
+        Extent::Full => inputs.push(0.0),
+        Extent::Arc(start, end) => inputs.extend([start, end]),
+    }
+    let angle_at = |&input: &f64| Extreme { input, value: pair.transmission_angle(input, branch) };
+    let least = inputs
+        .iter()
+        .map(angle_at)
+        .min_by(|a, b| a.value.total_cmp(&b.value));
+    let greatest = inputs
+        .iter()
+        .map(angle_at)
+        .max_by(|a, b| a.value.total_cmp(&b.value));
+    let nowhere = Extreme { input: f64::NAN, value: f64::NAN };
+    [least.unwrap_or(nowhere), greatest.unwrap_or(nowhere)]
+}
+
+impl Pair {
+    /// 90 degrees less the angle between the coupler's line and the direction in which its far ball moves.
+    pub fn transmission_angle(&self, driver: f64, branch: usize) -> f64 {
+        let reach = self.reach(driver);
+        let slope = reach.slope.unwrap_or(0.0);
+        let (sine, cosine) = self.direction(&reach, slope, branch);
+        let [x, y, z] = reach.ball;
+        let radial = x * cosine + y * sine - self.radius;
+        (slope / self.radius).atan2(radial.hypot(z))
+    }
 }

@@ -7,6 +7,7 @@
 
 mod batch;
 mod circuits;
+mod domain;
 mod extremes;
 mod frames;
 mod motion;
@@ -15,8 +16,9 @@ mod rates;
 
 pub use batch::{BatchRates, MAX_ORDER};
 pub use circuits::{Row, RowStatus};
+pub use domain::Extent;
 pub use extremes::Extreme;
-pub use motion::{Circuit, DeadCentre, DeadCentreKind, Extent, Motion, MotionType, TransmissionExtreme};
+pub use motion::{Circuit, DeadCentre, DeadCentreKind, Motion, MotionType};
 pub use pair::{Pair, Reach};
 
 use crate::error::Error;

@@ -1,9 +1,10 @@
 //! The whole motion of an RSSR: where it can go, its circuits, its motion type, and its dead centres.
 
-use super::extremes::{Extreme, rate_extremes};
+use super::domain::{Domain, Extent, turn_between};
+use super::extremes::{Extreme, rate_extremes, transmission_extremes};
 use super::pair::Pair;
 use super::{Input, Rssr};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// What input and output can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,132 +37,6 @@ impl MotionType {
     }
 }
 
-/// The range of one turning joint on one circuit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Extent {
-    /// Every angle.
-    Full,
-    /// From a first angle to a greater last one.
-    Arc(f64, f64),
-}
-
-impl Extent {
-    /// How far `angle` lies outside, going round; 0 inside.
-    fn distance(&self, angle: f64) -> f64 {
-        match *self {
-            Self::Full => 0.0,
-            Self::Arc(start, end) => {
-                let beyond = (angle - start).rem_euclid(TAU) - (end - start);
-                if beyond <= 0.0 {
-                    0.0
-                } else {
-                    beyond.min(TAU - (end - start) - beyond)
-                }
-            }
-        }
-    }
-
-    /// The same range moved by whole turns so that it holds, or nearly holds, `angle`.
-    fn holding(&self, angle: f64) -> Self {
-        match *self {
-            Self::Full => Self::Full,
-            Self::Arc(start, end) => {
-                let turns = ((angle - 0.5 * (start + end)) / TAU).round() * TAU;
-                Self::Arc(start + turns, end + turns)
-            }
-        }
-    }
-}
-
-/// Where a turning joint can be.
-#[derive(Clone, Debug)]
-struct Domain {
-    extents: Vec<Extent>,
-    /// Angles inside an extent where the two solutions meet and part again.
-    touches: Vec<f64>,
-    limits: Vec<f64>,
-    /// True where rounding decides how many extents there are.
-    degenerate: bool,
-}
-
-impl Domain {
-    fn new(pair: &Pair) -> Self {
-        let discriminant = pair.discriminant();
-        let Some(zeros) = discriminant.zeros(pair.discriminant_noise()) else {
-            return Self {
-                extents: vec![Extent::Full],
-                touches: Vec::new(),
-                limits: Vec::new(),
-                degenerate: true,
-            };
-        };
-        let degenerate = zeros.iter().any(|z| z.multiple);
-        let angles: Vec<f64> = zeros
-            .iter()
-            .map(|z| {
-                if z.multiple {
-                    z.angle
-                } else {
-                    pair.polished_limit(z.angle).rem_euclid(TAU)
-                }
-            })
-            .collect();
-        let count = angles.len();
-        if count == 0 {
-            let assembles = discriminant.value(0.0) > 0.0;
-            return Self {
-                extents: if assembles { vec![Extent::Full] } else { Vec::new() },
-                touches: Vec::new(),
-                limits: Vec::new(),
-                degenerate,
-            };
-        }
-        let next = |i: usize| {
-            if i + 1 < count {
-                angles[i + 1]
-            } else {
-                angles[0] + TAU
-            }
-        };
-        let open: Vec<bool> = (0..count)
-            .map(|i| discriminant.value(0.5 * (angles[i] + next(i))) > 0.0)
-            .collect();
-        let before = |i: usize| open[(i + count - 1) % count];
-
-        let mut domain = Self {
-            extents: Vec::new(),
-            touches: (0..count)
-                .filter(|&i| open[i] && before(i))
-                .map(|i| angles[i])
-                .collect(),
-            limits: (0..count)
-                .filter(|&i| open[i] != before(i))
-                .map(|i| angles[i])
-                .collect(),
-            // a simple zero that changes no sign is one that rounding made
-            degenerate: degenerate || (0..count).any(|i| !zeros[i].multiple && open[i] == before(i)),
-        };
-        if domain.limits.is_empty() && open[0] {
-            domain.extents.push(Extent::Full);
-        }
-        for start in (0..count).filter(|&i| open[i] && !before(i)) {
-            let mut last = start;
-            while open[(last + 1) % count] {
-                last += 1;
-            }
-            let turns = if last + 1 >= count { TAU } else { 0.0 };
-            domain
-                .extents
-                .push(Extent::Arc(angles[start], angles[(last + 1) % count] + turns));
-        }
-        domain
-    }
-
-    fn turns_fully(&self) -> bool {
-        matches!(self.extents[..], [Extent::Full])
-    }
-}
-
 /// Which joint stands still at a dead centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeadCentreKind {
@@ -186,15 +61,6 @@ pub struct DeadCentre {
     pub condition: f64,
 }
 
-/// The least or greatest transmission angle on a circuit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransmissionExtreme {
-    /// The input angle where it occurs.
-    pub input: f64,
-    /// The transmission angle in [0, pi/2].
-    pub angle: f64,
-}
-
 /// One connected motion.
 #[derive(Clone, Debug)]
 pub struct Circuit {
@@ -213,7 +79,7 @@ pub struct Circuit {
     /// Dead centres: those of the input first, then those of the output by input angle.
     pub dead_centres: Vec<DeadCentre>,
     /// The least and the greatest transmission angle.
-    pub transmission: [TransmissionExtreme; 2],
+    pub transmission: [Extreme; 2],
     /// Lowest and highest d(output)/d(input); `None` where there is no bound or a change point lies within.
     pub velocity: Option<[Extreme; 2]>,
     /// Lowest and highest second derivative of output by input.
@@ -309,7 +175,7 @@ impl Rssr {
                         touches: touches.clone(),
                         turns,
                         dead_centres: Vec::new(),
-                        transmission: transmission(&forward, *extent, first_branch),
+                        transmission: transmission_extremes(&forward, *extent, first_branch),
                         velocity: None,
                         acceleration: None,
                     },
@@ -366,7 +232,7 @@ fn circuit(forward: &Pair, outputs: &Domain, mut circuit: Circuit) -> Circuit {
             circuit.dead_centres.push(DeadCentre {
                 kind: DeadCentreKind::Input,
                 input: driver,
-                output: in_turn_of(&circuit.output, output),
+                output: circuit.output.unwrap(output),
                 branch,
                 condition: condition(forward, driver),
             });
@@ -403,7 +269,7 @@ fn place_output_dead_centres(circuits: &mut [Circuit], forward: &Pair, backward:
             circuit.dead_centres.push(DeadCentre {
                 kind: DeadCentreKind::Output,
                 input,
-                output: in_turn_of(&circuit.output, output),
+                output: circuit.output.unwrap(output),
                 branch: pass,
                 condition: condition(backward, output),
             });
@@ -430,64 +296,8 @@ pub(super) fn branch_at(circuit: &Circuit, input: f64) -> usize {
     (circuit.first_branch + passed + whole) % 2
 }
 
-/// The signed turn in [-pi, pi) that leads from one angle to another.
-pub(super) fn turn_between(from: f64, to: f64) -> f64 {
-    (to - from + PI).rem_euclid(TAU) - PI
-}
-
-/// The angle moved by whole turns into the range of its circuit.
-fn in_turn_of(extent: &Extent, angle: f64) -> f64 {
-    match *extent {
-        Extent::Full => angle,
-        Extent::Arc(start, end) => {
-            let centre = 0.5 * (start + end);
-            centre + turn_between(centre, angle)
-        }
-    }
-}
-
 /// The condition number of a limit: the sum of the discriminant's terms over its slope there.
 fn condition(pair: &Pair, driver: f64) -> f64 {
     let terms = pair.discriminant_noise() / (8.0 * f64::EPSILON);
     (terms / pair.discriminant().derivative().value(driver)).abs()
-}
-
-/// The least and the greatest transmission angle: where `rho^2 - K^2` is stationary, and at the limits.
-fn transmission(pair: &Pair, extent: Extent, branch: usize) -> [TransmissionExtreme; 2] {
-    let slope = pair.discriminant().derivative();
-    let mut inputs: Vec<f64> = slope
-        .zeros(pair.discriminant_noise())
-        .unwrap_or_default()
-        .into_iter()
-        .map(|z| z.angle)
-        .filter(|&x| extent.distance(x) == 0.0)
-        .collect();
-    match extent {
-        Extent::Full => inputs.push(0.0),
-        Extent::Arc(start, end) => inputs.extend([start, end]),
-    }
-    let angle_at =
-        |&input: &f64| TransmissionExtreme { input, angle: pair.transmission_angle(input, branch) };
-    let least = inputs
-        .iter()
-        .map(angle_at)
-        .min_by(|a, b| a.angle.total_cmp(&b.angle));
-    let greatest = inputs
-        .iter()
-        .map(angle_at)
-        .max_by(|a, b| a.angle.total_cmp(&b.angle));
-    let nowhere = TransmissionExtreme { input: f64::NAN, angle: f64::NAN };
-    [least.unwrap_or(nowhere), greatest.unwrap_or(nowhere)]
-}
-
-impl Pair {
-    /// 90 degrees less the angle between the coupler's line and the direction in which its far ball moves.
-    pub fn transmission_angle(&self, driver: f64, branch: usize) -> f64 {
-        let reach = self.reach(driver);
-        let slope = reach.slope.unwrap_or(0.0);
-        let (sine, cosine) = self.direction(&reach, slope, branch);
-        let [x, y, z] = reach.ball;
-        let radial = x * cosine + y * sine - self.radius;
-        (slope / self.radius).atan2(radial.hypot(z))
-    }
 }

@@ -43,8 +43,8 @@ pub struct Reach {
 impl Reach {
     /// True where the two solutions are so near each other that rates hold no digit.
     pub fn is_dead_centre(&self) -> bool {
-        // written so that an undefined condition counts as one
-        !(self.condition < 1.0 / DEAD_CENTRE_SHARE)
+        // an undefined condition counts as one
+        self.condition.is_nan() || self.condition >= 1.0 / DEAD_CENTRE_SHARE
     }
 }
 
