@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import DescriptionError, NotCoveredError, Problem, RequestError
-from sevenbar.linkage import Drive, Joint, Linkage, Point
+from sevenbar.linkage import Drive, Joint, Linkage, Point, inverse, pose
 from sevenbar.motion import Floats
 
 if TYPE_CHECKING:
@@ -18,20 +18,6 @@ if TYPE_CHECKING:
 
 #: Below this share of the size of a drawn pose a link has no length.
 NO_LENGTH = 1e-12
-
-
-def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike) -> Floats:
-    """The homogeneous matrix (4, 4) with these columns of axes and this origin."""
-    matrix = np.eye(4)
-    matrix[:3, :3] = rotation
-    matrix[:3, 3] = origin
-    return matrix
-
-
-def inverse(matrix: Floats) -> Floats:
-    """The inverse of a rigid motion."""
-    rotation = matrix[:3, :3].T
-    return pose(rotation, -rotation @ matrix[:3, 3])
 
 
 def rssr(
@@ -155,12 +141,11 @@ def _from_dimensions(form: RssrForm) -> Linkage:
     base = pose(np.eye(3), [0.0, 0.0, form.N])
     # joint 4 turns the ground against the rocker, about -x, so that its value is the paper's beta
     ground = pose([[0, 0, -1], [-1, 0, 0], [0, 1, 0]], [form.M, form.D, 0.0])
-    transforms = np.stack(
+    links = np.stack(
         [
             pose(np.eye(3), [form.L1, 0.0, 0.0]),
             pose(np.eye(3), [form.coupler, 0.0, 0.0]),
             pose(np.diag([1.0, -1.0, -1.0]), [form.L3, 0.0, 0.0]),
-            inverse(ground) @ base,
         ]
     )
     from sevenbar.schema import RSSR_JOINTS
@@ -169,7 +154,8 @@ def _from_dimensions(form: RssrForm) -> Linkage:
         name="RSSR",
         joints=tuple(Joint(kind, name) for name, kind in RSSR_JOINTS),
         base=base,
-        transforms=transforms,
+        ground=ground,
+        links=links,
         point_frames=np.stack([np.eye(4)] * 4),
         drive=Drive("crank", "rocker"),
         points=(Point("A", 1, (form.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
@@ -208,14 +194,13 @@ def _from_drawing(forms: tuple[JointForm, ...], source: str) -> Linkage:
     if problems:
         raise DescriptionError(problems, source)
     at_a, at_b = pose(np.eye(3), ball_a), pose(np.eye(3), ball_b)
-    transforms = np.stack(
-        [inverse(base) @ at_a, inverse(at_a) @ at_b, inverse(at_b) @ ground, inverse(ground) @ base]
-    )
+    links = np.stack([inverse(base) @ at_a, inverse(at_a) @ at_b, inverse(at_b) @ ground])
     return Linkage(
         name="linkage",
         joints=tuple(Joint(form.kind, name) for form, name in zip(forms, names, strict=True)),
         base=base,
-        transforms=transforms,
+        ground=ground,
+        links=links,
         point_frames=np.stack([inverse(base), inverse(at_a), inverse(at_b), np.eye(4)]),
         drive=Drive(names[0], names[3]),
         points=(Point("A", 1, forms[1].at), Point("B", 3, forms[2].at)),

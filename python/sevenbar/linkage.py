@@ -67,17 +67,19 @@ class Drive:
 
 @dataclass(frozen=True, eq=False)
 class Linkage:
-    """A closed loop `Z(q1) G1 Z(q2) G2 .. Z(qn) Gn = 1`.
+    """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground`.
 
-    `transforms` (n, 4, 4) are the G's, from each joint's frame to the next one's; `base` (4, 4) is the
-    frame of joint 1 in the report frame. `point_frames` (n, 4, 4) take a point as it is written to its
-    link's own frame. `dimensions` are the named numbers of the form it was written in.
+    `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,
+    both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
+    to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
+    `dimensions` are the named numbers of the form it was written in.
     """
 
     name: str
     joints: tuple[Joint, ...]
     base: Floats
-    transforms: Floats
+    ground: Floats
+    links: Floats
     point_frames: Floats
     drive: Drive
     length_unit: str = "mm"
@@ -85,8 +87,13 @@ class Linkage:
     dimensions: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for array in (self.base, self.transforms, self.point_frames):
+        for array in (self.base, self.ground, self.links, self.point_frames):
             array.setflags(write=False)
+
+    @property
+    def transforms(self) -> Floats:
+        """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
+        return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
 
     @property
     def kind(self) -> str:
@@ -110,7 +117,7 @@ class Linkage:
             raise NotCoveredError(
                 f"a loop {' '.join(self.kind)} is not analysed by this version; it takes R S S R"
             )
-        return _core.Rssr(self.base, self.transforms)
+        return _core.Rssr(self.base, self.ground, self.links)
 
     def side(self, joint: str | None, default: str, key: str) -> str:
         """The core's word for a turning joint named by the caller."""
@@ -336,3 +343,17 @@ def _sampled(values: Floats, inputs: Floats) -> Extremes | None:
         return None
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
     return Extremes(float(values[low]), float(inputs[low]), float(values[high]), float(inputs[high]))
+
+
+def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike) -> Floats:
+    """The homogeneous matrix (4, 4) with these columns of axes and this origin."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = rotation
+    matrix[:3, 3] = origin
+    return matrix
+
+
+def inverse(matrix: Floats) -> Floats:
+    """The inverse of a rigid motion."""
+    rotation = matrix[:3, :3].T
+    return pose(rotation, -rotation @ matrix[:3, 3])

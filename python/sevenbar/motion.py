@@ -145,7 +145,7 @@ class Circuit:
     `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
     columns), unwrapped [rad and derivatives by s]. `time` [s]; `status`, `branch` (the pass between input
     dead centres), `mode` (the branch of the closed form), `residual` (closure error in the length unit),
-    `condition` (how much a relative error of the closure is magnified in the velocity), each (n,).
+    `condition` (how much a relative error of the squared lengths is magnified in the velocity), each (n,).
     """
 
     index: int

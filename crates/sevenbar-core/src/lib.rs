@@ -9,6 +9,7 @@ pub mod rssr;
 pub mod simd;
 pub mod taylor;
 mod trigonometric;
+mod twofold;
 mod vector_math;
 
 pub use error::Error;

@@ -48,20 +48,27 @@ struct Rssr(rssr::Rssr);
 
 #[pymethods]
 impl Rssr {
-    /// From the frame of joint 1 (4, 4) and the fixed transforms of the four links (4, 4, 4).
+    /// From the frames of joint 1 and of the ground's side of joint 4, each (4, 4), and the transforms of the moving links
+    /// (3, 4, 4).
     #[new]
-    fn new(base: PyReadonlyArray2<'_, f64>, links: PyReadonlyArray3<'_, f64>) -> PyResult<Self> {
-        let (base, links) = (base.as_array(), links.as_array());
-        if base.shape() != [4, 4] || links.shape() != [4, 4, 4] {
+    fn new(
+        base: PyReadonlyArray2<'_, f64>,
+        ground: PyReadonlyArray2<'_, f64>,
+        links: PyReadonlyArray3<'_, f64>,
+    ) -> PyResult<Self> {
+        let (base, ground, links) = (base.as_array(), ground.as_array(), links.as_array());
+        if base.shape() != [4, 4] || ground.shape() != [4, 4] || links.shape() != [3, 4, 4] {
             return Err(CoreError::new_err(
-                "base needs shape (4, 4) and links shape (4, 4, 4)",
+                "base and ground need shape (4, 4), links shape (3, 4, 4)",
             ));
         }
-        let base = Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| base[[i, j]])));
-        let links = std::array::from_fn(|n| {
-            Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| links[[n, i, j]])))
-        });
-        rssr::Rssr::new(base, links).map(Self).map_err(raise)
+        let pose = |m: numpy::ndarray::ArrayView2<'_, f64>| {
+            Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| m[[i, j]])))
+        };
+        let links = std::array::from_fn(|n| pose(links.index_axis(numpy::ndarray::Axis(0), n)));
+        rssr::Rssr::new(pose(base), pose(ground), links)
+            .map(Self)
+            .map_err(raise)
     }
 
     /// The lengths of crank, coupler and rocker.

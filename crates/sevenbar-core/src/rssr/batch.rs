@@ -1,13 +1,17 @@
 //! Both branches of the closed form for many inputs at once, with derivatives by time.
 
-use super::pair::{DEAD_CENTRE_SHARE, Pair, REACH_ROUNDING};
+use super::pair::{DEAD_CENTRE_CONDITION, Pair, REACH_ROUNDING};
 use crate::error::Error;
 use crate::simd::{Kernel, dispatch, multiply_add};
+use crate::taylor::Taylor;
 use crate::vector_math::{LARGEST_ANGLE, atan2, sin_cos};
 use std::f64::consts::TAU;
 
 /// The highest derivative: jerk.
 pub const MAX_ORDER: usize = 3;
+
+/// From this condition on a pose is computed anew with rounding errors kept: [`Pair::follower_taylor`].
+const CAREFUL_CONDITION: f64 = 1e3;
 
 /// Inputs handled together; the scratch arrays of a block stay in the nearest cache.
 const BLOCK: usize = 64;
@@ -129,7 +133,10 @@ impl<const ORDER: usize> Kernel for Ordered<'_, '_, ORDER> {
                     slots[..size].copy_from_slice(&values[start..start + size]);
                 }
             }
-            block::<FUSED, ORDER>(pair, &angles, &law, &mut scratch);
+            let careful = block::<FUSED, ORDER>(pair, &angles, &law, &mut scratch);
+            if careful {
+                redo_near_limits(pair, &angles[..size], &law, &mut scratch);
+            }
             for (branch, derivatives) in scratch.iter().enumerate() {
                 for (output, values) in outputs.iter_mut().zip(derivatives) {
                     let first = branch * count + start;
@@ -141,20 +148,49 @@ impl<const ORDER: usize> Kernel for Ordered<'_, '_, ORDER> {
     }
 }
 
+/// Computes the poses near a limit anew, one by one.
+#[inline(never)]
+fn redo_near_limits(pair: &Pair, angles: &[f64], law: &[[f64; BLOCK]; MAX_ORDER], results: &mut Scratch) {
+    for (i, &angle) in angles.iter().enumerate() {
+        let reach = pair.reach(angle);
+        // a little less than the mark that raised the flag, which was computed in another way
+        if reach.condition < 0.5 * CAREFUL_CONDITION {
+            continue;
+        }
+        let Some(slope) = reach.slope else {
+            continue;
+        };
+        let driver = Taylor::<4>::from_derivatives(&[angle, law[0][i], law[1][i], law[2][i]]);
+        for (branch, derivatives) in results.iter_mut().enumerate() {
+            let follower = pair.follower_taylor(driver, branch).unwrap_or_else(|| {
+                let mut still = Taylor([f64::NAN; 4]);
+                still.0[0] = pair.angle(&reach, slope, branch);
+                still
+            });
+            for (order, slots) in derivatives.iter_mut().enumerate() {
+                slots[i] = follower.derivative(order);
+            }
+        }
+    }
+}
+
 /// The closed form of [`Pair::reach`], [`Pair::angle`] and the implicit derivatives of the closure, written without branches.
 ///
 /// With `u = p - B` and the follower's radius r the closure `(|u|^2 - L2^2)/2 = 0` has the derivatives `u . p'` by the
-/// input and `r (x sin - y cos)` by the output; the paper's Q, R, S, T of eq. (13) are the second ones.
+/// input and `r (x sin - y cos)` by the output; the paper's Q, R, S, T of eq. (13) are the second ones. Returns whether
+/// a pose lies so near a limit that it wants more care.
 #[inline(always)]
 fn block<const FUSED: bool, const ORDER: usize>(
     pair: &Pair,
     angles: &[f64; BLOCK],
     law: &[[f64; BLOCK]; MAX_ORDER],
     results: &mut Scratch,
-) {
+) -> bool {
     let radius = pair.radius;
     let radius_inverse = 1.0 / radius;
     let coupler = pair.coupler;
+    let coupler_square = coupler * coupler;
+    let mut careful = 0_u64;
     let driver_square = pair.driver_radius * pair.driver_radius;
     let cut = pair.phase_cut();
     let signs = [pair.branch_sign(0), pair.branch_sign(1)];
@@ -179,6 +215,11 @@ fn block<const FUSED: bool, const ORDER: usize>(
         let product = 0.25 * (near.max(0.0) * far.max(0.0));
         let reached = (near >= rounding) & (far >= rounding);
         let slope = if reached { product.sqrt() } else { f64::NAN };
+        // the condition is terms / product
+        let terms = radius
+            * height
+            * multiply_add::<FUSED>(outer, outer, multiply_add::<FUSED>(z, z, coupler_square));
+        careful |= u64::from(reached & (product * CAREFUL_CONDITION < terms));
 
         let spread = atan2::<FUSED>(slope, k);
         let phase = atan2::<FUSED>(y, x);
@@ -189,7 +230,7 @@ fn block<const FUSED: bool, const ORDER: usize>(
             continue;
         }
 
-        let has_rates = product > DEAD_CENTRE_SHARE * radius * radius * square;
+        let has_rates = product * DEAD_CENTRE_CONDITION > terms;
         let slope = if has_rates { slope } else { f64::NAN };
         let slope_inverse = 1.0 / slope;
         let unscale = radius_inverse / square;
@@ -242,4 +283,5 @@ fn block<const FUSED: bool, const ORDER: usize>(
                 multiply_add::<FUSED>(j * d1 * d1, d1, multiply_add::<FUSED>(3.0 * a * d1, d2, v * d3));
         }
     }
+    careful != 0
 }

@@ -40,7 +40,7 @@ pub struct Row {
     pub joints: [[f64; 4]; JOINT_COLUMNS],
     /// The closure error in parts of the linkage's size.
     pub residual: f64,
-    /// How much a relative error of the closure is magnified in the velocity.
+    /// How much a relative error of the squared lengths is magnified in what all rates rest on.
     pub condition: f64,
 }
 

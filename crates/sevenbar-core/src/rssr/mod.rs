@@ -51,7 +51,7 @@ pub struct Circle {
 impl Circle {
     fn new(centre: Vec3, axis: Vec3, arm: Vec3) -> Self {
         let radius = norm(arm);
-        let zero = scale(arm, 1.0 / radius);
+        let zero = arm.map(|x| x / radius);
         Self { centre, radius, axis, zero, quarter: cross(axis, zero) }
     }
 
@@ -74,28 +74,28 @@ pub struct Rssr {
     coupler: f64,
     /// The frame of joint 1 in the report frame.
     base: Pose,
-    /// From each joint's frame to the next one's, the last back to joint 1.
-    links: [Pose; 4],
     /// The side of joint 4 that belongs to the ground, in the report frame.
     ground: Pose,
+    /// From each joint's frame to the next one's, for the three moving links.
+    links: [Pose; 3],
 }
 
 impl Rssr {
-    /// From the closed loop `Z(q1) G1 S G2 S G3 Z(q8) G4 = 1`.
+    /// From the closed loop `base Z(q1) G1 S G2 S G3 Z(q8) = ground`.
     ///
-    /// `base` is the frame of joint 1 in the report frame, `links` the four fixed transforms G.
+    /// `base` is the frame of joint 1 and `ground` that of the ground's side of joint 4, both in the report frame; `links` are
+    /// the fixed transforms G of the three moving links.
     ///
     /// # Errors
     /// [`Error::NoLength`] where a ball lies on the axis it turns about or the two balls coincide;
     /// [`Error::NotFinite`].
-    pub fn new(base: Pose, links: [Pose; 4]) -> Result<Self, Error> {
-        for (index, pose) in links.iter().chain([&base]).enumerate() {
+    pub fn new(base: Pose, ground: Pose, links: [Pose; 3]) -> Result<Self, Error> {
+        for (index, pose) in [base, ground].iter().chain(&links).enumerate() {
             let numbers = pose.rotation.iter().flatten().chain(&pose.translation);
             if let Some(&value) = numbers.into_iter().find(|x| !x.is_finite()) {
                 return Err(Error::NotFinite { what: "transform", index, value });
             }
         }
-        let ground = base.then(&links[3].inverse());
         let to_b = links[2].inverse().translation;
         let to_a = links[0].translation;
         let greatest = [

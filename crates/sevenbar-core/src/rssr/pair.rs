@@ -3,13 +3,14 @@
 use super::{Circle, Input};
 use crate::rigid::{dot, scale, sub};
 use crate::trigonometric::{TrigLinear, TrigQuadratic};
+use crate::twofold::Twofold;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Rounding of a squared reach, in parts of coupler times size: within it a solution just out of reach is at a limit.
 pub(super) const REACH_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Below this share of `rho^2`, `rho^2 - K^2` holds no digit of the rates: the pose is a dead centre of the input.
-pub(super) const DEAD_CENTRE_SHARE: f64 = 1e-13;
+/// From this condition on no digit of the rates is left: the pose is a dead centre of the input.
+pub(super) const DEAD_CENTRE_CONDITION: f64 = 1e13;
 
 /// The driving ball as seen from the follower's circle: `x`, `y` in its plane from its centre, `z` along its axis.
 #[derive(Clone, Copy, Debug)]
@@ -32,11 +33,15 @@ pub struct Reach {
     pub ball: [f64; 3],
     /// Its distance from the follower's axis.
     pub height: f64,
+    /// `2 (rho - K)`: how far the coupler reaches past the nearest point of the follower's circle.
+    pub near: f64,
+    /// `2 (rho + K)`: how far it stays short of the farthest one.
+    pub far: f64,
     /// `K`
     pub k: f64,
     /// `sqrt(rho^2 - K^2)`, the size of the derivative of the closure with respect to the follower; `None` out of reach.
     pub slope: Option<f64>,
-    /// `rho^2 / (rho^2 - K^2)`: how much a relative error of the closure is magnified in the velocity.
+    /// How much a relative error of the squared lengths is magnified in `rho^2 - K^2`, on which all rates rest.
     pub condition: f64,
 }
 
@@ -44,7 +49,7 @@ impl Reach {
     /// True where the two solutions are so near each other that rates hold no digit.
     pub fn is_dead_centre(&self) -> bool {
         // an undefined condition counts as one
-        self.condition.is_nan() || self.condition >= 1.0 / DEAD_CENTRE_SHARE
+        self.condition.is_nan() || self.condition >= DEAD_CENTRE_CONDITION
     }
 }
 
@@ -97,32 +102,31 @@ impl Pair {
     /// Everything the two solutions share at one input.
     ///
     /// `rho^2 - K^2` is the product of how far the coupler reaches past the nearest and how far it stays short of the
-    /// farthest point of the follower's circle; each factor is computed without cancellation of large squares.
+    /// farthest point of the follower's circle, both squared. Near a limit one of them is a small difference of large squares;
+    /// they are formed with their rounding errors kept, so that only the rounding of sine and cosine is left to magnify.
     pub fn reach(&self, driver: f64) -> Reach {
         let (s, c) = driver.sin_cos();
-        let at = |f: &TrigLinear| f.c0 + f.c1 * c + f.s1 * s;
+        let at = |f: &TrigLinear| Twofold::new(f.c0) + Twofold::product(f.c1, c) + Twofold::product(f.s1, s);
         let (x, y, z) = (at(&self.x), at(&self.y), at(&self.z));
         let height = (x * x + y * y).sqrt();
-        let (near, far) = self.squares(height, z);
-        let rounding = -REACH_ROUNDING * self.coupler * (height + self.radius + z.abs());
-        let share = 4.0 * self.radius * height;
+        let (coupler, radius) = (Twofold::new(self.coupler), Twofold::new(self.radius));
+        let (inner, outer) = (height - radius, height + radius);
+        let axial = (coupler - z) * (coupler + z);
+        let (near, far) = ((axial - inner * inner).value(), (outer * outer - axial).value());
+        let (height, z) = (height.value(), z.value());
+        let rounding = -REACH_ROUNDING * self.coupler * (outer.value() + z.abs());
         let slope =
-            (near >= rounding && far >= rounding).then(|| 0.5 * near.max(0.0).sqrt() * far.max(0.0).sqrt());
-        let root = slope.unwrap_or(0.0) * 4.0;
+            (near >= rounding && far >= rounding).then(|| 0.5 * (near.max(0.0) * far.max(0.0)).sqrt());
+        let terms = self.coupler * self.coupler + z * z + outer.value() * outer.value();
         Reach {
-            ball: [x, y, z],
+            ball: [x.value(), y.value(), z],
             height,
+            near,
+            far,
             k: 0.25 * (far - near),
             slope,
-            condition: (share / root) * (share / root),
+            condition: terms / near.max(0.0) + terms / far.max(0.0),
         }
-    }
-
-    /// `2 (rho - K)` and `2 (rho + K)`.
-    pub(super) fn squares(&self, height: f64, z: f64) -> (f64, f64) {
-        let (inner, outer) = (height - self.radius, height + self.radius);
-        let axial = (self.coupler - z) * (self.coupler + z);
-        (axial - inner * inner, outer * outer - axial)
     }
 
     /// The follower's angle on a branch, or `None` where the coupler does not reach.
@@ -159,18 +163,17 @@ impl Pair {
     pub(super) fn polished_limit(&self, approximate: f64) -> f64 {
         let mut driver = approximate;
         for _ in 0..3 {
+            let reach = self.reach(driver);
+            let [x, y, z] = reach.ball;
             let (s, c) = driver.sin_cos();
-            let at = |f: &TrigLinear| (f.c0 + f.c1 * c + f.s1 * s, f.s1 * c - f.c1 * s);
-            let ((x, dx), (y, dy), (z, dz)) = (at(&self.x), at(&self.y), at(&self.z));
-            let height = (x * x + y * y).sqrt();
-            let climb = (x * dx + y * dy) / height;
-            let (near, far) = self.squares(height, z);
-            let (value, slope) = if near.abs() < far.abs() {
-                (near, -2.0 * (z * dz + (height - self.radius) * climb))
+            let rate = |f: &TrigLinear| f.s1 * c - f.c1 * s;
+            let climb = (x * rate(&self.x) + y * rate(&self.y)) / reach.height;
+            let axial = z * rate(&self.z);
+            let step = if reach.near.abs() < reach.far.abs() {
+                -reach.near / (2.0 * (axial + (reach.height - self.radius) * climb))
             } else {
-                (far, 2.0 * (z * dz + (height + self.radius) * climb))
+                reach.far / (2.0 * (axial + (reach.height + self.radius) * climb))
             };
-            let step = value / slope;
             // a step as large as the distance to a neighbour means the limit is not a simple one
             if !step.is_finite() || step.abs() > crate::trigonometric::DOUBLE_ZERO_DISTANCE {
                 return driver;
