@@ -50,7 +50,7 @@ def test_a_linkage_cannot_be_changed():
     with pytest.raises(AttributeError):
         linkage.name = "other"
     with pytest.raises(ValueError, match="read-only"):
-        linkage.transforms[0, 0, 0] = 2.0
+        linkage.links[0, 0, 0] = 2.0
 
 
 def test_all_errors_of_a_file_are_told_at_once():

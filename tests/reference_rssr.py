@@ -1,0 +1,292 @@
+"""An RSSR worked out a second time, sharing no formula with the core: rotated points, sampling, and 80-digit numbers.
+
+Source: the description alone. Crank and rocker turn their balls A and B about two given axes (Rodrigues' formula), and
+the loop closes where |A - B| = L2. Everything here follows from that one sentence:
+
+- in NumPy, where a turning ball comes within reach of the other circle, and the two poses there;
+- in mpmath, the pose by Newton's method on |A - B|^2 = L2^2, and every derivative by time by central differences
+  with a step of 1e-20 in 80 digits, which leaves 35 digits or more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import mpmath as mp
+import numpy as np
+
+#: Digits carried, and the step of the central differences: the step's square is lost, and its cube in rounding.
+DIGITS = 80
+STEP = mp.mpf(10) ** -20
+
+
+@dataclass(frozen=True)
+class Side:
+    """A side link: it turns its ball about the line through `at` along the unit vector `axis`; `ball` is the ball at angle zero."""
+
+    at: np.ndarray
+    axis: np.ndarray
+    ball: np.ndarray
+
+    def turned(self, angles: np.ndarray) -> np.ndarray:
+        """The ball (n, 3) at each angle, by Rodrigues' formula."""
+        arm = self.ball - self.at
+        axis = self.axis / np.linalg.norm(self.axis)
+        sine, cosine = np.sin(angles)[:, None], np.cos(angles)[:, None]
+        along = (axis @ arm) * axis
+        return self.at + along + cosine * (arm - along) + sine * np.cross(axis, arm)
+
+    @property
+    def foot(self) -> np.ndarray:
+        """The foot of the ball on the axis: the centre of its circle."""
+        axis = self.axis / np.linalg.norm(self.axis)
+        return self.at + (axis @ (self.ball - self.at)) * axis
+
+    @property
+    def radius(self) -> float:
+        """The radius of the ball's circle."""
+        return float(np.linalg.norm(self.ball - self.foot))
+
+    def distances(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """From each of the points (n, 3) to the nearest and to the farthest point of the ball's circle."""
+        axis = self.axis / np.linalg.norm(self.axis)
+        offset = points - self.foot
+        z = offset @ axis
+        height = np.linalg.norm(offset - z[:, None] * axis, axis=1)
+        return np.hypot(z, height - self.radius), np.hypot(z, height + self.radius)
+
+
+@dataclass(frozen=True)
+class Course:
+    """A circuit as poses in order along it, the last one next to the first: `output` is continuous, modulo whole turns at the end."""
+
+    input_turns: bool
+    input: np.ndarray
+    output: np.ndarray
+
+    @property
+    def output_turns(self) -> bool:
+        """True where the output does not come back to its first angle but to another by whole turns."""
+        return bool(abs(self.output[-1] - self.output[0]) > np.pi)
+
+    @property
+    def motion_type(self) -> str:
+        """The name in the field's words."""
+        names = {
+            (True, True): "double-crank",
+            (True, False): "crank-rocker",
+            (False, True): "rocker-crank",
+            (False, False): "double-rocker",
+        }
+        return names[self.input_turns, self.output_turns]
+
+
+@dataclass(frozen=True)
+class Rssr:
+    """Two side links and the coupler's length."""
+
+    crank: Side
+    rocker: Side
+    coupler: float
+
+    @property
+    def size(self) -> float:
+        """The greatest of the four dimensions: crank, coupler, rocker, and the distance of the two circles' centres."""
+        ground = float(np.linalg.norm(self.crank.foot - self.rocker.foot))
+        return max(self.crank.radius, self.rocker.radius, self.coupler, ground)
+
+    def sides(self, driver: str) -> tuple[Side, Side]:
+        """The driving side link and the other one."""
+        return (self.crank, self.rocker) if driver == "crank" else (self.rocker, self.crank)
+
+    def closure_error(self, crank: np.ndarray, rocker: np.ndarray) -> np.ndarray:
+        """`| |A - B| - L2 |` in parts of the size."""
+        apart = np.linalg.norm(self.crank.turned(crank) - self.rocker.turned(rocker), axis=1)
+        return np.abs(apart - self.coupler) / self.size
+
+    def margin(self, inputs: np.ndarray, driver: str = "crank") -> np.ndarray:
+        """How far the coupler is from being too short or too long, in parts of the size: the loop closes where it is not negative."""
+        one, other = self.sides(driver)
+        nearest, farthest = other.distances(one.turned(inputs))
+        return np.minimum(self.coupler - nearest, farthest - self.coupler) / self.size
+
+    def outputs(self, inputs: np.ndarray, driver: str = "crank") -> np.ndarray:
+        """Both poses of the other side link at each input, (2, n), continuous along the inputs; NaN out of reach.
+
+        With the input held, `|A - B|^2` is `a + b cos x + c sin x`; three of its values give a, b and c.
+        """
+        one, other = self.sides(driver)
+        ball = one.turned(inputs)
+        quarter = [other.turned(np.array([angle]))[0] for angle in (0.0, np.pi / 2, np.pi)]
+        at_0, at_quarter, at_half = (np.sum((ball - p) ** 2, axis=1) for p in quarter)
+        a, b = (at_0 + at_half) / 2, (at_0 - at_half) / 2
+        c = at_quarter - a
+        amplitude = np.hypot(b, c)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            spread = np.arccos((self.coupler**2 - a) / amplitude)
+        phase = np.unwrap(np.arctan2(c, b))
+        return np.stack([phase + spread, phase - spread])
+
+    def limits(self, driver: str = "crank", samples: int = 2048) -> np.ndarray:
+        """Input angles in [0, 2 pi) where the coupler begins or ceases to reach: sampled, then each narrowed down in 64ths."""
+        grid = np.linspace(0, 2 * np.pi, samples + 1)
+        inside = self.margin(grid, driver) >= 0
+        found = np.flatnonzero(inside[:-1] != inside[1:])
+        low, high = grid[found], grid[found + 1]
+        parts = np.arange(65) / 64
+        for _ in range(8):
+            fine = low[:, None] + (high - low)[:, None] * parts
+            same = (self.margin(fine.ravel(), driver) >= 0).reshape(fine.shape) == inside[found][:, None]
+            last = np.argmin(np.concatenate([same, np.zeros((found.size, 1), bool)], axis=1), axis=1) - 1
+            each = np.arange(found.size)
+            low, high = fine[each, last.clip(0, 63)], fine[each, (last + 1).clip(1, 64)]
+        return (low + high) / 2
+
+    def clearance(self, samples: int = 2048) -> float:
+        """How far the linkage is from a change point: the least local extreme of the margin, either joint driving, in size."""
+        least = np.inf
+        for driver in ("crank", "rocker"):
+            margin = self.margin(2 * np.pi / samples * np.arange(samples), driver)
+            rise, fall = margin - np.roll(margin, 1), margin - np.roll(margin, -1)
+            extremes = margin[rise * fall >= 0]
+            least = min(least, float(np.min(np.abs(extremes), initial=np.inf)))
+        return least
+
+    def circuits(self, driver: str = "crank", samples: int = 2048) -> list[Course]:
+        """Every circuit, followed pose by pose."""
+        limits = self.limits(driver, samples)
+        if limits.size == 0:
+            if self.margin(np.zeros(1), driver)[0] < 0:
+                return []
+            inputs = np.linspace(0, 2 * np.pi, samples + 1)
+            return [Course(True, inputs, output) for output in self.outputs(inputs, driver)]
+        ends = np.append(limits, limits[0] + 2 * np.pi)
+        # poses crowd where the input turns back
+        crowded = (1 - np.cos(np.linspace(0, np.pi, samples)))[1:-1] / 2
+        courses = []
+        for start, end in zip(ends[:-1], ends[1:], strict=True):
+            if self.margin(np.array([(start + end) / 2]), driver)[0] < 0:
+                continue
+            there = start + (end - start) * crowded
+            first, second = self.outputs(there, driver)
+            second = second + 2 * np.pi * np.round((first[-1] - second[-1]) / (2 * np.pi))
+            inputs = np.concatenate([there, there[::-1]])
+            courses.append(Course(False, inputs, np.concatenate([first, second[::-1]])))
+        return courses
+
+    def precise(self) -> PreciseRssr:
+        """The same linkage in 80 digits."""
+        return PreciseRssr(self)
+
+
+class _PreciseSide:
+    def __init__(self, side: Side) -> None:
+        at, axis, ball = (mp.matrix(list(map(float, v))) for v in (side.at, side.axis, side.ball))
+        self.axis = axis / mp.norm(axis)
+        self.at, self.arm = at, ball - at
+        self.along = _dot(self.axis, self.arm) * self.axis
+        self.radial = self.arm - self.along
+        self.quarter = _cross(self.axis, self.arm)
+        self.centre = at + self.along
+
+    def ball(self, angle: mp.mpf) -> mp.matrix:
+        return self.centre + mp.cos(angle) * self.radial + mp.sin(angle) * self.quarter
+
+    def speed(self, angle: mp.mpf) -> mp.matrix:
+        return mp.cos(angle) * self.quarter - mp.sin(angle) * self.radial
+
+    def rotation(self, angle: mp.mpf) -> mp.matrix:
+        x, y, z = self.axis
+        skew = mp.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        return mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew
+
+
+def _dot(a: mp.matrix, b: mp.matrix) -> mp.mpf:
+    return mp.fdot(zip(a, b, strict=True))
+
+
+def _cross(a: mp.matrix, b: mp.matrix) -> mp.matrix:
+    return mp.matrix([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+class PreciseRssr:
+    """Poses and derivatives of an RSSR in 80 digits, from the closure and nothing else.
+
+    Use under `mp.workdps(DIGITS)`.
+    """
+
+    def __init__(self, rssr: Rssr) -> None:
+        self.crank, self.rocker = _PreciseSide(rssr.crank), _PreciseSide(rssr.rocker)
+        self.coupler = mp.mpf(rssr.coupler)
+        self.zero: mp.matrix | None = None
+
+    def follower(self, angle: mp.mpf, near: mp.mpf, driver: str = "crank") -> mp.mpf:
+        """The other joint's angle nearest to `near`, by Newton's method on `|A - B|^2 = L2^2`."""
+        one, other = (self.crank, self.rocker) if driver == "crank" else (self.rocker, self.crank)
+        ball = one.ball(angle)
+        x = mp.mpf(near)
+        for _ in range(60):
+            apart = other.ball(x) - ball
+            step = (_dot(apart, apart) - self.coupler**2) / (2 * _dot(apart, other.speed(x)))
+            x -= step
+            if abs(step) < mp.mpf(10) ** -(DIGITS // 2 + 5):  # the next step would be the square of this one
+                return x
+        raise ArithmeticError(f"no pose near {near} at input {angle}")
+
+    def condition(self, angle: mp.mpf, driver: str = "crank") -> mp.mpf:
+        """`rho^2 / (rho^2 - K^2)` of the closure `E cos x + F sin x = K`, `rho^2 = E^2 + F^2`."""
+        one, other = (self.crank, self.rocker) if driver == "crank" else (self.rocker, self.crank)
+        offset = one.ball(angle) - other.centre
+        e, f = _dot(offset, other.radial), _dot(offset, other.quarter)
+        k = (_dot(offset, offset) + _dot(other.radial, other.radial) - self.coupler**2) / 2
+        return (e * e + f * f) / (e * e + f * f - k * k)
+
+    def coupler_frame(self, crank: mp.mpf, rocker: mp.mpf) -> mp.matrix:
+        """Columns x to B, y = z cross x, z nearest to the crank's axis (design.md's rule for the idle spin)."""
+        x = self.rocker.ball(rocker) - self.crank.ball(crank)
+        x = x / mp.norm(x)
+        z = self.crank.axis - _dot(self.crank.axis, x) * x
+        z = z / mp.norm(z)
+        y = _cross(z, x)
+        return mp.matrix([[y_ for y_ in row] for row in zip(x, y, z, strict=True)])
+
+    def along(
+        self, rates: Sequence[float], near: float, driver: str, measure: Callable[[mp.mpf, mp.mpf], list[mp.mpf]]
+    ) -> list[list[mp.mpf]]:
+        """Each number of `measure(crank, rocker)` with three derivatives by time, for an input with the given rates.
+
+        `rates` are the input, its speed, acceleration and jerk; `near` picks the pose.
+        """
+        at, d1, d2, d3 = (mp.mpf(float(r)) for r in rates)
+        follower = self.follower(at, mp.mpf(float(near)), driver)
+        samples = []
+        for k in (-2, -1, 0, 1, 2):
+            t = k * STEP
+            angle = at + t * (d1 + t * (d2 / 2 + t * d3 / 6))
+            other = follower if k == 0 else self.follower(angle, follower, driver)
+            samples.append(measure(angle, other) if driver == "crank" else measure(other, angle))
+        return [central_differences(values) for values in zip(*samples, strict=True)]
+
+    def output(self, rates: Sequence[float], near: float, driver: str = "crank") -> list[mp.mpf]:
+        """The other joint's angle with three derivatives by time."""
+        pick = 1 if driver == "crank" else 0
+        return self.along(rates, near, driver, lambda crank, rocker: [(crank, rocker)[pick]])[0]
+
+
+def central_differences(values: Sequence[mp.mpf]) -> list[mp.mpf]:
+    """Value and three derivatives from five values a `STEP` apart."""
+    a, b, c, d, e = values
+    first = (8 * (d - b) - (e - a)) / (12 * STEP)
+    second = (16 * (b + d) - (a + e) - 30 * c) / (12 * STEP**2)
+    third = (e - a - 2 * (d - b)) / (2 * STEP**3)
+    return [c, first, second, third]
+
+
+def turns_zyx(rotation: mp.matrix) -> list[mp.mpf]:
+    """The angles of `Rz(t1) Ry(t2) Rx(t3)`."""
+    return [
+        mp.atan2(rotation[1, 0], rotation[0, 0]),
+        mp.atan2(-rotation[2, 0], mp.hypot(rotation[0, 0], rotation[1, 0])),
+        mp.atan2(rotation[2, 1], rotation[2, 2]),
+    ]
