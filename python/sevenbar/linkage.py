@@ -272,6 +272,7 @@ class Linkage:
             velocity = _sampled(dq[:, output_column], q[:, input_column])
             acceleration = _sampled(ddq[:, output_column], q[:, input_column])
         (least, least_at), (greatest, greatest_at) = raw["transmission"]
+        change_point = raw["motion_type"] == "change-point"
         return Circuit(
             index=index,
             motion_type=raw["motion_type"],
@@ -290,7 +291,7 @@ class Linkage:
             condition=raw["condition"],
             dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
             input_range=raw["input"],
-            output_range=raw["output"],
+            output_range=_followed_range(q[:, output_column]) if change_point else raw["output"],
             transmission=Extremes(least, least_at, greatest, greatest_at),
             velocity=velocity,
             acceleration=acceleration,
@@ -335,6 +336,13 @@ def _scaled(raw: list[tuple[float, float]] | None, factor: float) -> Extremes | 
         return None
     ends = sorted((value * factor, at) for value, at in raw)
     return Extremes(*ends[0], *ends[1])
+
+
+def _followed_range(angles: Floats) -> tuple[float, float] | None:
+    """The range of an output as sampled along its circuit; `None` where it gains a turn."""
+    if not np.isfinite(angles).all() or abs(angles[-1] - angles[0]) > math.pi:
+        return None
+    return float(angles.min()), float(angles.max())
 
 
 def _sampled(values: Floats, inputs: Floats) -> Extremes | None:

@@ -52,12 +52,14 @@ impl Extent {
 }
 
 /// Where a turning joint can be.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Domain {
     pub(super) extents: Vec<Extent>,
     /// Angles inside an extent where the two solutions meet and part again.
     pub(super) touches: Vec<f64>,
     pub(super) limits: Vec<f64>,
+    /// Where zeros meet, or are not told apart.
+    pub(super) change_points: Vec<f64>,
     /// True where rounding decides how many extents there are.
     pub(super) degenerate: bool,
 }
@@ -65,33 +67,21 @@ pub(super) struct Domain {
 impl Domain {
     pub(super) fn new(pair: &Pair) -> Self {
         let discriminant = pair.discriminant();
-        let Some(zeros) = discriminant.zeros(pair.discriminant_noise()) else {
-            return Self {
-                extents: vec![Extent::Full],
-                touches: Vec::new(),
-                limits: Vec::new(),
-                degenerate: true,
-            };
+        let Some(mut zeros) = discriminant.zeros(pair.discriminant_noise()) else {
+            return Self { extents: vec![Extent::Full], degenerate: true, ..Self::default() };
         };
-        let degenerate = zeros.iter().any(|z| z.multiple);
-        let angles: Vec<f64> = zeros
-            .iter()
-            .map(|z| {
-                if z.multiple {
-                    z.angle
-                } else {
-                    pair.polished_limit(z.angle).rem_euclid(TAU)
-                }
-            })
-            .collect();
+        for zero in zeros.iter_mut().filter(|z| !z.multiple) {
+            zero.angle = pair.polished_limit(zero.angle).rem_euclid(TAU);
+        }
+        zeros.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+        let change_points: Vec<f64> = zeros.iter().filter(|z| z.multiple).map(|z| z.angle).collect();
+        let angles: Vec<f64> = zeros.iter().map(|z| z.angle).collect();
         let count = angles.len();
         if count == 0 {
             let assembles = discriminant.value(0.0) > 0.0;
             return Self {
                 extents: if assembles { vec![Extent::Full] } else { Vec::new() },
-                touches: Vec::new(),
-                limits: Vec::new(),
-                degenerate,
+                ..Self::default()
             };
         }
         let next = |i: usize| {
@@ -117,7 +107,9 @@ impl Domain {
                 .map(|i| angles[i])
                 .collect(),
             // a simple zero that changes no sign is one that rounding made
-            degenerate: degenerate || (0..count).any(|i| !zeros[i].multiple && open[i] == before(i)),
+            degenerate: !change_points.is_empty()
+                || (0..count).any(|i| !zeros[i].multiple && open[i] == before(i)),
+            change_points,
         };
         if domain.limits.is_empty() && open[0] {
             domain.extents.push(Extent::Full);

@@ -68,7 +68,8 @@ pub struct Circuit {
     pub motion_type: MotionType,
     /// The range of the input.
     pub input: Extent,
-    /// The range of the output, in the turn in which the circuit's first row lies.
+    /// The range of the output, in the turn in which the circuit's first row lies; `Full` at a change point, where only
+    /// following the circuit tells it.
     pub output: Extent,
     /// The branch of the closed form on the first pass.
     pub first_branch: usize,
@@ -183,24 +184,11 @@ impl Rssr {
             }
         }
         place_output_dead_centres(&mut circuits, &forward, &backward, &outputs);
-        let degenerate_angles = || {
-            let zeros = forward.discriminant().zeros(forward.discriminant_noise());
-            zeros
-                .unwrap_or_default()
-                .into_iter()
-                .filter(|z| z.multiple)
-                .map(|z| z.angle)
-                .collect()
-        };
         Motion {
             input,
             motion_type,
             limits: inputs.limits,
-            change_points: if motion_type == MotionType::ChangePoint {
-                degenerate_angles()
-            } else {
-                Vec::new()
-            },
+            change_points: inputs.change_points,
             circuits,
         }
     }
@@ -224,7 +212,10 @@ fn circuit(forward: &Pair, outputs: &Domain, mut circuit: Circuit) -> Circuit {
         a.distance(output_at(inside))
             .total_cmp(&b.distance(output_at(inside)))
     });
-    circuit.output = nearest.map_or(Extent::Full, |e| e.holding(output_at(first)));
+    // at a change point the ranges of two circuits run together, so the output is followed instead of placed
+    if circuit.motion_type != MotionType::ChangePoint {
+        circuit.output = nearest.map_or(Extent::Full, |e| e.holding(output_at(first)));
+    }
     if let Extent::Arc(start, end) = circuit.input {
         for (branch, driver) in [start, end].into_iter().enumerate() {
             let reach = forward.reach(driver);
