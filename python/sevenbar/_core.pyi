@@ -1,9 +1,11 @@
 """The Rust core: arrays in, arrays out."""
 
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 import numpy.typing as npt
+
+__all__ = ["CoreError", "Rssr", "__version__", "simd_level"]
 
 _Floats = npt.NDArray[np.float64]
 
@@ -12,6 +14,7 @@ __version__: str
 class CoreError(ValueError):
     """A request that the core cannot take."""
 
+@final
 class Rssr:
     """The RSSR in closed form."""
 

@@ -285,3 +285,93 @@ fn block<const FUSED: bool, const ORDER: usize>(
     }
     careful != 0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rigid::Pose;
+    use crate::rssr::{Input, Rssr};
+
+    /// Skew axes 1.3 apart, neither square nor meeting.
+    fn skew() -> Rssr {
+        let pose = |rotation, translation| Pose { rotation, translation };
+        let straight = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let (s, c) = 0.7_f64.sin_cos();
+        let tilted = [[0.0, c, -s], [-1.0, 0.0, 0.0], [0.0, s, c]];
+        let links = [[0.4, 0.0, 0.1], [1.9, 0.0, 0.0], [0.9, 0.0, -0.2]].map(|t| pose(straight, t));
+        Rssr::new(
+            pose(straight, [0.0, 0.0, 0.5]),
+            pose(tilted, [1.3, 0.2, 0.0]),
+            links,
+        )
+        .unwrap()
+    }
+
+    fn batch(pair: &Pair, inputs: &[f64], rates: BatchRates) -> Vec<Vec<f64>> {
+        let mut arrays = vec![vec![0.0; 2 * inputs.len()]; 4];
+        let mut slices: Vec<&mut [f64]> = arrays.iter_mut().map(Vec::as_mut_slice).collect();
+        pair.outputs(inputs, rates, &mut slices).unwrap();
+        arrays
+    }
+
+    #[test]
+    fn vector_code_agrees_with_taylor_arithmetic() {
+        let inputs: Vec<f64> = (0..1000).map(|k| 0.013 * f64::from(k) - 5.0).collect();
+        let law: Vec<[f64; 3]> = inputs.iter().map(|x| [1.0 + x, 2.0 - x * x, *x]).collect();
+        let column = |k: usize| law.iter().map(|d| d[k]).collect::<Vec<f64>>();
+        let (d1, d2, d3) = (column(0), column(1), column(2));
+        for input in [Input::Crank, Input::Rocker] {
+            let pair = skew().pair(input);
+            let arrays = batch(&pair, &inputs, BatchRates::Law([&d1, &d2, &d3]));
+            for (n, (&x, d)) in inputs.iter().zip(&law).enumerate() {
+                for branch in 0..2 {
+                    let driver = Taylor::<4>::from_derivatives(&[x, d[0], d[1], d[2]]);
+                    let Some(want) = pair.follower_taylor(driver, branch) else {
+                        assert!(arrays[1][branch * inputs.len() + n].is_nan());
+                        continue;
+                    };
+                    for (order, array) in arrays.iter().enumerate() {
+                        let (got, want) = (array[branch * inputs.len() + n], want.derivative(order));
+                        assert!(
+                            (got - want).abs() <= 1e-11 * want.abs().max(1.0),
+                            "{x} {order} {got} {want}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_least_machine_agrees_with_the_best() {
+        let pair = skew().pair(Input::Crank);
+        let inputs: Vec<f64> = (0..777)
+            .map(|k| 0.01 * f64::from(k) + 1e7 * f64::from(k % 2))
+            .collect();
+        let best = batch(&pair, &inputs, BatchRates::Constant(2.0));
+        let mut arrays = vec![vec![0.0; 2 * inputs.len()]; 4];
+        let mut slices: Vec<&mut [f64]> = arrays.iter_mut().map(Vec::as_mut_slice).collect();
+        let blocks = Blocks {
+            pair: &pair,
+            inputs: &inputs,
+            rates: BatchRates::Constant(2.0),
+            outputs: &mut slices,
+        };
+        Ordered::<3>(blocks).run::<false>();
+        for (a, b) in arrays.iter().flatten().zip(best.iter().flatten()) {
+            let close = (a - b).abs() <= 1e-9 * b.abs().max(1.0);
+            assert!(close || (a.is_nan() && b.is_nan()), "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_named() {
+        let pair = skew().pair(Input::Crank);
+        let mut out = vec![0.0; 6];
+        let error = pair.outputs(&[0.0, 1.0, f64::NAN], BatchRates::Constant(1.0), &mut [&mut out]);
+        assert!(matches!(
+            error,
+            Err(Error::NotFinite { what: "input", index: 2, .. })
+        ));
+    }
+}

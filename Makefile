@@ -1,0 +1,100 @@
+# All commands work in the virtual environment $(VENV), which the first one makes with $(PYTHON).
+# Another Python beside it: make check PYTHON=python3.13 VENV=.venv-3.13
+
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+
+PYTHON ?= python3
+VENV ?= .venv
+DIST ?= dist
+BIN := $(VENV)/bin
+# a stale Cargo.lock is mended on a desk and refused in CI
+LOCKED := $(if $(CI),--locked)
+# with the folders, so that a file taken away counts as a change
+RUST := Cargo.toml Cargo.lock $(shell find crates)
+# a build is due, too, where somebody removed the compiled core
+LOST := $(if $(wildcard python/sevenbar/_core*.so),,lost-core)
+
+# maturin takes these before its own folder
+export VIRTUAL_ENV := $(abspath $(VENV))
+unexport CONDA_PREFIX
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
+export PIP_QUIET := 1
+
+.PHONY: help
+help:  ## This list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+.PHONY: demo
+demo: $(VENV)/.installed  ## Analyse the RSSR paper's linkage; tables and figures into demo/
+	$(BIN)/sevenbar analyze rssr --out demo
+
+.PHONY: check
+check: lint rust-test  ## The lints and the fast tests, for every change
+	$(BIN)/pytest -m "not slow"
+
+.PHONY: test
+test: $(VENV)/.installed-dev rust-test  ## Every test, the long proofs too
+	$(BIN)/pytest
+
+# import-linter without its cache, which has passed for a module that was gone
+.PHONY: lint
+lint: $(VENV)/.installed-dev  ## Formatting, lints, types, the stub of the core, layers
+	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || \
+	  { echo "rustfmt or clippy is missing; add them: rustup component add rustfmt clippy" >&2; exit 1; }
+	cargo fmt --check
+	cargo clippy $(LOCKED) --quiet --workspace --all-targets -- -D warnings
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/stubtest --mypy-config-file pyproject.toml sevenbar._core
+	$(BIN)/lint-imports --no-logo --no-cache
+
+.PHONY: rust-test
+rust-test: have-cargo
+	cargo test $(LOCKED) --quiet --workspace --release
+
+.PHONY: format
+format: $(VENV)/.installed-dev  ## Write the formatting and the safe repairs into the sources
+	cargo fmt
+	$(BIN)/ruff check --fix-only
+	$(BIN)/ruff format
+
+.PHONY: wheel
+wheel: $(VENV)/.maturin  ## Build dist/*.whl
+	$(BIN)/maturin build --release $(LOCKED) --out "$(DIST)"
+
+.PHONY: bench
+bench: $(VENV)/.installed  ## Time the batch output against NumPy
+	$(BIN)/python benches/rssr_output.py
+
+.PHONY: clean
+clean:  ## Remove all that these commands made, the environment too
+	rm -rf $(VENV) target build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -f python/sevenbar/_core*.so
+	find python tests benches examples -name __pycache__ -prune -exec rm -rf {} +
+
+# The environment: each stamp stands for a step that is done and need not be done again.
+
+$(BIN)/pip:
+	@command -v $(PYTHON) >/dev/null || { echo "no $(PYTHON) found; install Python 3.11 or later, or name one: make PYTHON=..." >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit("Sevenbar needs Python 3.11 or later and $(PYTHON) is %d.%d; name another: make PYTHON=..." % sys.version_info[:2] if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.maturin: pyproject.toml | have-cargo $(BIN)/pip
+	$(BIN)/pip install $$($(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"])')
+	@touch $@
+
+# installed in place: a change of a Python file needs no new build
+$(VENV)/.installed: $(VENV)/.maturin $(RUST) $(LOST)
+	$(BIN)/maturin develop --release $(LOCKED)
+	@touch $@
+
+$(VENV)/.installed-dev: $(VENV)/.maturin $(RUST) $(LOST)
+	$(BIN)/maturin develop --release $(LOCKED) --extras dev
+	@touch $(VENV)/.installed $@
+
+.PHONY: have-cargo lost-core
+have-cargo:
+	@command -v cargo >/dev/null || { echo "no cargo found; install Rust 1.89 or later (https://rustup.rs) and open a new shell" >&2; exit 1; }
+lost-core:
