@@ -26,11 +26,11 @@ class Rssr:
     def outputs(
         self,
         inputs: _Floats,
-        order: int,
+        outputs: list[_Floats],
         input: str,
         speed: float,
         law: tuple[_Floats, ...] | None = None,
-    ) -> list[_Floats]: ...
+    ) -> None: ...
     def assembly_modes(self, theta: float, input: str) -> tuple[_Floats, _Floats]: ...
     def classify(self, input: str) -> str: ...
     def motion(

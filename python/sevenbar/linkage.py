@@ -194,10 +194,12 @@ class Linkage:
             law = tuple(
                 _rate(name, 0.0 if value is None else value, array.size) for name, value in rates.items()
             )
+        results = [np.empty((2, array.size)) for _ in range(order + 1)]
         try:
-            return Output(*self._rssr.outputs(array, int(order), side, constant, law))
+            self._rssr.outputs(array, results, side, constant, law)
         except _core.CoreError as error:
             raise RequestError(str(error)) from None
+        return Output(*results)
 
     def assembly_modes(self, theta: float, *, input: str | None = None) -> Modes:
         """Every assembly mode at one input [rad], by the closed form; none where the loop does not close."""

@@ -2,7 +2,7 @@
 
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyReadonlyArray3,
+    PyReadonlyArray3, PyReadwriteArray2,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -83,42 +83,35 @@ impl Rssr {
         self.0.size()
     }
 
-    /// Both branches for many inputs: `order + 1` arrays of shape (2, n).
-    #[pyo3(signature = (inputs, order, input, speed, law=None))]
+    /// Fills arrays of shape (2, n) with both branches and their derivatives, one array for each order from 0.
+    #[pyo3(signature = (inputs, outputs, input, speed, law=None))]
     fn outputs<'py>(
         &self,
         py: Python<'py>,
         inputs: PyReadonlyArray1<'py, f64>,
-        order: usize,
+        mut outputs: Vec<PyReadwriteArray2<'py, f64>>,
         input: &str,
         speed: f64,
         law: Option<[PyReadonlyArray1<'py, f64>; 3]>,
-    ) -> PyResult<Vec<Bound<'py, PyArray2<f64>>>> {
+    ) -> PyResult<()> {
         let pair = self.0.pair(input_named(input)?);
         let values = flat("input", &inputs)?;
-        let arrays: Vec<_> = (0..=order.min(rssr::MAX_ORDER + 1))
-            .map(|_| PyArray2::<f64>::zeros(py, [2, values.len()], false))
-            .collect();
         let rates = match &law {
             None => BatchRates::Constant(speed),
             Some([d1, d2, d3]) => {
                 BatchRates::Law([flat("speed", d1)?, flat("acceleration", d2)?, flat("jerk", d3)?])
             }
         };
-        {
-            let mut guards: Vec<_> = arrays.iter().map(|a| a.readwrite()).collect();
-            let mut slices = Vec::with_capacity(guards.len());
-            for guard in &mut guards {
-                slices.push(
-                    guard
-                        .as_slice_mut()
-                        .map_err(|e| CoreError::new_err(e.to_string()))?,
-                );
-            }
-            py.detach(|| pair.outputs(values, rates, &mut slices))
-                .map_err(raise)?;
-        }
-        Ok(arrays)
+        let mut slices = outputs
+            .iter_mut()
+            .map(|array| {
+                array
+                    .as_slice_mut()
+                    .map_err(|e| CoreError::new_err(e.to_string()))
+            })
+            .collect::<PyResult<Vec<_>>>()?;
+        py.detach(|| pair.outputs(values, rates, &mut slices))
+            .map_err(raise)
     }
 
     /// Joint values (m, 8) and closure errors (m,) of each assembly mode at one input.

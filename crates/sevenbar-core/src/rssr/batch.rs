@@ -263,7 +263,8 @@ fn block<const FUSED: bool, const ORDER: usize>(
             }
             let f_aa = driver_square - along(qx, qy, qz);
             let f_ab = across(dx, dy);
-            let f_bb = outward(x, y);
+            // by the closure itself the second derivative by the output is K
+            let f_bb = k;
             let a = (f_aa + v * multiply_add::<FUSED>(v, f_bb, 2.0 * f_ab)) * over;
             target[2][i] = multiply_add::<FUSED>(a * d1, d1, v * d2);
             if ORDER == 2 {

@@ -1,0 +1,49 @@
+"""What the documentation shows is what the program does."""
+
+import contextlib
+import doctest
+import importlib
+import io
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["errors", "files", "forms", "linkage", "motion", "schema", "units"])
+def test_docstring_examples_give_what_they_show(name):
+    assert doctest.testmod(importlib.import_module(f"sevenbar.{name}")).failed == 0
+
+
+def test_the_examples_of_the_readme_print_what_their_comments_say():
+    (code,) = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    lines = printed.getvalue().splitlines()
+    promised = re.findall(r"print\(.*?\)\s+# (.*)", code)
+    assert lines[0] == promised[0] == "crank-rocker"
+    for line, promise in zip(lines[1:3], promised[1:3], strict=True):
+        assert [float(x) for x in line.split()] == pytest.approx(
+            [float(x) for x in promise.split()], rel=1e-12
+        )
+
+
+def test_the_report_in_the_readme_is_the_report_of_today():
+    command = [sys.executable, "-m", "sevenbar.cli", "analyze", "examples/rssr.toml"]
+    report = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    numbers_of_rounding = re.compile(r"\d\.\de-1\d")
+    lines = [numbers_of_rounding.sub("~", line.rstrip()) for line in report.splitlines()]
+    shown = numbers_of_rounding.sub("~", README)
+    assert all(f"    {line}\n" in shown for line in lines if line)
+
+
+def test_links_of_the_documentation_lead_somewhere():
+    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for target in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")):
+            assert (page.parent / target).exists(), f"{page.name}: {target}"
