@@ -60,7 +60,7 @@ class Drawing:
         """Each joint turns the later link against the earlier one: the crank against the ground, the ground against the rocker."""
         crank = Side(self.crank_at, self.crank_axis, self.ball_a)
         rocker = Side(self.rocker_at, -self.rocker_axis, self.ball_b)
-        return Rssr(crank, rocker, float(np.linalg.norm(self.ball_a - self.ball_b)))
+        return Rssr(crank, rocker, float(np.linalg.norm(self.ball_a - self.ball_b)), drawn=True)
 
     def moved(self, rotation: np.ndarray, shift: np.ndarray, scale: float = 1.0) -> Drawing:
         """The same linkage in another frame and another unit of length."""

@@ -5,7 +5,7 @@ the loop closes where |A - B| = L2. Everything here follows from that one senten
 
 - in NumPy, where a turning ball comes within reach of the other circle, and the two poses there;
 - in mpmath, the pose by Newton's method on |A - B|^2 = L2^2, and every derivative by time by central differences
-  with a step of 1e-20 in 80 digits, which leaves 35 digits or more.
+  with a step of 1e-20 in 80 digits: 20 digits are left of a third derivative, more of the lower ones.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import mpmath as mp
 import numpy as np
 
-#: Digits carried, and the step of the central differences: the step's square is lost, and its cube in rounding.
+#: Digits carried, and the step of the central differences.
 DIGITS = 80
 STEP = mp.mpf(10) ** -20
 
@@ -84,11 +84,12 @@ class Course:
 
 @dataclass(frozen=True)
 class Rssr:
-    """Two side links and the coupler's length."""
+    """Two side links and the coupler's length; `drawn` says that all links' frames are the report frame with every joint at zero."""
 
     crank: Side
     rocker: Side
     coupler: float
+    drawn: bool = False
 
     @property
     def size(self) -> float:
@@ -196,10 +197,19 @@ class _PreciseSide:
     def speed(self, angle: mp.mpf) -> mp.matrix:
         return mp.cos(angle) * self.quarter - mp.sin(angle) * self.radial
 
+    def frame(self, angle: mp.mpf) -> mp.matrix:
+        """Columns from the foot to the ball, a quarter turn on, and along the axis."""
+        radius = mp.norm(self.radial)
+        return _columns((self.ball(angle) - self.centre) / radius, self.speed(angle) / radius, self.axis)
+
     def rotation(self, angle: mp.mpf) -> mp.matrix:
         x, y, z = self.axis
         skew = mp.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         return mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew
+
+
+def _columns(*columns: mp.matrix) -> mp.matrix:
+    return mp.matrix([list(row) for row in zip(*columns, strict=True)])
 
 
 def _dot(a: mp.matrix, b: mp.matrix) -> mp.mpf:
@@ -218,8 +228,9 @@ class PreciseRssr:
 
     def __init__(self, rssr: Rssr) -> None:
         self.crank, self.rocker = _PreciseSide(rssr.crank), _PreciseSide(rssr.rocker)
-        self.coupler = mp.mpf(rssr.coupler)
-        self.zero: mp.matrix | None = None
+        # a drawing gives the coupler by its two balls
+        self.coupler = mp.norm(self.crank.ball(mp.mpf(0)) - self.rocker.ball(mp.mpf(0))) if rssr.drawn else mp.mpf(rssr.coupler)
+        self.drawn = rssr.drawn
 
     def follower(self, angle: mp.mpf, near: mp.mpf, driver: str = "crank") -> mp.mpf:
         """The other joint's angle nearest to `near`, by Newton's method on `|A - B|^2 = L2^2`."""
@@ -234,22 +245,64 @@ class PreciseRssr:
                 return x
         raise ArithmeticError(f"no pose near {near} at input {angle}")
 
-    def condition(self, angle: mp.mpf, driver: str = "crank") -> mp.mpf:
-        """`rho^2 / (rho^2 - K^2)` of the closure `E cos x + F sin x = K`, `rho^2 = E^2 + F^2`."""
+    def reach(self, angle: mp.mpf, driver: str = "crank") -> tuple[mp.mpf, mp.mpf, mp.mpf]:
+        """How far the coupler reaches past the nearest and stays short of the farthest point of the other circle, squared; and the terms.
+
+        `L2^2 - near^2`, `far^2 - L2^2` and `L2^2 + far^2`; at a limit of the driver one of the first two is zero.
+        """
         one, other = (self.crank, self.rocker) if driver == "crank" else (self.rocker, self.crank)
         offset = one.ball(angle) - other.centre
-        e, f = _dot(offset, other.radial), _dot(offset, other.quarter)
-        k = (_dot(offset, offset) + _dot(other.radial, other.radial) - self.coupler**2) / 2
-        return (e * e + f * f) / (e * e + f * f - k * k)
+        z = _dot(other.axis, offset)
+        height, radius = mp.norm(offset - z * other.axis), mp.norm(other.radial)
+        near, far = z**2 + (height - radius) ** 2, z**2 + (height + radius) ** 2
+        coupler = self.coupler**2
+        return coupler - near, far - coupler, coupler + far
 
-    def coupler_frame(self, crank: mp.mpf, rocker: mp.mpf) -> mp.matrix:
+    def condition(self, angle: mp.mpf, driver: str = "crank") -> mp.mpf:
+        """How a relative error of the squared lengths grows in the product of the two reaches, on which all rates rest."""
+        past, short, terms = self.reach(angle, driver)
+        return terms / past + terms / short
+
+    def rotations(self, crank: mp.mpf, rocker: mp.mpf) -> list[mp.matrix]:
+        """The directions of crank, coupler and rocker, as design.md lays down.
+
+        Drawn form: turned against the drawn pose. Dimension form: x along the link (crank and coupler towards the next
+        joint, as the rocker, whose next joint is its axis), z along the side link's axis.
+        """
+        coupler = self._coupler_frame(crank, rocker)
+        if self.drawn:
+            zero = mp.mpf(0)
+            at_zero = self._coupler_frame(zero, zero)
+            return [self.crank.rotation(crank), coupler * at_zero.T, self.rocker.rotation(rocker)]
+        first, third = self.crank.frame(crank), self.rocker.frame(rocker)
+        return [first, coupler, third * mp.diag([-1, -1, 1])]
+
+    def _coupler_frame(self, crank: mp.mpf, rocker: mp.mpf) -> mp.matrix:
         """Columns x to B, y = z cross x, z nearest to the crank's axis (design.md's rule for the idle spin)."""
         x = self.rocker.ball(rocker) - self.crank.ball(crank)
         x = x / mp.norm(x)
         z = self.crank.axis - _dot(self.crank.axis, x) * x
         z = z / mp.norm(z)
-        y = _cross(z, x)
-        return mp.matrix([[y_ for y_ in row] for row in zip(x, y, z, strict=True)])
+        return _columns(x, _cross(z, x), z)
+
+    def turns(self, crank: mp.mpf, rocker: mp.mpf) -> list[mp.mpf]:
+        """The three turns of ball A, then of ball B: each link against the one before as `Rz(t1) Ry(t2) Rx(t3)`."""
+        first, second, third = self.rotations(crank, rocker)
+        return _turns_zyx(first.T * second) + _turns_zyx(second.T * third)
+
+    def point(self, link: int, at: Sequence[float], crank: mp.mpf, rocker: mp.mpf) -> list[mp.mpf]:
+        """A point of link 1, 2 or 3 in the report frame, `at` as the forms write it."""
+        origins = [self.crank.at, self.crank.ball(crank), self.rocker.ball(rocker)]
+        own = mp.matrix(list(map(float, at)))
+        if self.drawn:
+            zero = mp.mpf(0)
+            own = own - [self.crank.at, self.crank.ball(zero), self.rocker.ball(zero)][link - 1]
+        return list(origins[link - 1] + self.rotations(crank, rocker)[link - 1] * own)
+
+    def coupler_sine(self, crank: mp.mpf, rocker: mp.mpf) -> mp.mpf:
+        """The sine of the angle between the coupler and the crank's axis: at zero the rule for its spin names no direction."""
+        x = self.rocker.ball(rocker) - self.crank.ball(crank)
+        return mp.norm(_cross(x, self.crank.axis)) / mp.norm(x)
 
     def along(
         self, rates: Sequence[float], near: float, driver: str, measure: Callable[[mp.mpf, mp.mpf], list[mp.mpf]]
@@ -266,7 +319,7 @@ class PreciseRssr:
             angle = at + t * (d1 + t * (d2 / 2 + t * d3 / 6))
             other = follower if k == 0 else self.follower(angle, follower, driver)
             samples.append(measure(angle, other) if driver == "crank" else measure(other, angle))
-        return [central_differences(values) for values in zip(*samples, strict=True)]
+        return [_central_differences(values) for values in zip(*samples, strict=True)]
 
     def output(self, rates: Sequence[float], near: float, driver: str = "crank") -> list[mp.mpf]:
         """The other joint's angle with three derivatives by time."""
@@ -274,7 +327,7 @@ class PreciseRssr:
         return self.along(rates, near, driver, lambda crank, rocker: [(crank, rocker)[pick]])[0]
 
 
-def central_differences(values: Sequence[mp.mpf]) -> list[mp.mpf]:
+def _central_differences(values: Sequence[mp.mpf]) -> list[mp.mpf]:
     """Value and three derivatives from five values a `STEP` apart."""
     a, b, c, d, e = values
     first = (8 * (d - b) - (e - a)) / (12 * STEP)
@@ -283,7 +336,7 @@ def central_differences(values: Sequence[mp.mpf]) -> list[mp.mpf]:
     return [c, first, second, third]
 
 
-def turns_zyx(rotation: mp.matrix) -> list[mp.mpf]:
+def _turns_zyx(rotation: mp.matrix) -> list[mp.mpf]:
     """The angles of `Rz(t1) Ry(t2) Rx(t3)`."""
     return [
         mp.atan2(rotation[1, 0], rotation[0, 0]),
