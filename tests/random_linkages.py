@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from reference_rssr import Rssr, Side
 
 import sevenbar as sb
+from reference_rssr import Rssr, Side
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,9 @@ class Drawing:
 
     def moved(self, rotation: np.ndarray, shift: np.ndarray, scale: float = 1.0) -> Drawing:
         """The same linkage in another frame and another unit of length."""
-        places = [scale * (rotation @ p + shift) for p in (self.crank_at, self.ball_a, self.ball_b, self.rocker_at)]
+        places = [
+            scale * (rotation @ p + shift) for p in (self.crank_at, self.ball_a, self.ball_b, self.rocker_at)
+        ]
         crank_axis, rocker_axis = rotation @ self.crank_axis, rotation @ self.rocker_axis
         return Drawing(places[0], crank_axis, places[1], places[2], places[3], rocker_axis)
 
@@ -119,7 +121,9 @@ def nearly_parallel(rng: np.random.Generator, tilt: float = 0.2) -> Drawing:
     axes = [np.array([0.0, 0.0, 1.0]) + tilt * rng.normal(size=3) for _ in range(2)]
     sign = rng.choice([-1.0, 1.0])
     angles, radii = rng.uniform(-np.pi, np.pi, size=2), 10 ** rng.uniform(-0.4, 0.4, size=2)
-    arms = [r * np.array([np.cos(t), np.sin(t), tilt * rng.normal()]) for r, t in zip(radii, angles, strict=True)]
+    arms = [
+        r * np.array([np.cos(t), np.sin(t), tilt * rng.normal()]) for r, t in zip(radii, angles, strict=True)
+    ]
     return Drawing(crank_at, axes[0], crank_at + arms[0], rocker_at + arms[1], rocker_at, sign * axes[1])
 
 

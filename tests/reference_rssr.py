@@ -229,7 +229,11 @@ class PreciseRssr:
     def __init__(self, rssr: Rssr) -> None:
         self.crank, self.rocker = _PreciseSide(rssr.crank), _PreciseSide(rssr.rocker)
         # a drawing gives the coupler by its two balls
-        self.coupler = mp.norm(self.crank.ball(mp.mpf(0)) - self.rocker.ball(mp.mpf(0))) if rssr.drawn else mp.mpf(rssr.coupler)
+        self.coupler = (
+            mp.norm(self.crank.ball(mp.mpf(0)) - self.rocker.ball(mp.mpf(0)))
+            if rssr.drawn
+            else mp.mpf(rssr.coupler)
+        )
         self.drawn = rssr.drawn
 
     def follower(self, angle: mp.mpf, near: mp.mpf, driver: str = "crank") -> mp.mpf:
@@ -305,7 +309,11 @@ class PreciseRssr:
         return mp.norm(_cross(x, self.crank.axis)) / mp.norm(x)
 
     def along(
-        self, rates: Sequence[float], near: float, driver: str, measure: Callable[[mp.mpf, mp.mpf], list[mp.mpf]]
+        self,
+        rates: Sequence[float],
+        near: float,
+        driver: str,
+        measure: Callable[[mp.mpf, mp.mpf], list[mp.mpf]],
     ) -> list[list[mp.mpf]]:
         """Each number of `measure(crank, rocker)` with three derivatives by time, for an input with the given rates.
 

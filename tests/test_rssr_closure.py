@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from random_linkages import Dimensions, Drawing, assembled_square, mixed, short_coupler, skew
-from reference_rssr import Rssr
 
 import sevenbar as sb
+from random_linkages import Dimensions, Drawing, assembled_square, mixed, short_coupler, skew
+from reference_rssr import Rssr
 
 #: Of the size: the closure error that is allowed, and the margin within which rounding decides what is reached.
 CLOSED = 1e-12
@@ -21,9 +21,15 @@ UNDECIDED = 1e-13
 DRIVERS = pytest.mark.parametrize("driver", ["crank", "rocker"])
 
 
-def inputs_of_every_kind(rng: np.random.Generator, linkage: sb.Linkage, driver: str, count: int) -> np.ndarray:
+def inputs_of_every_kind(
+    rng: np.random.Generator, linkage: sb.Linkage, driver: str, count: int
+) -> np.ndarray:
     """Any angle, 1e5 and 1e8 rad, and 1e-12 to 1e-3 on either side of each limit."""
-    kinds = [rng.uniform(-np.pi, np.pi, count), rng.uniform(-1e5, 1e5, count // 8), rng.uniform(-1e8, 1e8, count // 8)]
+    kinds = [
+        rng.uniform(-np.pi, np.pi, count),
+        rng.uniform(-1e5, 1e5, count // 8),
+        rng.uniform(-1e8, 1e8, count // 8),
+    ]
     for limit in linkage.motion(samples=4, input=driver).limits:
         apart = 10 ** rng.uniform(-12, -3, size=10)
         kinds += [limit + apart, limit - apart, [limit]]
@@ -127,7 +133,9 @@ def test_whole_turns_of_the_input_change_nothing(driver: str) -> None:
         inputs = rng.uniform(-np.pi, np.pi, 40)
         inputs = inputs[np.abs(description.reference().margin(inputs, driver)) > 1e-2]
         for turns in (1, -3, 16_000):
-            here, there = (linkage.output(x, input=driver).position for x in (inputs, inputs + 2 * np.pi * turns))
+            here, there = (
+                linkage.output(x, input=driver).position for x in (inputs, inputs + 2 * np.pi * turns)
+            )
             np.testing.assert_array_equal(np.isnan(here), np.isnan(there))
             apart = np.abs((here - there + np.pi) % (2 * np.pi) - np.pi)
             assert np.nanmax(apart, initial=0) < 1e-9
@@ -142,8 +150,12 @@ def test_a_coupler_too_short_or_too_long_has_no_pose() -> None:
         assert (output.status == "no-solution").all()
 
 
-@pytest.mark.parametrize("ball_b", [(0.3, 1.7, 0.4), (0.9, 0.9, 0.8)], ids=["never there", "there in any pose"])
-def test_a_ball_that_passes_the_other_axis_closes_on_either_side_of_it(ball_b: tuple[float, float, float]) -> None:
+@pytest.mark.parametrize(
+    "ball_b", [(0.3, 1.7, 0.4), (0.9, 0.9, 0.8)], ids=["never there", "there in any pose"]
+)
+def test_a_ball_that_passes_the_other_axis_closes_on_either_side_of_it(
+    ball_b: tuple[float, float, float],
+) -> None:
     """At a quarter turn A meets the rocker's axis: rho = 0, and B is out of reach or, where L2 fits, anywhere."""
     drawing = Drawing(
         crank_at=np.array([0.0, 0.0, 0.0]),

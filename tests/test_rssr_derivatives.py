@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import mpmath as mp
 import numpy as np
 import pytest
-from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew
-from reference_rssr import DIGITS, PreciseRssr
 
 import sevenbar as sb
+from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew
+from reference_rssr import DIGITS, PreciseRssr
 
 ROUNDING = 2.0**-53
 
@@ -61,7 +61,9 @@ def relative_errors(
     for order in (1, 2, 3):
         want = [component[order] for component in exact]
         size = max(unit**order, *(abs(w) for w in want))
-        errors.append(max(float(abs(mp.mpf(float(g)) - w) / size) for g, w in zip(got[:, order - 1], want, strict=True)))
+        errors.append(
+            max(float(abs(mp.mpf(float(g)) - w) / size) for g, w in zip(got[:, order - 1], want, strict=True))
+        )
     return tuple(errors)
 
 
@@ -136,7 +138,9 @@ def circuit_errors(seed: int, linkages: int, form: str) -> dict[str, list[Error]
                 trace = circuit.point(link, tuple(place))
                 moved = np.stack([trace.velocity[row], trace.acceleration[row], trace.jerk[row]], axis=-1)
                 first = 8 + 3 * (link - 1)
-                scaled = [[value / reference.size for value in component] for component in exact[first : first + 3]]
+                scaled = [
+                    [value / reference.size for value in component] for component in exact[first : first + 3]
+                ]
                 compared["points"].append((moved / reference.size, scaled))
             for name, vectors in compared.items():
                 each = [relative_errors(values, want, rates) for values, want in vectors]
@@ -208,7 +212,11 @@ def test_the_reference_agrees_with_the_derivatives_of_eq_8() -> None:
 
     def eq_8(alpha: mp.mpf) -> mp.mpf:
         y = L1 * mp.sin(alpha) - D
-        k = (L1**2 + M**2 + D**2 + L3**2 + N**2 - square) / 2 - L1 * M * mp.cos(alpha) - L1 * D * mp.sin(alpha)
+        k = (
+            (L1**2 + M**2 + D**2 + L3**2 + N**2 - square) / 2
+            - L1 * M * mp.cos(alpha)
+            - L1 * D * mp.sin(alpha)
+        )
         return mp.asin(k / (L3 * mp.hypot(N, y))) - mp.atan2(y, N)
 
     for alpha in (mp.mpf("0.3"), mp.mpf("2.1"), mp.mpf("5.5")):
@@ -224,7 +232,9 @@ def test_rates_of_the_output_hold_12_11_and_10_digits_away_from_dead_centres(
     assert (worst(of_output, 1e4) < 10 * np.array(RELATIVE)).all()
 
 
-def test_rates_of_the_output_lose_no_more_than_their_condition_takes(of_output: list[Error], form: str) -> None:
+def test_rates_of_the_output_lose_no_more_than_their_condition_takes(
+    of_output: list[Error], form: str
+) -> None:
     assert max(e.condition for e in of_output) > 1e8
     assert (worst_over_condition(of_output) < FACTORS[form]).all()
 

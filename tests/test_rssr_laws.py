@@ -12,9 +12,17 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, random_rotation, short_coupler, skew
 
 import sevenbar as sb
+from random_linkages import (
+    Dimensions,
+    Drawing,
+    assembled_square,
+    nearly_parallel,
+    random_rotation,
+    short_coupler,
+    skew,
+)
 
 TURN = 2 * np.pi
 DRIVERS = ["crank", "rocker"]
@@ -125,7 +133,10 @@ def test_a_coarse_walk_finds_the_same_unwrapped_output_as_a_fine_one(
         assert np.abs(np.diff(fine.output)).max() < 1.5
         for passing in (0, 1):
             rows = (coarse.status == "ok") & (coarse.branch == passing)
-            same = [np.argmin(np.abs(fine.input - x) + 100.0 * (fine.branch != passing)) for x in coarse.input[rows]]
+            same = [
+                np.argmin(np.abs(fine.input - x) + 100.0 * (fine.branch != passing))
+                for x in coarse.input[rows]
+            ]
             np.testing.assert_allclose(coarse.output[rows], fine.output[same], rtol=0, atol=1e-9)
 
 
@@ -159,7 +170,10 @@ def test_a_linkage_carried_to_another_frame_moves_the_same(
     rng = np.random.default_rng(seed)
     rotation, shift, scale = random_rotation(rng), rng.normal(size=3), 10**decade
     moved = drawing.moved(rotation, shift, scale)
-    here, there = drawing.linkage().motion(samples=24, input=driver), moved.linkage().motion(samples=24, input=driver)
+    here, there = (
+        drawing.linkage().motion(samples=24, input=driver),
+        moved.linkage().motion(samples=24, input=driver),
+    )
 
     assert there.motion_type == here.motion_type
     np.testing.assert_allclose(there.limits, here.limits, rtol=0, atol=1e-10)
@@ -176,7 +190,9 @@ def test_a_linkage_carried_to_another_frame_moves_the_same(
             other = b.point(link, tuple(scale * (rotation @ place + shift)))
             span = np.abs(one.position).max() + 1
             moved_position = scale * (one.position @ rotation.T + shift)
-            np.testing.assert_allclose(other.position[calm], moved_position[calm], rtol=0, atol=1e-8 * scale * span)
+            np.testing.assert_allclose(
+                other.position[calm], moved_position[calm], rtol=0, atol=1e-8 * scale * span
+            )
             velocity = scale * one.velocity @ rotation.T
             size = 1 + np.abs(one.velocity[calm]).max(initial=0)
             np.testing.assert_allclose(other.velocity[calm], velocity[calm], rtol=0, atol=1e-7 * scale * size)
@@ -230,7 +246,9 @@ def test_velocity_there_and_back_multiply_to_one(description: Dimensions | Drawi
 
 @laws
 @given(linkages, drivers, st.lists(st.floats(-3, 3), min_size=3, max_size=3))
-def test_a_law_obeys_the_chain_rule(description: Dimensions | Drawing, driver: str, rates: list[float]) -> None:
+def test_a_law_obeys_the_chain_rule(
+    description: Dimensions | Drawing, driver: str, rates: list[float]
+) -> None:
     """With b, b', b'' by the input: b' u, b'' u^2 + b' u', b''' u^3 + 3 b'' u u' + b' u''."""
     reference, linkage = description.reference(), description.linkage()
     inputs = np.linspace(-3, 3, 40)
@@ -242,7 +260,11 @@ def test_a_law_obeys_the_chain_rule(description: Dimensions | Drawing, driver: s
     want_acceleration = plain.acceleration * u**2 + plain.velocity * du
     want_jerk = plain.jerk * u**3 + 3 * plain.acceleration * u * du + plain.velocity * ddu
     scale = 1 + np.abs(plain.velocity) + np.abs(plain.acceleration) + np.abs(plain.jerk)
-    for got, want in ((law.velocity, want_velocity), (law.acceleration, want_acceleration), (law.jerk, want_jerk)):
+    for got, want in (
+        (law.velocity, want_velocity),
+        (law.acceleration, want_acceleration),
+        (law.jerk, want_jerk),
+    ):
         assert (np.abs(got - want) < 1e-11 * scale).all()
 
 
@@ -262,7 +284,9 @@ def test_rows_stand_on_the_grid_and_at_the_dead_centres(
         numbers = inputs[~at_limit] / step
         np.testing.assert_allclose(numbers, np.round(numbers), rtol=0, atol=1e-9)
         if circuit.input_range is None:
-            np.testing.assert_array_equal(np.round(numbers), np.sign(speed) * np.arange(samples * circuit.turns))
+            np.testing.assert_array_equal(
+                np.round(numbers), np.sign(speed) * np.arange(samples * circuit.turns)
+            )
             assert not at_limit.any()
             continue
         start, end = circuit.input_range
@@ -292,7 +316,9 @@ def test_every_row_has_the_input_s_rates_but_a_dead_centre_has_none(
         assert np.isfinite(circuit.q[dead]).all()
         assert np.isinf(circuit.condition[dead]).all()
         elapsed = np.diff(circuit.time)
-        np.testing.assert_allclose(elapsed, np.abs(np.diff(circuit.input)) / abs(speed), rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(
+            elapsed, np.abs(np.diff(circuit.input)) / abs(speed), rtol=1e-9, atol=1e-12
+        )
 
 
 @laws
@@ -328,7 +354,11 @@ def test_rows_are_the_closed_form_on_their_branch(description: Dimensions | Draw
         mode = circuit.mode[rows], np.arange(rows.size)
         column = circuit.output_column
         assert np.abs(wrapped(output.position[mode] - circuit.q[rows, column])).max(initial=0) < 1e-11
-        for got, want in ((circuit.dq, output.velocity), (circuit.ddq, output.acceleration), (circuit.dddq, output.jerk)):
+        for got, want in (
+            (circuit.dq, output.velocity),
+            (circuit.ddq, output.acceleration),
+            (circuit.dddq, output.jerk),
+        ):
             np.testing.assert_allclose(got[rows, column], want[mode], rtol=1e-9, atol=1e-9)
 
 
@@ -350,7 +380,9 @@ def test_a_law_s_rows_close_or_are_missing_where_the_loop_cannot(
         assert missing[reference.margin(circuit.input, driver) < -1e-12].all()
 
 
-@pytest.mark.xfail(strict=True, reason="the rows of a law do not ask whether the input lies in this circuit's range")
+@pytest.mark.xfail(
+    strict=True, reason="the rows of a law do not ask whether the input lies in this circuit's range"
+)
 @laws
 @given(linkages, drivers)
 def test_a_law_s_sample_has_its_two_poses_on_one_circuit_each(
@@ -409,7 +441,9 @@ MISSED = pytest.mark.xfail(strict=True, reason="a peak narrower than a cell of 1
 
 @laws
 @given(linkages, drivers)
-def test_the_output_is_at_an_extreme_where_it_is_said_to_be(description: Dimensions | Drawing, driver: str) -> None:
+def test_the_output_is_at_an_extreme_where_it_is_said_to_be(
+    description: Dimensions | Drawing, driver: str
+) -> None:
     assume(description.reference().clearance() > 1e-3)
     linkage = description.linkage()
     for circuit in linkage.motion(samples=24, input=driver):
@@ -458,10 +492,14 @@ def test_the_transmission_angle_is_zero_at_an_input_dead_centre(
     for circuit in description.linkage().motion(samples=4, input=driver):
         if circuit.input_range is not None:
             assert circuit.transmission.lowest == 0.0
-            assert np.abs(wrapped(circuit.transmission.lowest_at - np.array(circuit.input_range))).min() < 1e-12
+            assert (
+                np.abs(wrapped(circuit.transmission.lowest_at - np.array(circuit.input_range))).min() < 1e-12
+            )
 
 
-@pytest.mark.parametrize("off", [1e-3, 1e-5, 1e-7, *(pytest.param(off, marks=MISSED) for off in (1e-9, 1e-11))])
+@pytest.mark.parametrize(
+    "off", [1e-3, 1e-5, 1e-7, *(pytest.param(off, marks=MISSED) for off in (1e-9, 1e-11))]
+)
 def test_the_extremes_hold_the_narrow_peak_beside_a_change_point(off: float) -> None:
     """A crank that just turns past the place where it once stuck: the rates rise there within sqrt(off) of a radian."""
     for M, N, L1, L3, D, L2, meeting in BESIDE_CHANGE_POINTS:
@@ -474,7 +512,10 @@ def test_the_extremes_hold_the_narrow_peak_beside_a_change_point(off: float) -> 
             assert circuit.velocity is not None
             assert circuit.acceleration is not None
             mode = circuit.mode[0]
-            for values, extremes in ((output.velocity[mode], circuit.velocity), (output.acceleration[mode], circuit.acceleration)):
+            for values, extremes in (
+                (output.velocity[mode], circuit.velocity),
+                (output.acceleration[mode], circuit.acceleration),
+            ):
                 height = np.abs(values).max()
                 assert extremes.lowest <= values.min() + 1e-4 * height
                 assert extremes.highest >= values.max() - 1e-4 * height
@@ -511,7 +552,9 @@ def test_the_time_ratio_is_that_of_the_two_strokes(description: Dimensions | Dra
 
 @laws
 @given(linkages, drivers)
-def test_assembly_modes_are_the_rows_of_the_circuits_there(description: Dimensions | Drawing, driver: str) -> None:
+def test_assembly_modes_are_the_rows_of_the_circuits_there(
+    description: Dimensions | Drawing, driver: str
+) -> None:
     linkage = description.linkage()
     motion = linkage.motion(samples=12, input=driver)
     for k in range(12):
@@ -519,7 +562,9 @@ def test_assembly_modes_are_the_rows_of_the_circuits_there(description: Dimensio
         rows = [
             circuit.q[row]
             for circuit in motion
-            for row in np.flatnonzero((np.abs(wrapped(circuit.input - theta)) < 1e-9) & (circuit.status == "ok"))
+            for row in np.flatnonzero(
+                (np.abs(wrapped(circuit.input - theta)) < 1e-9) & (circuit.status == "ok")
+            )
         ]
         modes = linkage.assembly_modes(theta, input=driver)
         if abs(description.reference().margin(np.array([theta]), driver)[0]) < 1e-9:
@@ -579,7 +624,11 @@ def test_a_circuit_goes_smoothly_through_its_change_points(lengths: tuple[float,
         assert circuit.residual.max() < 1e-12 * reference.size
         assert reference.closure_error(circuit.q[:, 0], circuit.q[:, 7]).max() < 1e-12
         moving = np.flatnonzero(circuit.status == "ok")
-        next_to = [(i, k) for i, k in itertools.pairwise(moving) if k - i <= 2 and circuit.branch[i] == circuit.branch[k]]
+        next_to = [
+            (i, k)
+            for i, k in itertools.pairwise(moving)
+            if k - i <= 2 and circuit.branch[i] == circuit.branch[k]
+        ]
         calm = [(i, k) for i, k in next_to if np.abs(circuit.ddq[[i, k], circuit.output_column]).max() < 50]
         assert len(calm) > 1000
         before, after = np.array(calm).T

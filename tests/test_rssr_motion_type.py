@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 import mpmath as mp
 import numpy as np
 import pytest
-from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew, square
-from reference_rssr import Course, Rssr
 
 import sevenbar as sb
+from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew, square
+from reference_rssr import Course, Rssr
 
 TURN = 2 * np.pi
 
@@ -138,7 +138,8 @@ def nearest_circuit(course: Course, circuits: list[sb.Circuit]) -> int:
     """The circuit with a row nearest to a pose of the course."""
     pose = course.input.size // 4
     distances = [
-        np.min(np.hypot(apart(c.input, course.input[pose]), apart(c.output, course.output[pose]))) for c in circuits
+        np.min(np.hypot(apart(c.input, course.input[pose]), apart(c.output, course.output[pose])))
+        for c in circuits
     ]
     return int(np.argmin(distances))
 
@@ -162,7 +163,9 @@ def test_output_dead_centres_are_the_limits_of_the_other_joint(cases: list[Case]
 def test_input_dead_centres_close_and_are_the_limits(cases: list[Case]) -> None:
     for case in cases:
         centres = [d for circuit in case.motion for d in circuit.dead_centres if d.kind == "input"]
-        np.testing.assert_allclose(np.sort([d.input % TURN for d in centres]), case.motion.limits, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(
+            np.sort([d.input % TURN for d in centres]), case.motion.limits, rtol=0, atol=1e-14
+        )
         for centre in centres:
             pose = np.array([[centre.input], [centre.output]])
             crank, rocker = pose if case.driver == "crank" else pose[::-1]
@@ -180,7 +183,9 @@ def test_limits_are_exact_to_1e_12_times_their_condition() -> None:
     rng = np.random.default_rng(4)
     compared = 0
     for index in range(60):
-        description = (assembled_square, skew, nearly_parallel)[index % 3](rng, *((2.0,) if index % 3 < 2 else ()))
+        description = (assembled_square, skew, nearly_parallel)[index % 3](
+            rng, *((2.0,) if index % 3 < 2 else ())
+        )
         precise = description.reference().precise()
         for circuit in description.linkage().motion(samples=4):
             for centre in circuit.dead_centres:
@@ -198,10 +203,13 @@ def test_square_axes_give_no_strict_double_crank() -> None:
     """A fact measured beforehand (design.md): none in 10^6; a single one here would be worth a paper, or a defect."""
     rng = np.random.default_rng(12)
     seen = Counter(
-        (assembled_square, square)[index % 2](rng, 2.0).linkage().motion(samples=4).motion_type for index in range(3000)
+        (assembled_square, square)[index % 2](rng, 2.0).linkage().motion(samples=4).motion_type
+        for index in range(3000)
     )
     assert seen["double-crank"] == 0
-    assert min(seen[kind] for kind in ("crank-rocker", "rocker-crank", "double-rocker", "cannot-assemble")) > 100
+    assert (
+        min(seen[kind] for kind in ("crank-rocker", "rocker-crank", "double-rocker", "cannot-assemble")) > 100
+    )
 
 
 # Change points: planar linkages with Grashof's sum in balance, and lengths tuned until two limits meet.
@@ -259,7 +267,9 @@ def meetings(reference: Rssr, driver: str) -> list[Meeting]:
 
         sampled = distance(grid)
         for sign in (1.0, -1.0):
-            peak = (sign * sampled >= sign * np.roll(sampled, 1)) & (sign * sampled > sign * np.roll(sampled, -1))
+            peak = (sign * sampled >= sign * np.roll(sampled, 1)) & (
+                sign * sampled > sign * np.roll(sampled, -1)
+            )
             low, high = grid[peak] - step, grid[peak] + step
             for _ in range(40):
                 left, right = low + 0.382 * (high - low), high - 0.382 * (high - low)
@@ -294,7 +304,9 @@ def motion_with_coupler(dims: Dimensions, coupler: float, driver: str) -> sb.Mot
     return replace(dims, L2=float(coupler)).linkage().motion(samples=36, input=driver)
 
 
-def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(tuned: list[tuple[Dimensions, str, Meeting]]) -> None:
+def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(
+    tuned: list[tuple[Dimensions, str, Meeting]],
+) -> None:
     for dims, driver, meeting in tuned:
         for off in (0.0, 1e-15, -1e-15, 1e-14, -1e-14):
             motion = motion_with_coupler(dims, meeting.coupler * (1 + off), driver)
@@ -302,15 +314,21 @@ def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(tuned: list[tuple
             assert apart(motion.change_points, meeting.input).min() < 1e-6
 
 
-def test_a_thousandth_from_a_change_point_it_is_not_said_to_be_there(tuned: list[tuple[Dimensions, str, Meeting]]) -> None:
+def test_a_thousandth_from_a_change_point_it_is_not_said_to_be_there(
+    tuned: list[tuple[Dimensions, str, Meeting]],
+) -> None:
     either_side = Counter()
     for dims, driver, meeting in tuned:
-        types = [motion_with_coupler(dims, meeting.coupler * (1 + off), driver).motion_type for off in (1e-3, -1e-3)]
+        types = [
+            motion_with_coupler(dims, meeting.coupler * (1 + off), driver).motion_type
+            for off in (1e-3, -1e-3)
+        ]
         assert "change-point" not in types
         either_side[tuple(types)] += 1
         # and there the type changes, or two circuits become one
         counts = [
-            len(motion_with_coupler(dims, meeting.coupler * (1 + off), driver).circuits) for off in (1e-3, -1e-3)
+            len(motion_with_coupler(dims, meeting.coupler * (1 + off), driver).circuits)
+            for off in (1e-3, -1e-3)
         ]
         assert types[0] != types[1] or counts[0] != counts[1]
     assert len(either_side) > 2
@@ -347,9 +365,33 @@ def test_change_points_are_told_for_either_input(tuned: list[tuple[Dimensions, s
 def test_a_change_point_is_never_without_its_place() -> None:
     """L2 is 5e-13 off a meeting of limits: the crank's two are 2e-6 rad apart, the rocker's less than 1e-6."""
     for M, N, L1, L3, D, L2, driver in (
-        (-0.5775799838356194, 0.0, 0.3907652557062132, 1.2592168484711055, -2.0617012801780015, 1.3794916591461217, "crank"),
-        (-1.5920235083494556, -0.9045459237864312, 2.1636310468686313, 0.767529602327351, 2.4988152463102145, 1.934256051692037, "rocker"),
-        (-0.40985747021826513, 0.33106307824875614, 0.3975677225248954, 0.8924513186000709, 2.1527666863708967, 1.7433695978164019, "crank"),
+        (
+            -0.5775799838356194,
+            0.0,
+            0.3907652557062132,
+            1.2592168484711055,
+            -2.0617012801780015,
+            1.3794916591461217,
+            "crank",
+        ),
+        (
+            -1.5920235083494556,
+            -0.9045459237864312,
+            2.1636310468686313,
+            0.767529602327351,
+            2.4988152463102145,
+            1.934256051692037,
+            "rocker",
+        ),
+        (
+            -0.40985747021826513,
+            0.33106307824875614,
+            0.3975677225248954,
+            0.8924513186000709,
+            2.1527666863708967,
+            1.7433695978164019,
+            "crank",
+        ),
     ):
         motion = sb.rssr(M=M, N=N, L1=L1, L3=L3, D=D, L2=L2).motion(input=driver)
         assert motion.motion_type == "change-point"

@@ -14,9 +14,9 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 import pytest
-from random_linkages import Dimensions
 
 import sevenbar as sb
+from random_linkages import Dimensions
 
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text())
 
@@ -43,7 +43,9 @@ def test_the_paper_s_linkage_is_a_crank_rocker() -> None:
 
 
 @pytest.mark.parametrize("quantity", ["angle", "velocity", "acceleration"])
-def test_the_computed_column_of_table_1_comes_out_to_all_its_digits(eq_8_circuit: sb.Circuit, quantity: str) -> None:
+def test_the_computed_column_of_table_1_comes_out_to_all_its_digits(
+    eq_8_circuit: sb.Circuit, quantity: str
+) -> None:
     extremes = getattr(eq_8_circuit, quantity)
     for got, printed, digit in zip(
         (extremes.lowest, extremes.highest), TABLE_1["computed"][quantity], LAST_DIGIT[quantity], strict=True
@@ -56,15 +58,21 @@ def test_the_exact_column_comes_out_to_ten_digits(eq_8_circuit: sb.Circuit, quan
     extremes = getattr(eq_8_circuit, quantity)
     # its 360001 samples are 1.7e-5 rad apart and miss a peak by up to 4e-10 of its height
     want = tuple(TABLE_1["exact"][quantity])
-    assert (extremes.lowest, extremes.highest) == pytest.approx(want, rel=1e-9 if quantity == "acceleration" else 1e-10)
+    assert (extremes.lowest, extremes.highest) == pytest.approx(
+        want, rel=1e-9 if quantity == "acceleration" else 1e-10
+    )
 
 
 @pytest.mark.parametrize(("order", "quantity"), list(enumerate(["angle", "velocity", "acceleration"])))
-def test_each_extreme_is_that_of_eq_8_in_forty_digits(eq_8_circuit: sb.Circuit, order: int, quantity: str) -> None:
+def test_each_extreme_is_that_of_eq_8_in_forty_digits(
+    eq_8_circuit: sb.Circuit, order: int, quantity: str
+) -> None:
     extremes = getattr(eq_8_circuit, quantity)
     for value, at in ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at)):
         with mp.workdps(40):
-            where = mp.findroot(lambda a: mp.diff(lambda x: printed_eq_8(x, PAPER), a, order + 1), at, tol=1e-20)
+            where = mp.findroot(
+                lambda a: mp.diff(lambda x: printed_eq_8(x, PAPER), a, order + 1), at, tol=1e-20
+            )
             want = float(10**order * mp.diff(lambda x: printed_eq_8(x, PAPER), where, order))
         assert at == pytest.approx(float(where), abs=1e-10)
         assert value == pytest.approx(want, rel=1e-13)
@@ -196,7 +204,9 @@ def test_L2_given_or_left_out_is_the_same_linkage() -> None:
 def test_another_L2_is_another_linkage() -> None:
     shorter = the_paper_s(L2=950.0)
     assert shorter.lengths == pytest.approx((250, 950, 550))
-    assert shorter.output([0.3]).position[0, 0] != pytest.approx(the_paper_s().output([0.3]).position[0, 0], abs=1e-3)
+    assert shorter.output([0.3]).position[0, 0] != pytest.approx(
+        the_paper_s().output([0.3]).position[0, 0], abs=1e-3
+    )
 
 
 @pytest.mark.parametrize("driver", ["crank", "rocker"])

@@ -19,7 +19,7 @@ from matplotlib import rc_context
 from matplotlib.artist import Artist
 from PIL import Image
 
-from sevenbar import plot
+from sevenbar import plot, scene
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
 from sevenbar.motion import Circuit, Floats, Motion
 
@@ -91,7 +91,7 @@ def _reported(
             progress(done, total)
 
 
-def _rows(motion: Motion, path: plot.Walk, frames: int) -> Floats:
+def _rows(motion: Motion, path: scene.Walk, frames: int) -> Floats:
     """Where on the walk each picture stands: rows, with shares of the way to the next, (frames,)."""
     if motion.law is None:
         times = path.time[0] + (path.time[-1] - path.time[0]) * np.arange(frames) / frames
@@ -102,21 +102,21 @@ def _rows(motion: Motion, path: plot.Walk, frames: int) -> Floats:
 
 def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture]:
     """The pictures (height, width, 3), one after the other; only what moves is drawn anew."""
-    path, frame = plot.walk(motion, circuit), plot.skeleton(motion, circuit)
+    path, frame = scene.walk(motion, circuit), scene.skeleton(motion, circuit)
     figure = plot.new_figure(*SIZE)
     figure.set_dpi(DPI)
     space = figure.add_axes((0.0, 0.02, SIZE[1] / SIZE[0], 1.0), projection="3d")
-    plot.stage(space, motion, frame)
-    plot.label(space, frame, frame.pose(0), (plot.A0, plot.B0))
+    scene.stage(space, motion, frame)
+    scene.label(space, frame, frame.pose(0), (scene.A0, scene.B0))
     curve = figure.add_axes((0.65, 0.3, 0.32, 0.5))
     drawn = [line for line in plot.passes(motion) if line.circuit is circuit]
     plot.panel(curve, motion, drawn, "angle", "input")
     figure.suptitle(f"{plot.title(motion)}\ncircuit {circuit.index}", fontsize=11)
-    figure.legend(handles=plot.link_keys(motion, frame), loc="lower left", ncols=4, frameon=False)
+    figure.legend(handles=scene.link_keys(motion, frame), loc="lower left", ncols=4, frameon=False)
     keys = plot.curve_keys(curve, drawn)
     figure.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.81, 0.2), ncols=2, frameon=False)
 
-    bars = plot.bars(space, motion, frame)
+    bars = scene.bars(space, motion, frame)
     (cursor,) = curve.plot([], [], color="#303030", lw=1.0, zorder=5)
     (dot,) = curve.plot([], [], "o", color="#303030", ms=7, zorder=6)
     reading = figure.text(0.65, 0.83, "", fontsize=10)
@@ -134,7 +134,7 @@ def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture
     count = np.arange(len(path.time))
     for row in _rows(motion, path, frames):
         angle, output = (math.degrees(np.interp(row, count, values)) for values in (path.input, path.output))
-        plot.put(bars, frame.pose(float(row)))
+        scene.put(bars, frame.pose(float(row)))
         cursor.set_data([angle, angle], curve.get_ylim())
         dot.set_data([angle], [output])
         time = float(np.interp(row, count, path.time))

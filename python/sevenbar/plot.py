@@ -8,7 +8,6 @@ import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,22 +17,19 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patheffects import Normal, withStroke
 from matplotlib.ticker import MaxNLocator
-from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[import-untyped]
 
 from sevenbar.errors import OutputError, RequestError, shown
-from sevenbar.linkage import Linkage, inverse
-from sevenbar.motion import Circuit, Extremes, Floats, Integers, Motion
+from sevenbar.motion import Circuit, Extremes, Floats, Motion
+from sevenbar.scene import Skeleton, bars, label, link_keys, put, short, skeleton, stage, walk
 
 #: What a figure can be written as.
 FORMATS = ("png", "svg", "pdf")
+
 PNG_DPI = 200
 
-#: Colours of Okabe and Ito, told apart by colour-blind readers too.
-INPUT, OUTPUT, COUPLER, GROUND = "#0072B2", "#D55E00", "#009E73", "#808080"
-POINT_COLOURS = ("#CC79A7", "#E69F00", "#56B4E9", "#000000")
 CIRCUIT_COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7")
+
 LINE_STYLES = ("-", (0, (5, 1.6)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
 
 #: Names may hold dollars, so mathematical text is off.
@@ -47,13 +43,6 @@ STYLE: dict[Any, Any] = {
     "grid.color": "#e2e2e2",
 }
 
-#: Places of the pose: the two centres and the two balls; further named points come after them.
-A0, A, B, B0 = 0, 1, 2, 3
-#: The places between which each link lies.
-LINK_ENDS = {1: (A0, A), 2: (A, B), 3: (B, B0), 4: (B0, A0)}
-
-#: The thinnest side of the drawn box, as a share of its longest.
-THINNEST_BOX = 0.4
 #: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it).
 CUT = {"velocity": 4.0, "acceleration": 9.0}
 
@@ -65,98 +54,6 @@ LABELS = {
     "velocity": "angular velocity [rad/s]",
     "acceleration": "angular acceleration [rad/s²]",
 }
-
-
-@dataclass(frozen=True, eq=False)
-class Walk:
-    """A circuit as it is walked; closed by its first row, a turn on, unless a law drives.
-
-    `rows` index the circuit; `input`, `output` [rad] and `time` [s] run on over the closure, each (n,).
-    `passes` are the stretches between input dead centres, both ends included.
-    """
-
-    rows: Integers
-    input: Floats
-    output: Floats
-    time: Floats
-    passes: tuple[slice, ...]
-
-
-def walk(motion: Motion, circuit: Circuit) -> Walk:
-    """The rows of a circuit in the order of its motion."""
-    count = len(circuit.time)
-    starts = [0, *(np.flatnonzero(np.diff(circuit.branch)) + 1), count]
-    rows = np.arange(count)
-    if motion.law is not None or count < 2:
-        passes = tuple(slice(a, b) for a, b in pairwise(starts))
-        return Walk(rows, circuit.input, circuit.output, circuit.time, passes)
-    way = math.copysign(circuit.turns * math.tau, motion.speed)
-    first = circuit.output[0]
-    ahead = 2 * circuit.output[-1] - circuit.output[-2]
-    gained = 0.0 if circuit.output_range is not None else round((ahead - first) / math.tau) * math.tau
-    last = circuit.input[0] + way
-    period = circuit.time[-1] + abs(last - circuit.input[-1]) / abs(motion.speed)
-    return Walk(
-        np.append(rows, 0),
-        np.append(circuit.input, last),
-        np.append(circuit.output, first + gained),
-        np.append(circuit.time, period),
-        tuple(slice(a, b + 1) for a, b in pairwise(starts)),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class Skeleton:
-    """The places of a linkage along a walk, in the report frame [length].
-
-    `places` (n, 4 + k, 3): A0, A, B, B0 and k further named points, `names` of each; `axes` (2, 3) unit
-    vectors along the joints at A0 and B0; `stays` the chains of places that tie further points to links.
-    """
-
-    places: Floats
-    names: tuple[str, ...]
-    axes: Floats
-    stays: tuple[tuple[int, int, int], ...]
-
-    def pose(self, row: float) -> Floats:
-        """The places (4 + k, 3) at a row, between two rows on the straight line between them."""
-        low = min(int(row), len(self.places) - 1)
-        high, share = min(low + 1, len(self.places) - 1), row - low
-        between: Floats = (1 - share) * self.places[low] + share * self.places[high]
-        return self.places[low] if share == 0 else between
-
-    @property
-    def moving(self) -> tuple[int, ...]:
-        """The places whose paths are drawn."""
-        return (A, B, *range(4, len(self.names)))
-
-    @property
-    def span(self) -> float:
-        """The largest extent along x, y or z [length]."""
-        flat = self.places.reshape(-1, 3)
-        return float((np.nanmax(flat, axis=0) - np.nanmin(flat, axis=0)).max())
-
-
-def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
-    """The places of the linkage along the walk of a circuit."""
-    linkage: Linkage = motion.linkage
-    rows = walk(motion, circuit).rows
-    traces = [circuit.point(point.link, point.at).position[rows] for point in linkage.points]
-    solved = np.flatnonzero(~np.isnan(traces[0]).any(axis=1) & ~np.isnan(traces[1]).any(axis=1))
-    if solved.size == 0:
-        raise RequestError(
-            f"circuit: circuit {circuit.index} has no pose at the inputs of the law; nothing to draw"
-        )
-    frames = (linkage.base, linkage.base @ inverse(linkage.transforms[-1]))
-    axes = np.stack([frame[:3, 2] for frame in frames])
-    centres = []
-    for frame, axis, trace in zip(frames, axes, traces, strict=False):
-        arm = trace[solved[0]] - frame[:3, 3]
-        centres.append(np.broadcast_to(frame[:3, 3] + (arm @ axis) * axis, trace.shape))
-    places = np.stack([centres[0], traces[0], traces[1], centres[1], *traces[2:]], axis=1)
-    names = ("A₀", "A", "B", "B₀", *(_short(point.name, 24) for point in linkage.points[2:]))
-    ends = [LINK_ENDS[point.link] for point in linkage.points[2:]]
-    return Skeleton(places, names, axes, tuple((a, 4 + i, b) for i, (a, b) in enumerate(ends)))
 
 
 def configuration(motion: Motion, circuit: int = 0, positions: int = 6) -> Figure:
@@ -213,11 +110,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 def title(motion: Motion) -> str:
     """The linkage's name and motion type."""
-    return f"{_short(motion.linkage.name, 60)}: {motion.motion_type}"
-
-
-def _short(text: str, width: int) -> str:
-    return text if len(text) <= width else text[: width - 1] + "…"
+    return f"{short(motion.linkage.name, 60)}: {motion.motion_type}"
 
 
 def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -> list[int]:
@@ -229,202 +122,6 @@ def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -
     start = 0.0 if circuit.input_range is None else 0.5
     wanted = (np.arange(positions) + start) / positions * travel[-1]
     return [int(solved[np.argmin(np.abs(travel - place))]) for place in wanted]
-
-
-def stage(axes: Any, motion: Motion, frame: Skeleton) -> None:
-    """Draws into 3D axes what stands still: paths, ground, bearings, joint axes; and sets the view."""
-    axes.computed_zorder = False
-    elevation, azimuth = _view(frame)
-    axes.view_init(elevation, azimuth)
-    axes.set_proj_type("ortho")
-    drawn = [frame.places.reshape(-1, 3)]
-    for place, colour in zip(frame.moving, (*_ends_colours(motion), *_point_colours(frame)), strict=True):
-        path = _arc(frame, place) if place in (A, B) else frame.places[:, place]
-        axes.plot(*path.T, color=colour, lw=1.1, alpha=0.85, zorder=2)
-    unit = 0.02 * frame.span
-    ground = frame.pose(0)[[A0, B0]]
-    axes.plot(*ground.T, color=GROUND, lw=3, alpha=0.6, zorder=2, solid_capstyle="round")
-    middle = np.nanmean(frame.places.reshape(-1, 3), axis=0)
-    for centre, axis, arm in zip(ground, frame.axes, _arms(frame), strict=True):
-        away = float(axis @ (centre - middle))
-        down = -math.copysign(1.0, axis[2] or 1.0)
-        side = axis * (math.copysign(1.0, away) if abs(away) > 0.1 * frame.span else down)
-        drawn.append(_bearing(axes, centre, side, unit, min(unit, max(0.4 * unit, 0.4 * arm))))
-    _equal_box(axes, np.concatenate(drawn), motion.linkage.length_unit)
-
-
-def _arc(frame: Skeleton, ball: int) -> Floats:
-    """The arc of a circle that A or B runs over, smooth however coarse the rows are."""
-    end = 0 if ball == A else 1
-    centre = frame.pose(0)[(A0, B0)[end]]
-    arms = frame.places[:, ball] - centre
-    arms = arms[~np.isnan(arms).any(axis=1)]
-    across = np.cross(frame.axes[end], arms[0])
-    turn = np.unwrap(np.arctan2(arms @ across, arms @ arms[0]))
-    grid = np.linspace(turn.min(), turn.max(), 241)[:, None]
-    arc: Floats = centre + np.cos(grid) * arms[0] + np.sin(grid) * across
-    return arc
-
-
-def _arms(frame: Skeleton) -> tuple[float, float]:
-    distances = np.linalg.norm(frame.places[:, [A, B]] - frame.places[:, [A0, B0]], axis=2)
-    crank, rocker = np.nanmax(distances, axis=0)
-    return float(crank), float(rocker)
-
-
-def _view(frame: Skeleton) -> tuple[float, float]:
-    """Elevation and azimuth [deg] that show both circles open and the ground link from the side."""
-    # none along an axis of the box, whose labels would fall together
-    azimuths = (np.arange(-180.0, 180.0, 90.0)[:, None] + [20.0, 30.0, 45.0, 60.0, 70.0]).ravel()
-    elevation, azimuth = (grid.ravel() for grid in np.meshgrid([20.0, 30.0, 40.0, 50.0], azimuths))
-    up, round_ = np.radians(elevation), np.radians(azimuth)
-    towards = np.stack([np.cos(up) * np.cos(round_), np.cos(up) * np.sin(round_), np.sin(up)], axis=1)
-    opened = np.abs(towards @ frame.axes.T).min(axis=1)
-    ground = frame.pose(0)[B0] - frame.pose(0)[A0]
-    end_on = np.abs(towards @ ground) / (np.linalg.norm(ground) or 1.0)
-    # among like views the usual one, x to the right and y away
-    unusual = (1 - np.cos(np.radians(azimuth + 60.0))) / 2 + np.abs(elevation - 30.0) / 100
-    best = int(np.argmax(np.minimum(opened, 0.6) - 0.4 * end_on**2 - 0.3 * unusual))
-    return float(elevation[best]), float(azimuth[best])
-
-
-def _bearing(axes: Any, centre: Floats, side: Floats, unit: float, radius: float) -> Floats:
-    """An R joint on the ground: cylinder, axis, hatched plate on the far side; returns their hull (n, 3)."""
-    across = np.cross(side, np.eye(3)[np.argmin(np.abs(side))])
-    u = across / np.linalg.norm(across)
-    v = np.cross(side, u)
-    turn = np.linspace(0, math.tau, 17)
-    ring = radius * (np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v)
-    near, far = centre - 1.8 * unit * side + ring, centre + 1.8 * unit * side + ring
-    wall = [np.stack([near[i], near[i + 1], far[i + 1], far[i]]) for i in range(16)]
-    foot = centre + 4.5 * unit * side
-    corners = [foot + 2.8 * unit * (p * u + q * v) for p, q in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    plate = Poly3DCollection([corners], facecolors="#e4e4e4", edgecolors=GROUND, lw=0.8, zorder=3)
-    axes.add_collection3d(plate)
-    # strokes at 45 degrees behind the plate's edge say "ground"
-    for p in np.linspace(-1, 0.6, 6):
-        ends = foot + 2.8 * unit * np.stack([p * u - v, (p + 0.4) * u - v + 0.4 * side])
-        axes.plot(*ends.T, color=GROUND, lw=0.8, zorder=3)
-    axes.plot(*np.stack([centre, foot]).T, color=GROUND, lw=2.2, zorder=3)
-    ends = np.stack([centre - 8 * unit * side, centre + 8 * unit * side])
-    axes.plot(*ends.T, color="#404040", lw=0.9, ls=(0, (7, 2, 1.5, 2)), zorder=4)
-    # apart, for faces of unlike corner counts in one collection are padded with what the memory held
-    for faces in (wall, [near[:-1], far[:-1]]):
-        look = {"facecolors": "#b8b8b8", "edgecolors": "#707070", "lw": 0.25, "zorder": 5}
-        axes.add_collection3d(Poly3DCollection(faces, **look, shade=True))
-    return np.concatenate([ends, near, far, np.stack(corners)])
-
-
-def _equal_box(axes: Any, drawn: Floats, unit: str) -> None:
-    """Limits round everything drawn, a length unit as long along each axis, as large as the axes can hold."""
-    low, high = np.nanmin(drawn, axis=0), np.nanmax(drawn, axis=0)
-    extent = np.maximum(high - low, THINNEST_BOX * (high - low).max()) * 1.04
-    middle = (low + high) / 2
-    for index, name in enumerate("xyz"):
-        ends = (middle[index] - extent[index] / 2, middle[index] + extent[index] / 2)
-        getattr(axes, f"set_{name}lim3d")(*ends, view_margin=0)
-        scale = getattr(axes, f"{name}axis")
-        scale.set_major_locator(MaxNLocator(max(2, round(6 * extent[index] / extent.max()))))
-        # labels stand off by a share of the other two sides
-        stand_off = max(1.0, 0.9 * extent.max() / float(np.linalg.norm(np.delete(extent, index))))
-        scale.set_tick_params(labelsize=7.5, pad=10 * stand_off - 8)
-        scale.set_label_text(f"{name} [{unit}]")
-        scale.labelpad = 25 * stand_off - 21
-    right, above = _screen(axes)
-    seen = max(np.abs(right) @ extent, np.abs(above) @ extent * 1.06) / np.linalg.norm(extent)
-    axes.set_box_aspect(extent, zoom=0.74 / seen)
-
-
-def _ends_colours(motion: Motion) -> tuple[str, str]:
-    """The colours of links 1 and 3."""
-    return (INPUT, OUTPUT) if motion.input == motion.linkage.joints[0].name else (OUTPUT, INPUT)
-
-
-def _point_colours(frame: Skeleton) -> list[str]:
-    return [POINT_COLOURS[i % len(POINT_COLOURS)] for i in range(len(frame.names) - 4)]
-
-
-Bars = list[tuple[Any, tuple[int, ...]]]
-
-
-def bars(axes: Any, motion: Motion, frame: Skeleton, *, ghost: bool = False) -> Bars:
-    """New artists for one pose, each with the places it joins: bars, balls, points; `put` moves them."""
-    first, second = _ends_colours(motion)
-    order, width = (3, 2.0) if ghost else (6, 5.0)
-    look = {"alpha": 0.28 if ghost else 1.0, "zorder": order}
-    made: Bars = []
-
-    def add(places: tuple[int, ...], **style: Any) -> None:
-        line = Line3D([], [], [], solid_capstyle="round", **look | style)
-        axes.add_line(line)
-        made.append((line, places))
-
-    for places in frame.stays:
-        add(places, color=COUPLER if places[::2] == LINK_ENDS[2] else GROUND, lw=width / 3)
-    for link, colour in ((2, COUPLER), (1, first), (3, second)):
-        outline = [] if ghost else [withStroke(linewidth=width + 1.6, foreground="#202020"), Normal()]
-        add(LINK_ENDS[link], color=colour, lw=width, path_effects=outline)
-    ball = {"ls": "", "marker": "o", "zorder": order + 1}
-    size = 3.0 if ghost else 9.0
-    add((A, B), **ball, color="#303030", ms=size)
-    if not ghost:
-        add((A, B), **ball, color="#f4f4f4", ms=size / 2.6)
-    for place, colour in zip(range(4, len(frame.names)), _point_colours(frame), strict=True):
-        add((place,), **ball, color=colour, ms=0.6 * size)
-    return made
-
-
-def put(made: Bars, pose: Floats) -> None:
-    """Moves the artists of `bars` to a pose, places (4 + k, 3)."""
-    for artist, places in made:
-        artist.set_data_3d(*pose[list(places)].T)
-
-
-def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> None:
-    """Writes the names of places of a pose, each on its freest side; what falls together shares one label."""
-    screen = _screen(axes)
-    seen = pose @ screen.T
-    lines = [seen[[a, b]] for a, b in LINK_ENDS.values()]
-    for centre, axis in zip((A0, B0), frame.axes @ screen.T * frame.span / 6, strict=True):
-        lines.append(np.stack([seen[centre] - axis, seen[centre] + axis]))
-    named: dict[int, list[str]] = {}
-    for i in places:
-        near = [k for k in named if np.linalg.norm(seen[k] - seen[i]) < 0.03 * frame.span]
-        named.setdefault(near[0] if near else i, []).append(frame.names[i])
-    turns = np.linspace(0, math.tau, 24, endpoint=False)
-    for i, names in named.items():
-        spots = seen[i] + 0.06 * frame.span * np.stack([np.cos(turns), np.sin(turns)], axis=1)
-        best = turns[int(np.argmax([min(_distance(spot, line) for line in lines) for spot in spots]))]
-        place = pose[i] + 0.045 * frame.span * np.array([math.cos(best), math.sin(best)]) @ screen
-        side = "center" if abs(math.cos(best)) < 0.5 else "left" if math.cos(best) > 0 else "right"
-        halo = [withStroke(linewidth=2.5, foreground="white")]
-        axes.text(*place, ", ".join(names), fontsize=11, ha=side, va="center", zorder=9, path_effects=halo)
-
-
-def _screen(axes: Any) -> Floats:
-    """The directions, unit vectors (2, 3), that are seen as right and up."""
-    up, round_ = math.radians(axes.elev), math.radians(axes.azim)
-    above = [-math.sin(up) * math.cos(round_), -math.sin(up) * math.sin(round_), math.cos(up)]
-    return np.array([[-math.sin(round_), math.cos(round_), 0.0], above])
-
-
-def _distance(spot: Floats, line: Floats) -> float:
-    along = line[1] - line[0]
-    share = np.clip((spot - line[0]) @ along / ((along @ along) or 1.0), 0, 1)
-    return float(np.linalg.norm(spot - line[0] - share * along))
-
-
-def link_keys(motion: Motion, frame: Skeleton) -> list[Line2D]:
-    """The legend's entries of a 3D view."""
-    keys = [
-        Line2D([], [], color=INPUT, lw=5, label=f"input: {_short(motion.input, 24)}"),
-        Line2D([], [], color=COUPLER, lw=5, label="coupler"),
-        Line2D([], [], color=OUTPUT, lw=5, label=f"output: {_short(motion.output, 24)}"),
-        Line2D([], [], color=GROUND, lw=3, alpha=0.6, label="ground"),
-    ]
-    for place, colour in zip(frame.moving, (*_ends_colours(motion), *_point_colours(frame)), strict=True):
-        keys.append(Line2D([], [], color=colour, lw=1.1, label=f"path of {frame.names[place]}"))
-    return [*keys, Line2D([], [], color="#404040", lw=0.9, ls=(0, (7, 2, 1.5, 2)), label="joint axis")]
 
 
 @dataclass(frozen=True, eq=False)
@@ -525,7 +222,7 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over
             lifted = np.degrees(inputs) + 360.0 * np.arange(-4, 5)[:, None]
             for place in lifted[(lifted > ends.min() - 1e-6) & (lifted < ends.max() + 1e-6)]:
                 axes.axvline(place, color="#505050", lw=1.0, ls=style, zorder=1, label=name)
-    axes.set_xlabel(f"input angle: {_short(motion.input, 40)} [deg]" if over == "input" else "time [s]")
+    axes.set_xlabel(f"input angle: {short(motion.input, 40)} [deg]" if over == "input" else "time [s]")
     axes.set_ylabel(("output " if quantity == "angle" else "") + LABELS[quantity])
 
 
@@ -574,7 +271,7 @@ def _time_above(axes: Axes, motion: Motion, line: Pass) -> None:
 
 
 def _note(motion: Motion, cut: bool) -> str:
-    name = _short(motion.input, 40)
+    name = short(motion.input, 40)
     note = f"{name} at {motion.speed:g} rad/s"
     if motion.law is not None:
         note = f"{name} driven by a law"
