@@ -54,9 +54,8 @@ def animate(
     ffmpeg.
     """
     target = Path(path)
+    ffmpeg = check_target(target)
     ending = target.suffix.lower()
-    if ending not in FASTEST:
-        raise OutputError(f"{target}: {shown(target.suffix)} is not an animation format; give .gif or .mp4")
     chosen = plot.chosen_circuit(motion, circuit)
     if (
         isinstance(frames, bool)
@@ -72,7 +71,6 @@ def animate(
         raise RequestError(
             f"fps: {shown(fps)} is not offered; give 0.1 to {FASTEST[ending]:g} for a {ending} file"
         )
-    ffmpeg = _ffmpeg() if ending == ".mp4" else ""
     with plot.written_whole(target) as file, rc_context(plot.STYLE):
         pictures = _reported(_pictures(motion, chosen, int(frames)), int(frames), progress)
         if ending == ".gif":
@@ -80,6 +78,16 @@ def animate(
         else:
             _write_mp4(pictures, file, float(fps), ffmpeg, target)
     return target
+
+
+def check_target(target: Path) -> str:
+    """The ffmpeg program that the path's ending needs, or none; raises as `animate` does for a bad path."""
+    ending = target.suffix.lower()
+    if ending not in FASTEST:
+        raise OutputError(f"{target}: {shown(target.suffix)} is not an animation format; give .gif or .mp4")
+    with plot.written_whole(target, keep=False) as file:
+        file.touch()
+    return _ffmpeg() if ending == ".mp4" else ""
 
 
 def _reported(

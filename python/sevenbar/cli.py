@@ -62,10 +62,16 @@ def analyze(
 
     endings = _figure_formats(figures, report.FIGURE_FORMATS)
     motion = sb.load(linkage).motion(samples, input=input_joint, speed=speed)
-    written = report.write(motion, out, endings) if out is not None else []
     if animate is not None:
         from sevenbar.animate import animate as write_animation
+        from sevenbar.animate import check_target
+        from sevenbar.plot import chosen_circuit
 
+        # before anything is written
+        check_target(animate)
+        chosen_circuit(motion, 0)
+    written = report.write(motion, out, endings) if out is not None else []
+    if animate is not None:
         with _progress_bar(f"drawing {animate.name}") as progress:
             write_animation(motion, animate, progress=progress)
         written.append(animate)

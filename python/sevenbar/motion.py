@@ -169,7 +169,8 @@ class Circuit:
     output_range: tuple[float, float] | None
     #: The transmission angle [rad].
     transmission: Extremes
-    #: Of the output's velocity [rad/s] and acceleration [rad/s^2]; `None` where they grow without bound.
+    #: Of the output's velocity [rad/s] and acceleration [rad/s^2]; `None` where they grow without
+    #: bound, or a change point lies within.
     velocity: Extremes | None
     acceleration: Extremes | None
     input_column: int

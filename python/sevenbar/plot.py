@@ -308,14 +308,15 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
 
 
 @contextmanager
-def written_whole(target: Path) -> Iterator[Path]:
-    """A file beside `target` to write to; put in its place when all went well, else removed."""
+def written_whole(target: Path, *, keep: bool = True) -> Iterator[Path]:
+    """A file beside `target` to write to; put in its place when all went well and it is kept, else removed."""
     partial = target.parent / f".partial-{uuid.uuid4().hex}{target.suffix}"
     try:
         if target.is_dir():
             raise IsADirectoryError(0, "it is a folder")
         yield partial
-        partial.replace(target)
+        if keep:
+            partial.replace(target)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise OutputError(

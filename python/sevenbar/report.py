@@ -152,7 +152,7 @@ def text(motion: Motion) -> RenderableType:
 def _circuit_count(motion: Motion) -> str:
     turning = [c for c in motion.circuits if c.turns]
     if not motion.circuits:
-        return "none"
+        return "none: it closes only at the change point" if motion.change_points.size else "none"
     how = (
         f"each closes after {'one turn' if turning[0].turns == 1 else 'two turns'} of the input"
         if turning

@@ -15,7 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[import-untyped]
 
 from sevenbar.errors import RequestError
-from sevenbar.linkage import Linkage, inverse
+from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit, Floats, Integers, Motion
 
 #: Colours of Okabe and Ito, told apart by colour-blind readers too.
@@ -113,7 +113,7 @@ def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
         raise RequestError(
             f"circuit: circuit {circuit.index} has no pose at the inputs of the law; nothing to draw"
         )
-    frames = (linkage.base, linkage.base @ inverse(linkage.transforms[-1]))
+    frames = (linkage.base, linkage.ground)
     axes = np.stack([frame[:3, 2] for frame in frames])
     centres = []
     for frame, axis, trace in zip(frames, axes, traces, strict=False):

@@ -241,7 +241,7 @@ def _problem(detail: ErrorDetails) -> Problem:
         case "extra_forbidden":
             near = suggestion(str(location[-1]), owner.model_fields if owner else ())
             message = f"is not known here; {near}allowed: {keys}"
-        case "literal_error":
+        case "literal_error" | "int_parsing_size":
             message = f"{value} is not a format of this version; give format = 1"
         case "model_type" | "dict_type":
             message = f"{value} is not a table; give keys with values"

@@ -157,7 +157,9 @@ impl Rssr {
                 .touches
                 .iter()
                 .any(|&t| turn_between(t, stop.input).abs() < 1e-6);
-        let Some(slope) = slope.or(gap.then_some(0.0)) else {
+        // another circuit may close there
+        let beyond = circuit.input.distance(stop.input) > SAME_ROW;
+        let Some(slope) = slope.or(gap.then_some(0.0)).filter(|_| !beyond) else {
             return row;
         };
         let follower = (!stop.at_limit && !gap)
