@@ -57,7 +57,7 @@ class Drawing:
         return sb.from_axes(self.joints())
 
     def reference(self) -> Rssr:
-        """Each joint turns the later link against the earlier one: the crank against the ground, the ground against the rocker."""
+        """The crank is turned against the ground, and the ground against the rocker."""
         crank = Side(self.crank_at, self.crank_axis, self.ball_a)
         rocker = Side(self.rocker_at, -self.rocker_axis, self.ball_b)
         return Rssr(crank, rocker, float(np.linalg.norm(self.ball_a - self.ball_b)), drawn=True)
@@ -116,7 +116,7 @@ def skew(rng: np.random.Generator, decades: float = 1.0) -> Drawing:
 
 
 def nearly_parallel(rng: np.random.Generator, tilt: float = 0.2) -> Drawing:
-    """A planar four-bar with its axes tilted and its balls lifted a little: the family that holds double-cranks."""
+    """A planar four-bar, its axes tilted and its balls lifted a little: this holds double-cranks."""
     crank_at, rocker_at = np.zeros(3), np.array([10 ** rng.uniform(-0.8, 0.4), 0.0, rng.normal() * tilt])
     axes = [np.array([0.0, 0.0, 1.0]) + tilt * rng.normal(size=3) for _ in range(2)]
     sign = rng.choice([-1.0, 1.0])
@@ -138,7 +138,7 @@ def short_coupler(rng: np.random.Generator, share: float) -> Drawing:
 
 
 def mixed(rng: np.random.Generator, count: int) -> Iterator[Dimensions | Drawing]:
-    """Square, skew and nearly parallel axes in turn; every tenth of extreme proportions, every twentieth with a tiny coupler."""
+    """Axes of all kinds in turn; one in ten of extreme proportions, one in twenty with a tiny coupler."""
     kinds = (assembled_square, skew, nearly_parallel)
     for index in range(count):
         if index % 10 == 9:

@@ -1,15 +1,17 @@
-"""An RSSR worked out a second time, sharing no formula with the core: rotated points, sampling, and 80-digit numbers.
+"""An RSSR worked out a second time, sharing no formula with the core.
 
-Source: the description alone. Crank and rocker turn their balls A and B about two given axes (Rodrigues' formula), and
-the loop closes where |A - B| = L2. Everything here follows from that one sentence:
+Source: the description alone. Crank and rocker turn their balls A and B about two given axes (Rodrigues'
+formula), and the loop closes where |A - B| = L2. Everything here follows from that one sentence:
 
 - in NumPy, where a turning ball comes within reach of the other circle, and the two poses there;
-- in mpmath, the pose by Newton's method on |A - B|^2 = L2^2, and every derivative by time by central differences
-  with a step of 1e-20 in 80 digits: 20 digits are left of a third derivative, more of the lower ones.
+- in mpmath, the pose by Newton's method on |A - B|^2 = L2^2, and every derivative by time by central
+  differences with a step of 1e-20 in 80 digits: 20 digits are left of a third derivative, more of the lower
+  ones.
 """
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -23,7 +25,7 @@ STEP = mp.mpf(10) ** -20
 
 @dataclass(frozen=True)
 class Side:
-    """A side link: it turns its ball about the line through `at` along the unit vector `axis`; `ball` is the ball at angle zero."""
+    """A side link: it turns its ball, at `ball` for angle zero, about the line through `at` along `axis`."""
 
     at: np.ndarray
     axis: np.ndarray
@@ -59,7 +61,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Course:
-    """A circuit as poses in order along it, the last one next to the first: `output` is continuous, modulo whole turns at the end."""
+    """A circuit as poses along it, the last one next to the first; `output` is continuous."""
 
     input_turns: bool
     input: np.ndarray
@@ -84,7 +86,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Rssr:
-    """Two side links and the coupler's length; `drawn` says that all links' frames are the report frame with every joint at zero."""
+    """Two side links and the coupler's length; `drawn` tells a drawing, whose pose is every joint's zero."""
 
     crank: Side
     rocker: Side
@@ -93,7 +95,7 @@ class Rssr:
 
     @property
     def size(self) -> float:
-        """The greatest of the four dimensions: crank, coupler, rocker, and the distance of the two circles' centres."""
+        """The greatest of crank, coupler, rocker, and the distance of the two circles' centres."""
         ground = float(np.linalg.norm(self.crank.foot - self.rocker.foot))
         return max(self.crank.radius, self.rocker.radius, self.coupler, ground)
 
@@ -107,13 +109,13 @@ class Rssr:
         return np.abs(apart - self.coupler) / self.size
 
     def margin(self, inputs: np.ndarray, driver: str = "crank") -> np.ndarray:
-        """How far the coupler is from being too short or too long, in parts of the size: the loop closes where it is not negative."""
+        """How far the coupler is from too short or too long, in size: the loop closes where it is >= 0."""
         one, other = self.sides(driver)
         nearest, farthest = other.distances(one.turned(inputs))
         return np.minimum(self.coupler - nearest, farthest - self.coupler) / self.size
 
     def outputs(self, inputs: np.ndarray, driver: str = "crank") -> np.ndarray:
-        """Both poses of the other side link at each input, (2, n), continuous along the inputs; NaN out of reach.
+        """Both poses of the other side link at each input, (2, n), continuous; NaN out of reach.
 
         With the input held, `|A - B|^2` is `a + b cos x + c sin x`; three of its values give a, b and c.
         """
@@ -130,7 +132,7 @@ class Rssr:
         return np.stack([phase + spread, phase - spread])
 
     def limits(self, driver: str = "crank", samples: int = 2048) -> np.ndarray:
-        """Input angles in [0, 2 pi) where the coupler begins or ceases to reach: sampled, then each narrowed down in 64ths."""
+        """Inputs in [0, 2 pi) where the coupler begins or ceases to reach: sampled, then narrowed down."""
         grid = np.linspace(0, 2 * np.pi, samples + 1)
         inside = self.margin(grid, driver) >= 0
         found = np.flatnonzero(inside[:-1] != inside[1:])
@@ -145,7 +147,7 @@ class Rssr:
         return (low + high) / 2
 
     def clearance(self, samples: int = 2048) -> float:
-        """How far the linkage is from a change point: the least local extreme of the margin, either joint driving, in size."""
+        """How far a change point is: the least local extreme of the margin, either joint driving."""
         least = np.inf
         for driver in ("crank", "rocker"):
             margin = self.margin(2 * np.pi / samples * np.arange(samples), driver)
@@ -166,7 +168,7 @@ class Rssr:
         # poses crowd where the input turns back
         crowded = (1 - np.cos(np.linspace(0, np.pi, samples)))[1:-1] / 2
         courses = []
-        for start, end in zip(ends[:-1], ends[1:], strict=True):
+        for start, end in itertools.pairwise(ends):
             if self.margin(np.array([(start + end) / 2]), driver)[0] < 0:
                 continue
             there = start + (end - start) * crowded
@@ -250,7 +252,7 @@ class PreciseRssr:
         raise ArithmeticError(f"no pose near {near} at input {angle}")
 
     def reach(self, angle: mp.mpf, driver: str = "crank") -> tuple[mp.mpf, mp.mpf, mp.mpf]:
-        """How far the coupler reaches past the nearest and stays short of the farthest point of the other circle, squared; and the terms.
+        """How far the coupler reaches past the nearest and short of the farthest point, squared; the terms.
 
         `L2^2 - near^2`, `far^2 - L2^2` and `L2^2 + far^2`; at a limit of the driver one of the first two is zero.
         """
@@ -263,7 +265,7 @@ class PreciseRssr:
         return coupler - near, far - coupler, coupler + far
 
     def condition(self, angle: mp.mpf, driver: str = "crank") -> mp.mpf:
-        """How a relative error of the squared lengths grows in the product of the two reaches, on which all rates rest."""
+        """How a relative error of the squared lengths grows in the product of the two reaches."""
         past, short, terms = self.reach(angle, driver)
         return terms / past + terms / short
 
@@ -282,7 +284,7 @@ class PreciseRssr:
         return [first, coupler, third * mp.diag([-1, -1, 1])]
 
     def _coupler_frame(self, crank: mp.mpf, rocker: mp.mpf) -> mp.matrix:
-        """Columns x to B, y = z cross x, z nearest to the crank's axis (design.md's rule for the idle spin)."""
+        """Columns x to B, y = z cross x, z nearest to the crank's axis (the rule for the idle spin)."""
         x = self.rocker.ball(rocker) - self.crank.ball(crank)
         x = x / mp.norm(x)
         z = self.crank.axis - _dot(self.crank.axis, x) * x
@@ -290,7 +292,7 @@ class PreciseRssr:
         return _columns(x, _cross(z, x), z)
 
     def turns(self, crank: mp.mpf, rocker: mp.mpf) -> list[mp.mpf]:
-        """The three turns of ball A, then of ball B: each link against the one before as `Rz(t1) Ry(t2) Rx(t3)`."""
+        """The turns of ball A, then of ball B: each link against the one before as `Rz(t1) Ry(t2) Rx(t3)`."""
         first, second, third = self.rotations(crank, rocker)
         return _turns_zyx(first.T * second) + _turns_zyx(second.T * third)
 
@@ -304,7 +306,7 @@ class PreciseRssr:
         return list(origins[link - 1] + self.rotations(crank, rocker)[link - 1] * own)
 
     def coupler_sine(self, crank: mp.mpf, rocker: mp.mpf) -> mp.mpf:
-        """The sine of the angle between the coupler and the crank's axis: at zero the rule for its spin names no direction."""
+        """The sine between the coupler and the crank's axis: at zero its spin has no direction."""
         x = self.rocker.ball(rocker) - self.crank.ball(crank)
         return mp.norm(_cross(x, self.crank.axis)) / mp.norm(x)
 
@@ -315,7 +317,7 @@ class PreciseRssr:
         driver: str,
         measure: Callable[[mp.mpf, mp.mpf], list[mp.mpf]],
     ) -> list[list[mp.mpf]]:
-        """Each number of `measure(crank, rocker)` with three derivatives by time, for an input with the given rates.
+        """Each number of `measure(crank, rocker)` with three derivatives by time.
 
         `rates` are the input, its speed, acceleration and jerk; `near` picks the pose.
         """

@@ -1,8 +1,9 @@
 """The loop closes, and only where it can: a million poses of random linkages.
 
-Source: the description alone. A and B are the given points turned about the given axes by Rodrigues' formula in NumPy
-(`reference_rssr.Side`), and the loop closes where |A - B| = L2. It can be reached where L2 lies between the distances from the
-driving ball to the nearest and to the farthest point of the other ball's circle.
+Source: the description alone. A and B are the given points turned about the given axes by Rodrigues'
+formula in NumPy (`reference_rssr.Side`), and the loop closes where |A - B| = L2. It can be reached where L2
+lies between the distances from the driving ball to the nearest and to the farthest point of the other
+ball's circle.
 """
 
 from __future__ import annotations
@@ -156,7 +157,7 @@ def test_a_coupler_too_short_or_too_long_has_no_pose() -> None:
 def test_a_ball_that_passes_the_other_axis_closes_on_either_side_of_it(
     ball_b: tuple[float, float, float],
 ) -> None:
-    """At a quarter turn A meets the rocker's axis: rho = 0, and B is out of reach or, where L2 fits, anywhere."""
+    """A quarter turn on, A is on the rocker's axis: B is out of reach or, where L2 fits, anywhere."""
     drawing = Drawing(
         crank_at=np.array([0.0, 0.0, 0.0]),
         crank_axis=np.array([0.0, 0.0, 1.0]),

@@ -1,13 +1,15 @@
 """Velocity, acceleration and jerk against 80-digit numbers from the closure alone.
 
-Source: `reference_rssr.PreciseRssr`: Newton's method on |A - B|^2 = L2^2 and central differences with a step of 1e-20;
-no derivative is written out anywhere. That reference is itself held against mpmath's derivative of the paper's eq. (8).
+Source: `reference_rssr.PreciseRssr`: Newton's method on |A - B|^2 = L2^2 and central differences with a
+step of 1e-20; no derivative is written out anywhere. That reference is itself held against mpmath's
+derivative of the paper's eq. (8).
 
-What is compared: the error of a k-th derivative over the exact value, or over 1 (the input's own rate, to the power of
-the order) where the exact value is smaller: near an output dead centre a velocity passes zero and has no relative error.
-The three turns of a ball and the three coordinates of a point are compared as one vector, a point in units of the size.
-The condition is that of design.md's "away from dead centres", as `Circuit.condition` gives it; no method that rounds its
-dimensions once can do better than 2^-53 times it, and the tests below leave a small factor on that.
+What is compared: the error of a k-th derivative over the exact value, or over 1 (the input's own rate, to
+the power of the order) where the exact value is smaller: near an output dead centre a velocity passes zero
+and has no relative error. The three turns of a ball and the three coordinates of a point are compared as
+one vector, a point in units of the size. The condition is that of design.md's "away from dead centres", as
+`Circuit.condition` gives it; no method that rounds its dimensions once can do better than 2^-53 times it,
+and the tests below leave a small factor on that.
 """
 
 from __future__ import annotations
@@ -55,7 +57,7 @@ class Error:
 def relative_errors(
     got: np.ndarray, exact: Sequence[Sequence[mp.mpf]], rates: tuple[float, ...]
 ) -> tuple[float, ...]:
-    """Of each derivative of a vector, (components, 3) and (components, 4): the greatest error over the greatest exact component."""
+    """Of each derivative of a vector: the greatest error over the greatest exact component."""
     unit = max(1.0, *map(abs, rates))
     errors = []
     for order in (1, 2, 3):

@@ -1,7 +1,7 @@
 """The RSSR paper's own case: Table 1, eq. (8) and (9), and the signs of eq. (12) and (13).
 
-Source: Sun and Zhou, "Analytical and Computer-Aided Method for Kinematics of Spatial RSSR Mechanism", typed in here as
-printed; Table 1 in references/rssr_table1.json, which tells where each number comes from.
+Source: Sun and Zhou, "Analytical and Computer-Aided Method for Kinematics of Spatial RSSR Mechanism", typed
+in here as printed; Table 1 in references/rssr_table1.json, which tells where each number comes from.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from random_linkages import Dimensions
 
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text())
 
-#: The unit in the last printed digit of the computed column: four significant digits, 1.189 and 7.96 among them.
+#: The unit in the last printed digit of the computed column.
 LAST_DIGIT = {"angle": (1e-4, 1e-3), "velocity": (1e-3, 1e-2), "acceleration": (1e-1, 1e-2)}
 
 

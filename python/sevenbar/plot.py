@@ -309,7 +309,7 @@ def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
 
 @contextmanager
 def written_whole(target: Path, *, keep: bool = True) -> Iterator[Path]:
-    """A file beside `target` to write to; put in its place when all went well and it is kept, else removed."""
+    """A file beside `target` to write to; put in its place when all went well and `keep`, else removed."""
     partial = target.parent / f".partial-{uuid.uuid4().hex}{target.suffix}"
     try:
         if target.is_dir():

@@ -8,6 +8,9 @@ use std::f64::consts::TAU;
 /// Cells in which a turn is searched; two stationary points within one cell are told apart as well.
 const CELLS: usize = 360;
 
+/// How often the cells beside a nearest approach of the branches are halved: down to 1e-9 rad.
+const NARROWINGS: i32 = 24;
+
 /// An extreme value and the input at which it occurs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
@@ -26,10 +29,7 @@ pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 2] {
         pair.follower_taylor(Taylor::<5>::variable(input), branch)
             .map_or([f64::NAN; 5], |x| std::array::from_fn(|k| x.derivative(k)))
     };
-    let nodes: Vec<(f64, Derivatives)> = (0..=CELLS)
-        .map(|k| TAU * k as f64 / CELLS as f64)
-        .map(|input| (input, at(input)))
-        .collect();
+    let nodes: Vec<(f64, Derivatives)> = nodes(pair).into_iter().map(|input| (input, at(input))).collect();
     [1, 2].map(|order| {
         let mut candidates = vec![(nodes[0].0, nodes[0].1[order])];
         for cell in nodes.windows(2) {
@@ -46,6 +46,24 @@ pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 2] {
             extreme(candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1))),
         ]
     })
+}
+
+/// The ends of the cells: evenly spread, and ever closer towards each place where the two branches come nearest.
+///
+/// Just past a change point the rates peak there, within the square root of the distance from it.
+fn nodes(pair: &Pair) -> Vec<f64> {
+    let cell = TAU / CELLS as f64;
+    let mut nodes: Vec<f64> = (0..=CELLS).map(|k| cell * k as f64).collect();
+    let slope = pair.discriminant().derivative();
+    for zero in slope.zeros(pair.discriminant_noise()).unwrap_or_default() {
+        nodes.push(zero.angle);
+        let offsets = (0..NARROWINGS).map(|k| cell * 0.5_f64.powi(k));
+        nodes.extend(offsets.flat_map(|x| [zero.angle - x, zero.angle + x]));
+    }
+    nodes.retain(|x| (0.0..=TAU).contains(x));
+    nodes.sort_by(f64::total_cmp);
+    nodes.dedup();
+    nodes
 }
 
 /// Zeros of derivative `order + 1` in a cell: one where its sign changes; two where it only dips to the other sign,
@@ -105,10 +123,7 @@ pub(super) fn transmission_extremes(pair: &Pair, extent: Extent, branch: usize) 
         .map(|z| z.angle)
         .filter(|&x| extent.distance(x) == 0.0)
         .collect();
-    match extent {
-        Extent::Full => inputs.push(0.0),
-        Extent::Arc(start, end) => inputs.extend([start, end]),
-    }
+    inputs.extend((extent == Extent::Full).then_some(0.0));
     let angle_at = |&input: &f64| Extreme { input, value: pair.transmission_angle(input, branch) };
     let least = inputs
         .iter()
@@ -119,6 +134,11 @@ pub(super) fn transmission_extremes(pair: &Pair, extent: Extent, branch: usize) 
         .map(angle_at)
         .max_by(|a, b| a.value.total_cmp(&b.value));
     let nowhere = Extreme { input: f64::NAN, value: f64::NAN };
+    // at a limit the coupler's line meets the driven axis: it moves the driven ball neither way
+    let least = match extent {
+        Extent::Full => least,
+        Extent::Arc(start, _) => Some(Extreme { input: start, value: 0.0 }),
+    };
     [least.unwrap_or(nowhere), greatest.unwrap_or(nowhere)]
 }
 

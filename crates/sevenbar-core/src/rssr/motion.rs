@@ -184,13 +184,14 @@ impl Rssr {
             }
         }
         place_output_dead_centres(&mut circuits, &forward, &backward, &outputs);
-        Motion {
-            input,
-            motion_type,
-            limits: inputs.limits,
-            change_points: inputs.change_points,
-            circuits,
+        // where only the output's limits come so near, the place is known by the output
+        let mut change_points = inputs.change_points;
+        if change_points.is_empty() {
+            let input_at = |&output: &f64| backward.angle(&backward.reach(output), 0.0, 0).rem_euclid(TAU);
+            change_points = outputs.change_points.iter().map(input_at).collect();
+            change_points.sort_by(f64::total_cmp);
         }
+        Motion { input, motion_type, limits: inputs.limits, change_points, circuits }
     }
 }
 
