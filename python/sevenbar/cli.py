@@ -60,7 +60,7 @@ def analyze(
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar import report
 
-    endings = _figure_formats(figures, report.FIGURE_FORMATS)
+    endings = _figure_formats(figures)
     motion = sb.load(linkage).motion(samples, input=input_joint, speed=speed)
     if animate is not None:
         from sevenbar.animate import animate as write_animation
@@ -92,12 +92,16 @@ def gallery() -> None:
         typer.echo(f"{name:<12} {sb.load(name).name}")
 
 
-def _figure_formats(given: list[str] | None, allowed: tuple[str, ...]) -> tuple[str, ...]:
-    endings = tuple(dict.fromkeys(word.lower().removeprefix(".") for word in given or ["png"]))
+def _figure_formats(given: list[str] | None) -> tuple[str, ...]:
+    if given is None:
+        return ("png",)
+    from sevenbar.plot import FORMATS
+
+    endings = tuple(dict.fromkeys(word.lower().removeprefix(".") for word in given))
     for ending in endings:
-        if ending not in allowed:
+        if ending not in FORMATS:
             raise RequestError(
-                f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(allowed)}"
+                f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(FORMATS)}"
             )
     return endings
 

@@ -25,9 +25,6 @@ from rich.text import Text
 from sevenbar.errors import OutputError
 from sevenbar.motion import Circuit, DeadCentre, Extremes, Motion
 
-#: Figure formats of a report's folder.
-FIGURE_FORMATS = ("png", "svg", "pdf")
-
 
 def as_dict(motion: Motion) -> dict[str, Any]:
     """The report as plain values: angles in radians, lengths in the linkage's unit, null beside a status."""

@@ -126,11 +126,6 @@ impl Rssr {
         ))
     }
 
-    /// The motion type alone.
-    fn classify(&self, input: &str) -> PyResult<&'static str> {
-        Ok(self.0.classify(input_named(input)?).name())
-    }
-
     /// The whole motion: its type, limits, change points, and a dictionary for each circuit.
     #[pyo3(signature = (input, samples, speed, law=None))]
     fn motion<'py>(

@@ -125,12 +125,6 @@ impl Rssr {
         }
     }
 
-    /// The motion type alone: two quartics, no circuits.
-    pub fn classify(&self, input: Input) -> MotionType {
-        let [forward, backward] = self.pairs(input);
-        Self::motion_type(&Domain::new(&forward), &Domain::new(&backward))
-    }
-
     /// From input to output, and back.
     fn pairs(&self, input: Input) -> [Pair; 2] {
         let output = match input {
