@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.errors import DescriptionError, NotCoveredError, RequestError, SevenbarError
+from sevenbar.errors import DescriptionError, RequestError, SevenbarError
+from sevenbar.units import sliding_speed
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 DIMENSIONS = (EXAMPLES / "rssr.toml").read_text(encoding="utf-8")
@@ -158,7 +159,7 @@ def test_each_mistake_in_the_dimensions_has_its_own_message(old, new, message):
         (
             "[drive]",
             '[drive]\njoint = "ball_a"',
-            "drive.joint: joint 'ball_a' is a ball; give a joint that turns about one axis: crank or rocker",
+            "drive.joint: joint 'ball_a' is a ball; give a joint with one freedom: crank, rocker",
         ),
         (
             "[drive]",
@@ -188,13 +189,13 @@ def test_a_text_must_describe_exactly_one_linkage():
     ]
 
 
-def test_what_this_version_does_not_analyse_is_said_so():
-    with pytest.raises(
-        NotCoveredError, match=r"f.toml: joint: a loop C S S R is not analysed .* it takes R S S R"
-    ):
-        sb.loads(changed(DRAWN, ('kind = "R"', 'kind = "C"')), "f.toml")
-    with pytest.raises(NotCoveredError, match="Denavit-Hartenberg rows are not analysed"):
-        sb.loads('format = 1\n[[link]]\njoint = "R"\n')
+def test_a_drawing_may_hold_any_kind_of_joint():
+    linkage = sb.loads(changed(DRAWN, ('kind = "R"', 'kind = "C"')), "f.toml")
+    assert linkage.kind == "CSSR"
+    assert linkage.columns[:3] == ("crank.1", "crank.2", "ball_a.1")
+    assert (linkage.drive.joint, linkage.drive.output) == ("crank.1", "rocker")
+    # the paper's points A and B are the RSSR's alone
+    assert [point.name for point in linkage.points] == ["middle"]
 
 
 def test_python_calls_get_the_same_messages():
@@ -227,6 +228,51 @@ def test_units_of_speed_mean_what_they_say():
         (".5e1rad/s", 5.0),
     ):
         assert sb.rssr(M=1, N=1, L1=1, L3=1, speed=text).drive.speed == pytest.approx(speed, rel=1e-15)
+
+
+def test_a_speed_of_the_wrong_kind_says_which_is_wanted():
+    with pytest.raises(DescriptionError) as caught:
+        sb.rssr(M=1, N=1, L1=1, L3=1, speed="10 mm/s")
+    assert str(caught.value) == (
+        "drive.speed: '10 mm/s' is a sliding speed, and the input turns; "
+        "give a number and a unit, as in '10 rad/s' or '60 rpm'"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "speed"),
+    [
+        ("10 mm/s", "mm", 10.0),
+        ("1 in/s", "mm", 25.4),
+        ("-3 ft/s", "in", -36.0),
+        ("1 mm/s", "um", 1000.0),
+        (2, "m", 2.0),
+    ],
+)
+def test_a_sliding_speed_is_in_length_units_a_second(text, unit, speed):
+    assert sliding_speed(text, unit) == speed
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "60 rpm",
+            "'60 rpm' is a turning speed, and the input slides; give a number and a unit, as in '10 mm/s'",
+        ),
+        ("10", "'10' has no unit; give a number and a unit, as in '10 mm/s'"),
+        (
+            "10 mm",
+            "'mm' is not a unit known here; did you mean 'mm/s'? allowed: um/s, mm/s, cm/s, m/s, in/s, ft/s",
+        ),
+        (0, "0 moves nothing; give a finite speed other than 0, as in '10 mm/s'"),
+        (True, "True is not a speed; give a number and a unit, as in '10 mm/s'"),
+    ],
+)
+def test_what_is_no_sliding_speed_is_refused(text, message):
+    with pytest.raises(RequestError) as caught:
+        sliding_speed(text, "mm")
+    assert str(caught.value) == message
 
 
 def test_lengths_of_any_size_give_the_same_angles():

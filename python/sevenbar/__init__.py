@@ -15,7 +15,7 @@ from types import ModuleType
 from sevenbar import errors
 from sevenbar._core import __version__
 from sevenbar.files import load, loads
-from sevenbar.forms import from_axes, rssr
+from sevenbar.forms import from_axes, from_dh, rssr
 from sevenbar.linkage import Drive, Joint, Linkage, Point
 from sevenbar.motion import Circuit, DeadCentre, Extremes, Law, Modes, Motion, Output, Trace
 
@@ -35,6 +35,7 @@ __all__ = [
     "__version__",
     "errors",
     "from_axes",
+    "from_dh",
     "load",
     "loads",
     "rssr",

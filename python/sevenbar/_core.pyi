@@ -5,7 +5,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CoreError", "Rssr", "__version__", "simd_level"]
+__all__ = ["CoreError", "Loop", "Rows", "Rssr", "__version__", "simd_level"]
 
 _Floats = npt.NDArray[np.float64]
 
@@ -36,5 +36,31 @@ class Rssr:
         self, input: str, samples: int, speed: float, law: _Floats | None = None
     ) -> dict[str, Any]: ...
     def point(self, link: int, at: _Floats, crank: _Floats, rocker: _Floats) -> _Floats: ...
+
+@final
+class Loop:
+    """A single closed loop of R, P, H and S joints."""
+
+    def __new__(
+        cls, letters: str, advances: _Floats, base: _Floats, ground: _Floats, links: _Floats
+    ) -> Loop: ...
+    @property
+    def size(self) -> float: ...
+    @property
+    def freedoms(self) -> int: ...
+    @property
+    def idle(self) -> list[tuple[str, int, int]]: ...
+    def assembly_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, str]: ...
+    def mobility(self, column: int) -> dict[str, Any]: ...
+    def motion(
+        self, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
+    ) -> dict[str, Any]: ...
+
+@final
+class Rows:
+    """Rows of a circuit: of them any link can be asked."""
+
+    def point(self, link: int, at: _Floats) -> _Floats: ...
+    def frames(self) -> _Floats: ...
 
 def simd_level() -> str: ...

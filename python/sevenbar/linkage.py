@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar import _core
+from sevenbar.closed_form import ClosedForm
 from sevenbar.errors import NotCoveredError, RequestError, no_joint, shown
-from sevenbar.motion import (
-    SPIN_UNDEFINED,
-    STATUSES,
-    Circuit,
-    DeadCentre,
-    Extremes,
-    Floats,
-    Law,
-    Modes,
-    Motion,
-    Output,
-    Trace,
-    finite_array,
-)
-from sevenbar.units import turning_speed
+from sevenbar.general import GeneralLoop
+from sevenbar.mobility import Mobility
+from sevenbar.motion import Floats, Law, Modes, Motion, Output, finite_array
+from sevenbar.units import sliding_speed, turning_speed
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000
@@ -35,10 +23,15 @@ MOST_SAMPLES = 1_000_000
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint: its kind (R P H C U S) and its name."""
+    """A joint: its kind (R P H C U S) and its name.
+
+    `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U.
+    """
 
     kind: str
     name: str
+    pitch: float = 0.0
+    angle: float = 0.0
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -58,7 +51,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Drive:
-    """The input joint, the output joint, and the input's speed [rad/s]."""
+    """The columns of the input and the output, and the input's speed [rad/s, or length/s]."""
 
     joint: str
     output: str
@@ -106,50 +99,91 @@ class Linkage:
         return tuple(column for joint in self.joints for column in joint.columns)
 
     @property
+    def column_kinds(self) -> tuple[Literal["turn", "slide"], ...]:
+        """What each column is: an angle [rad] or a length."""
+        kinds: dict[str, tuple[Literal["turn", "slide"], ...]] = {
+            "P": ("slide",),
+            "C": ("turn", "slide"),
+            "U": ("turn", "turn"),
+            "S": ("turn", "turn", "turn"),
+        }
+        return tuple(kind for joint in self.joints for kind in kinds.get(joint.kind, ("turn",)))
+
+    @property
     def lengths(self) -> tuple[float, float, float]:
-        """Crank, coupler and rocker [length]."""
-        crank, coupler, rocker = self._rssr.lengths
-        return crank, coupler, rocker
+        """Crank, coupler and rocker of an RSSR [length]."""
+        return self._rssr("lengths").lengths
 
     @cached_property
-    def _rssr(self) -> _core.Rssr:
+    def _closed_form(self) -> ClosedForm:
+        return ClosedForm(self)
+
+    @cached_property
+    def _general(self) -> GeneralLoop:
+        return GeneralLoop(self)
+
+    def _rssr(self, what: str) -> ClosedForm:
         if self.kind != "RSSR":
             raise NotCoveredError(
-                f"a loop {' '.join(self.kind)} is not analysed by this version; it takes R S S R"
+                f"{what}: a loop {' '.join(self.kind)} has no closed form here; it is offered for R S S R"
             )
-        return _core.Rssr(self.base, self.ground, self.links)
+        return self._closed_form
 
-    def side(self, joint: str | None, default: str, key: str) -> str:
-        """The core's word for a turning joint named by the caller."""
-        name = default if joint is None else joint
-        known = [j.name for j in self.joints]
-        if name not in known:
+    def drivable(self, without: int | None = None) -> list[str]:
+        """The columns that may drive or be driven: all but those of balls, and but one."""
+        owners = [joint for joint in self.joints for _ in joint.columns]
+        return [
+            name
+            for index, (name, owner) in enumerate(zip(self.columns, owners, strict=True))
+            if owner.kind != "S" and index != without
+        ]
+
+    def column(self, name: str, key: str) -> int:
+        """The place of a column named by the caller; a C or U joint's name stands for its first freedom."""
+        known = [joint.name for joint in self.joints]
+        for joint in self.joints:
+            if joint.kind == "S" and name in (joint.name, *joint.columns):
+                raise RequestError(
+                    f"{key}: joint '{name}' is a ball; "
+                    f"give a joint with one freedom: {', '.join(self.drivable())}"
+                )
+            if name == joint.name:
+                return self.columns.index(joint.columns[0])
+        if name not in self.columns:
             raise RequestError(f"{key}: {no_joint(name, known)}")
-        index = known.index(name)
-        if index not in (0, len(known) - 1):
-            raise RequestError(
-                f"{key}: joint '{name}' is a ball; "
-                f"give a joint that turns about one axis: {known[0]} or {known[-1]}"
-            )
-        return "crank" if index == 0 else "rocker"
+        return self.columns.index(name)
 
-    def sides(self, input: str | None, output: str | None) -> tuple[str, str, str]:
-        """The core's word for the input, and the names of input and output."""
-        side = self.side(input, self.drive.joint, "input")
-        ends = (self.joints[0].name, self.joints[-1].name)
-        names = ends if side == "crank" else ends[::-1]
-        # without a word on it, the output is the other turning joint
-        if output is not None and self.side(output, output, "output") == side:
-            raise RequestError(
-                f"output: joint '{output}' is the input; the output is the other one, {names[1]}"
-            )
-        return side, *names
+    def other_column(self, column: int) -> int:
+        """The output where only the input was named: the drive's, else that of the last other joint."""
+        if self.columns[column] != self.drive.output:
+            return self.columns.index(self.drive.output)
+        last = [
+            joint for joint in self.joints if joint.kind != "S" and self.columns[column] not in joint.columns
+        ]
+        name = last[-1].columns[0] if last else self.drivable(column)[-1]
+        return self.columns.index(name)
 
-    def _speed(self, speed: object) -> float:
+    def _ends(self, input: str | None, output: str | None) -> tuple[int, int]:
+        first = self.column(self.drive.joint if input is None else input, "input")
+        if output is None:
+            return first, self.other_column(first)
+        second = self.column(output, "output")
+        if second == first:
+            raise RequestError(
+                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
+            )
+        return first, second
+
+    def _speed(self, speed: object, column: int) -> float:
         if speed is None:
-            return self.drive.speed
+            drives = self.columns.index(self.drive.joint)
+            same_kind = self.column_kinds[drives] == self.column_kinds[column]
+            return self.drive.speed if same_kind else 1.0
+        plain = float(speed) if isinstance(speed, np.number) else speed
         try:
-            return turning_speed(float(speed) if isinstance(speed, np.number) else speed)
+            if self.column_kinds[column] == "slide":
+                return sliding_speed(plain, self.length_unit)
+            return turning_speed(plain)
         except RequestError as error:
             raise RequestError(f"speed: {error}") from None
 
@@ -179,7 +213,8 @@ class Linkage:
 
         Source: Sun and Zhou, eq. (8), (9), and (12), (13) with their signs mended.
         """
-        side, _, _ = self.sides(input, None)
+        solver = self._rssr("output")
+        column, _ = self._ends(input, None)
         array = np.ascontiguousarray(values, dtype=np.float64).reshape(-1)
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
             raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
@@ -187,26 +222,46 @@ class Linkage:
         constant = 1.0
         plain = speed is None or isinstance(speed, str) or np.ndim(speed) == 0
         if plain and acceleration is None and jerk is None:
-            constant = self._speed(speed)
+            constant = self._speed(speed, column)
         else:
-            first = self._speed(speed) if plain else speed
+            first = self._speed(speed, column) if plain else speed
             rates = {"speed": first, "acceleration": acceleration, "jerk": jerk}
             law = tuple(
                 _rate(name, 0.0 if value is None else value, array.size) for name, value in rates.items()
             )
-        results = [np.empty((2, array.size)) for _ in range(order + 1)]
-        try:
-            self._rssr.outputs(array, results, side, constant, law)
-        except _core.CoreError as error:
-            raise RequestError(str(error)) from None
-        return Output(*results)
+        return solver.outputs(array, int(order), column, constant, law)
 
-    def assembly_modes(self, theta: float, *, input: str | None = None) -> Modes:
-        """Every assembly mode at one input [rad], by the closed form; none where the loop does not close."""
-        side, _, _ = self.sides(input, None)
+    def assembly_modes(
+        self, theta: float, *, input: str | None = None, method: Literal["auto", "general"] = "auto"
+    ) -> Modes:
+        """Every assembly mode at one value of the input [rad, or length]; none where the loop does not close.
+
+        An RSSR is solved in closed form, any loop of turning and sliding joints (so also of C, U and S) by
+        following all solutions over the complex numbers; with screws modes are searched. `method` "general"
+        takes the general way for an RSSR too.
+
+            >>> import sevenbar as sb
+            >>> len(sb.load("seven_r").assembly_modes(0.3))
+            8
+        """
+        column, _ = self._ends(input, None)
         (value,) = finite_array("theta", theta)
-        q, residual = self._rssr.assembly_modes(value, side)
-        return Modes(q, residual * self._rssr.size, "closed-form", self.columns, value)
+        if self._has_closed_form(method):
+            return self._closed_form.modes(column, value)
+        return self._general.modes(column, value)
+
+    def mobility(self) -> Mobility:
+        """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name."""
+        return self._mobility
+
+    @cached_property
+    def _mobility(self) -> Mobility:
+        return self._general.mobility(self.columns.index(self.drive.joint))
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move no other link."""
+        return self._general.idle()
 
     def motion(
         self,
@@ -216,14 +271,16 @@ class Linkage:
         output: str | None = None,
         speed: float | str | None = None,
         law: Law | None = None,
+        method: Literal["auto", "general"] = "auto",
     ) -> Motion:
         """Every circuit over the whole input range.
 
-        `samples` inputs in a full turn. The input moves at `speed` [rad/s], the drive's where none is
-        given, or by a `law`, whose samples then take the place of the grid: a circuit that rocks holds them
-        once for each of its two passes.
+        `samples` inputs in a full turn, or over the range of a sliding input. The input moves at `speed`
+        [rad/s, or length/s], the drive's where none is given, or by a `law`, whose samples take the place of
+        the grid: a circuit that rocks holds them once for each of its passes. `input` and `output` name
+        joints. `method` "general" takes the general way for an RSSR too, which has a closed form.
         """
-        side, input_name, output_name = self.sides(
+        column, output_column = self._ends(
             input, self.drive.output if output is None and input is None else output
         )
         if (
@@ -232,96 +289,15 @@ class Linkage:
             or not 4 <= samples <= MOST_SAMPLES
         ):
             raise RequestError(f"samples: {shown(samples)} is not a count; give 4 to {MOST_SAMPLES}")
-        rate = self._speed(speed)
-        table = None if law is None else np.column_stack([law.q, law.dq, law.ddq, law.dddq])
-        raw = self._rssr.motion(side, int(samples), rate, table)
-        ends = (0, len(self.columns) - 1)
-        columns = ends if side == "crank" else ends[::-1]
-        return Motion(
-            linkage=self,
-            input=input_name,
-            output=output_name,
-            speed=math.nan if law is not None else rate,
-            samples=int(samples),
-            motion_type=raw["motion_type"],
-            limits=raw["limits"],
-            change_points=raw["change_points"],
-            circuits=tuple(self._circuit(i, c, columns, rate, law) for i, c in enumerate(raw["circuits"])),
-            completeness="closed-form",
-            idle=self.idle,
-            redundant=(),
-            law=law,
-        )
+        rate = self._speed(speed, column)
+        if self._has_closed_form(method):
+            return self._closed_form.motion(column, int(samples), rate, law)
+        return self._general.motion(column, output_column, int(samples), rate, law)
 
-    @property
-    def idle(self) -> tuple[str, ...]:
-        """Freedoms that move no other link."""
-        first, second = self.joints[1].name, self.joints[2].name
-        return (f"spin of the coupler (link 2) about the line of {first} and {second}",)
-
-    def _circuit(
-        self, index: int, raw: Mapping[str, Any], columns: tuple[int, int], speed: float, law: Law | None
-    ) -> Circuit:
-        q, dq, ddq, dddq = raw["joints"]
-        input_column, output_column = columns
-        status = np.array(STATUSES)[raw["status"]]
-        if law is None:
-            time = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(q[:, input_column])))]) / abs(speed)
-            velocity = _scaled(raw["velocity"], speed)
-            acceleration = _scaled(raw["acceleration"], speed * speed)
-        else:
-            time = np.tile(law.t, len(q) // law.t.size)
-            velocity = _sampled(dq[:, output_column], q[:, input_column])
-            acceleration = _sampled(ddq[:, output_column], q[:, input_column])
-        (least, least_at), (greatest, greatest_at) = raw["transmission"]
-        change_point = raw["motion_type"] == "change-point"
-        return Circuit(
-            index=index,
-            motion_type=raw["motion_type"],
-            closed=True,
-            turns=raw["turns"],
-            columns=self.columns,
-            q=q,
-            dq=dq,
-            ddq=ddq,
-            dddq=dddq,
-            time=time,
-            status=status,
-            branch=raw["branch"],
-            mode=raw["mode"],
-            residual=raw["residual"] * self._rssr.size,
-            condition=raw["condition"],
-            dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
-            input_range=raw["input"],
-            output_range=_followed_range(q[:, output_column]) if change_point else raw["output"],
-            transmission=Extremes(least, least_at, greatest, greatest_at),
-            velocity=velocity,
-            acceleration=acceleration,
-            input_column=input_column,
-            output_column=output_column,
-            _point=self._trace,
-        )
-
-    def _trace(self, link: int, at: tuple[float, float, float], rates: Floats) -> Trace:
-        """A point along rows of the first and last joint's angles with derivatives, (n, 2, 4)."""
-        count = len(self.joints)
-        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
-            raise RequestError(
-                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
-            )
-        place = finite_array("at", at)
-        if place.size != 3:
-            raise RequestError(f"at: {place.size} numbers; give three")
-        frame = self.point_frames[link - 1]
-        own = frame[:3, :3] @ place + frame[:3, 3]
-        crank, rocker = (np.ascontiguousarray(rates[:, end]) for end in (0, 1))
-        position, velocity, acceleration, jerk = self._rssr.point(int(link), own, crank, rocker)
-        status = np.full(len(rates), "ok", dtype="<U15")
-        status[np.isnan(velocity[:, 0])] = "dead-centre"
-        unsolved = np.isnan(rates[:, :, 0]).any(axis=1)
-        status[np.isnan(position[:, 0])] = SPIN_UNDEFINED
-        status[unsolved] = "no-solution"
-        return Trace(position, velocity, acceleration, jerk, status)
+    def _has_closed_form(self, method: str) -> bool:
+        if method not in ("auto", "general"):
+            raise RequestError(f"method: {shown(method)} is not offered; give auto or general")
+        return method == "auto" and self.kind == "RSSR"
 
 
 def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:
@@ -331,28 +307,6 @@ def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:
             f"{name}: {array.size} values where the input has {count}; give {count}, or one number"
         )
     return np.ascontiguousarray(np.broadcast_to(array, (count,)))
-
-
-def _scaled(raw: list[tuple[float, float]] | None, factor: float) -> Extremes | None:
-    if raw is None:
-        return None
-    ends = sorted((value * factor, at) for value, at in raw)
-    return Extremes(*ends[0], *ends[1])
-
-
-def _followed_range(angles: Floats) -> tuple[float, float] | None:
-    """The range of an output as sampled along its circuit; `None` where it gains a turn."""
-    if not np.isfinite(angles).all() or abs(angles[-1] - angles[0]) > math.pi:
-        return None
-    return float(angles.min()), float(angles.max())
-
-
-def _sampled(values: Floats, inputs: Floats) -> Extremes | None:
-    """Extremes as sampled: all that a law given by samples can tell."""
-    if np.isnan(values).all():
-        return None
-    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    return Extremes(float(values[low]), float(inputs[low]), float(values[high]), float(inputs[high]))
 
 
 def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike) -> Floats:

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.errors import MissingExtraError, RequestError, shown
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from sevenbar.linkage import Linkage
+    from sevenbar.mobility import Mobility
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -137,6 +138,11 @@ class Law:
             **{name: np.ascontiguousarray(np.broadcast_to(v, (count,))) for name, v in checked.items()}
         )
 
+    @property
+    def table(self) -> Floats:
+        """The input and its derivatives, (n, 4)."""
+        return np.column_stack([self.q, self.dq, self.ddq, self.dddq])
+
 
 @dataclass(frozen=True, eq=False)
 class Circuit:
@@ -164,18 +170,21 @@ class Circuit:
     residual: Floats
     condition: Floats
     dead_centres: tuple[DeadCentre, ...]
-    #: Ranges [rad] of input and output; `None` for one that turns fully.
+    #: Ranges [rad, or length] of input and output; `None` for one that turns fully.
     input_range: tuple[float, float] | None
     output_range: tuple[float, float] | None
-    #: The transmission angle [rad].
-    transmission: Extremes
+    #: The transmission angle [rad]; `None` where it is not defined.
+    transmission: Extremes | None
     #: Of the output's velocity [rad/s] and acceleration [rad/s^2]; `None` where they grow without
     #: bound, or a change point lies within.
     velocity: Extremes | None
     acceleration: Extremes | None
     input_column: int
     output_column: int
-    _point: Callable[[int, tuple[float, float, float], Floats], Trace] = field(repr=False)
+    #: The size of the linkage [length].
+    size: float
+    _point: Callable[[int, Floats], Trace] = field(repr=False)
+    _frames: Floats = field(repr=False)
 
     @property
     def input(self) -> Floats:
@@ -212,12 +221,58 @@ class Circuit:
     def point(self, link: int, at: tuple[float, float, float]) -> Trace:
         """A point of link 1, 2, .. along the circuit.
 
-        `at` is written as for the points of the file: in the link's frame for the dimension forms, in
-        ground coordinates of the drawn pose for the joint form.
+        `at` is written as for the points of the file: (u, v, w) in Denavit-Hartenberg rows, in the
+        link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints.
         """
-        ends = [0, len(self.columns) - 1]
-        rates = np.stack([self.q[:, ends], self.dq[:, ends], self.ddq[:, ends], self.dddq[:, ends]], axis=-1)
-        return self._point(link, at, rates)
+        frame = self._frame(link)
+        place = finite_array("at", at)
+        if place.size != 3:
+            raise RequestError(f"at: {place.size} numbers; give three")
+        return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
+
+    def link_motion(self, link: int) -> LinkMotion:
+        """How link 1, 2, .. turns along the circuit: angular velocity and acceleration, report frame."""
+        self._frame(link)
+        # the axes of the link's frame as far points, so that differences lose nothing
+        places = [np.zeros(3), *(self.size * np.eye(3))]
+        traces = [self._point(int(link), place) for place in places]
+
+        def axes(name: str) -> Floats:
+            origin, *ends = (getattr(trace, name) for trace in traces)
+            return np.stack([(end - origin) / self.size for end in ends], axis=-1)
+
+        turn, rate, second = axes("position"), axes("velocity"), axes("acceleration")
+        back = np.swapaxes(turn, -1, -2)
+        spin = rate @ back
+        return LinkMotion(turn, _axial(spin), _axial(second @ back + rate @ np.swapaxes(rate, -1, -2)))
+
+    def _frame(self, link: object) -> Floats:
+        count = len(self._frames)
+        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
+            raise RequestError(
+                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
+            )
+        frame: Floats = self._frames[int(link) - 1]
+        return frame
+
+
+@dataclass(frozen=True, eq=False)
+class LinkMotion:
+    """How a link turns along a circuit, in the report frame.
+
+    `rotation` (n, 3, 3), its axes as columns; `velocity` [rad/s] and `acceleration` [rad/s^2] are vectors
+    (n, 3). Rows without a value are NaN.
+    """
+
+    rotation: Floats
+    velocity: Floats
+    acceleration: Floats
+
+
+def _axial(matrices: Floats) -> Floats:
+    """The vectors w of the skew parts of matrices (n, 3, 3)."""
+    odd = 0.5 * (matrices - np.swapaxes(matrices, -1, -2))
+    return np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,9 +292,21 @@ class Motion:
     change_points: Floats
     circuits: tuple[Circuit, ...]
     completeness: Literal["closed-form", "algebraic", "searched"]
-    idle: tuple[str, ...]
+    #: How the set of circuits was established.
+    established: str
+    #: Constraints that the others imply, in words.
     redundant: tuple[str, ...]
     law: Law | None = None
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move one link only."""
+        return self.linkage.idle
+
+    @property
+    def mobility(self) -> Mobility:
+        """How freely the linkage moves."""
+        return self.linkage.mobility()
 
     def __iter__(self) -> Iterator[Circuit]:
         return iter(self.circuits)
@@ -272,11 +339,15 @@ def _circuit_columns(circuit: Circuit, linkage: Linkage, unit: str) -> dict[str,
         "status": circuit.status,
         "time_s": circuit.time,
     }
-    for index, name in enumerate(circuit.columns):
-        columns[f"{name}_deg"] = np.degrees(circuit.q[:, index])
-    for suffix, values in (("rad_s", circuit.dq), ("rad_s2", circuit.ddq), ("rad_s3", circuit.dddq)):
-        for index, name in enumerate(circuit.columns):
-            columns[f"{name}_{suffix}"] = values[:, index]
+    slides = [kind == "slide" for kind in linkage.column_kinds]
+    for index, (name, slide) in enumerate(zip(circuit.columns, slides, strict=True)):
+        if slide:
+            columns[f"{name}_{unit}"] = circuit.q[:, index]
+        else:
+            columns[f"{name}_deg"] = np.degrees(circuit.q[:, index])
+    for suffix, values in (("s", circuit.dq), ("s2", circuit.ddq), ("s3", circuit.dddq)):
+        for index, (name, slide) in enumerate(zip(circuit.columns, slides, strict=True)):
+            columns[f"{name}_{unit if slide else 'rad'}_{suffix}"] = values[:, index]
     for point in linkage.points:
         trace = circuit.point(point.link, point.at)
         for letter, suffix, values in (
@@ -288,6 +359,32 @@ def _circuit_columns(circuit: Circuit, linkage: Linkage, unit: str) -> dict[str,
                 columns[f"{point.name}_{letter}{name}_{suffix}"] = values[:, axis]
     columns[f"residual_{unit}"] = circuit.residual
     return columns
+
+
+def driven_time(inputs: Floats, speed: float, law: Law | None) -> Floats:
+    """The time [s] of each row: along the input's travel, or the law's once for each pass."""
+    if law is not None:
+        return np.tile(law.t, len(inputs) // law.t.size)
+    if inputs.size == 0:
+        return np.array([])
+    steps = np.nan_to_num(np.abs(np.diff(inputs)))
+    return np.concatenate([[0.0], np.cumsum(steps)]) / abs(speed)
+
+
+def scaled_extremes(raw: list[tuple[float, float]] | None, factor: float) -> Extremes | None:
+    """The extremes of a rate at another speed than the core's one."""
+    if raw is None:
+        return None
+    ends = sorted((value * factor, at) for value, at in raw)
+    return Extremes(*ends[0], *ends[1])
+
+
+def sampled_extremes(values: Floats, inputs: Floats) -> Extremes | None:
+    """Extremes as sampled: all that a law given by samples can tell."""
+    if np.isnan(values).all():
+        return None
+    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
+    return Extremes(float(values[low]), float(inputs[low]), float(values[high]), float(inputs[high]))
 
 
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:

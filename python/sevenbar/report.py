@@ -23,6 +23,7 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.errors import OutputError
+from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit, DeadCentre, Extremes, Motion
 
 
@@ -36,7 +37,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
             "kind": linkage.kind,
             "joints": [{"name": joint.name, "kind": joint.kind} for joint in linkage.joints],
             "dimensions": dict(linkage.dimensions),
-            "lengths": dict(zip(("crank", "coupler", "rocker"), linkage.lengths, strict=True)),
+            "lengths": _side_lengths(linkage),
         },
         "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
         "drive": {
@@ -57,6 +58,13 @@ def as_dict(motion: Motion) -> dict[str, Any]:
     return _without_nan(report)  # type: ignore[no-any-return]
 
 
+def _side_lengths(linkage: Linkage) -> dict[str, float]:
+    """Crank, coupler and rocker of an RSSR."""
+    if linkage.kind != "RSSR":
+        return {}
+    return dict(zip(("crank", "coupler", "rocker"), linkage.lengths, strict=True))
+
+
 def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
     unbounded = "unbounded" if circuit.input_range is not None else "change-point"
     return {
@@ -74,7 +82,7 @@ def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
         "residual_max": _residual(circuit),
         "swing": circuit.swing,
         "time_ratio": circuit.time_ratio,
-        "transmission": _extremes_dict(circuit.transmission, "ok"),
+        "transmission": _extremes_dict(circuit.transmission, "not-defined"),
         "extremes": {
             "angle": _extremes_dict(circuit.angle, "turns-fully"),
             "velocity": _extremes_dict(circuit.velocity, unbounded),
@@ -112,9 +120,7 @@ def text(motion: Motion) -> RenderableType:
     """The report for people, to be printed by rich; angles in degrees."""
     linkage = motion.linkage
     unit = linkage.length_unit
-    numbers = dict(linkage.dimensions) or dict(
-        zip(("crank", "coupler", "rocker"), linkage.lengths, strict=True)
-    )
+    numbers = dict(linkage.dimensions) or dict(_side_lengths(linkage).items())
     facts = Table.grid(padding=(0, 2))
     facts.add_column(style="dim")
     facts.add_column()
@@ -170,11 +176,8 @@ def _circuit_table(motion: Motion) -> Table:
         (f"range of {output}", lambda c: _range(c.output_range)),
         (f"swing of {output}", lambda c: "full turns" if c.swing is None else _degrees(c.swing)),
         ("time ratio", lambda c: "-" if c.time_ratio is None else f"{c.time_ratio:.6g}"),
-        ("transmission angle min", lambda c: _at(_degrees(c.transmission.lowest), c.transmission.lowest_at)),
-        (
-            "transmission angle max",
-            lambda c: _at(_degrees(c.transmission.highest), c.transmission.highest_at),
-        ),
+        ("transmission angle min", lambda c: _transmission(c, "lowest")),
+        ("transmission angle max", lambda c: _transmission(c, "highest")),
     ]
     quantities: list[tuple[str, str, Callable[[Circuit], Extremes | None]]] = [
         ("angle", "rad", lambda c: c.angle),
@@ -208,6 +211,13 @@ def _extreme_cell(
         return _at(f"{getattr(extremes, end):.6g}", getattr(extremes, f"{end}_at"))
 
     return cell
+
+
+def _transmission(circuit: Circuit, end: str) -> str:
+    extremes = circuit.transmission
+    if extremes is None:
+        return "not defined"
+    return _at(_degrees(getattr(extremes, end)), getattr(extremes, f"{end}_at"))
 
 
 def _dead_centres(circuit: Circuit, kind: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from sevenbar.errors import RequestError, shown, suggestion
 
@@ -33,26 +33,51 @@ def turning_speed(value: object) -> float:
 
     Raises `RequestError` for anything else, for zero, and for a number that is not finite.
     """
-    example = "give a number and a unit, as in '10 rad/s' or '60 rpm'"
+    return _speed(value, TURNING_SPEEDS, "turning", "'10 rad/s' or '60 rpm'")
+
+
+def sliding_speed(value: object, length_unit: str) -> float:
+    """The speed [length_unit/s] of `"10 mm/s"`, `"1 in/s"`, or a number in length units a second.
+
+    Raises `RequestError` for anything else, for zero, and for a number that is not finite.
+
+        >>> sliding_speed("1 in/s", "mm")
+        25.4
+    """
+    # every size is a whole number of micrometres, so the quotient of two is right to the last digit
+    whole = {unit: round(size * 1e6) for unit, size in LENGTHS.items()}
+    sizes = {f"{unit}/s": size / whole[length_unit] for unit, size in whole.items()}
+    return _speed(value, sizes, "sliding", f"'10 {length_unit}/s'")
+
+
+def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str) -> float:
+    hint = f"give a number and a unit, as in {example}"
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
-        raise RequestError(f"{shown(value)} is not a speed; {example}")
+        raise RequestError(f"{shown(value)} is not a speed; {hint}")
     if isinstance(value, str):
         match = _QUANTITY.fullmatch(value)
         if match is None:
-            raise RequestError(f"{shown(value)} is not a speed; {example}")
+            raise RequestError(f"{shown(value)} is not a speed; {hint}")
         number, unit = match.groups()
-        if unit not in TURNING_SPEEDS:
-            raise RequestError(
-                unknown_unit(unit, TURNING_SPEEDS) if unit else f"{shown(value)} has no unit; {example}"
-            )
-        speed = float(number) * TURNING_SPEEDS[unit]
+        if unit not in sizes:
+            raise RequestError(_no_such_speed(value, unit, sizes, motion, hint))
+        speed = float(number) * sizes[unit]
     else:
         try:
             speed = float(value)
         except OverflowError:
             speed = math.inf
     if not 1e-50 <= abs(speed) <= 1e50:
-        raise RequestError(
-            f"{shown(value)} moves nothing; give a finite speed other than 0, as in '10 rad/s'"
-        )
+        first = example.split(" or ")[0]
+        raise RequestError(f"{shown(value)} moves nothing; give a finite speed other than 0, as in {first}")
     return speed
+
+
+def _no_such_speed(value: str, unit: str, sizes: Mapping[str, float], motion: str, hint: str) -> str:
+    if not unit:
+        return f"{shown(value)} has no unit; {hint}"
+    if motion == "turning" and unit in [f"{length}/s" for length in LENGTHS]:
+        return f"{shown(value)} is a sliding speed, and the input turns; {hint}"
+    if motion == "sliding" and unit in TURNING_SPEEDS:
+        return f"{shown(value)} is a turning speed, and the input slides; {hint}"
+    return unknown_unit(unit, sizes)

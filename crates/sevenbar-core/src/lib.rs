@@ -4,6 +4,7 @@
 //! uses, the same in and out.
 
 pub mod error;
+pub mod loops;
 pub mod rigid;
 pub mod rssr;
 pub mod simd;
@@ -11,5 +12,6 @@ pub mod taylor;
 mod trigonometric;
 mod twofold;
 mod vector_math;
+mod vectors;
 
 pub use error::Error;

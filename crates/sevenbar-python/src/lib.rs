@@ -1,5 +1,7 @@
 //! The only crate that knows Python: arrays in, arrays out, the interpreter free while the core works.
 
+mod loops;
+
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyReadonlyArray3, PyReadwriteArray2,
@@ -8,7 +10,6 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sevenbar_core::error::Error;
-use sevenbar_core::rigid::Pose;
 use sevenbar_core::rssr::{self, BatchRates, Circuit, DeadCentreKind, Extent, Extreme, Input, Row};
 use sevenbar_core::taylor::Taylor;
 
@@ -62,9 +63,7 @@ impl Rssr {
                 "base and ground need shape (4, 4), links shape (3, 4, 4)",
             ));
         }
-        let pose = |m: numpy::ndarray::ArrayView2<'_, f64>| {
-            Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| m[[i, j]])))
-        };
+        let pose = loops::pose;
         let links = std::array::from_fn(|n| pose(links.index_axis(numpy::ndarray::Axis(0), n)));
         rssr::Rssr::new(pose(base), pose(ground), links)
             .map(Self)
@@ -282,6 +281,8 @@ fn simd_level() -> &'static str {
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::loops::{Loop, Rows};
     #[pymodule_export]
     use super::{CoreError, Rssr, simd_level};
 

@@ -1,0 +1,149 @@
+//! Any single closed loop: mobility, every assembly mode, whole circuits, rates.
+
+// indices of columns and rows run as in the formulas
+#![allow(clippy::needless_range_loop)]
+
+mod chain;
+mod circuits;
+mod curve;
+mod dense;
+mod lanes;
+mod modes;
+mod motion;
+mod paths;
+mod rates;
+mod reduce;
+mod rows;
+mod starts;
+#[cfg(test)]
+mod tests;
+
+pub use circuits::RowStatus;
+pub use modes::Completeness;
+pub use motion::{Circuit, DeadCentre, Found, Motion};
+pub use reduce::{Idle, Kind};
+pub use rows::Rows;
+
+use crate::rigid::{Pose, norm};
+use reduce::{Reduced, Source, reduce};
+
+/// A closed loop of joints: `base Z1 G1 Z2 .. Zn = ground`.
+#[derive(Clone, Debug)]
+pub struct Loop {
+    reduced: Reduced,
+    /// The sum of the links' lengths; inside, lengths are parts of it.
+    size: f64,
+    /// The first column of each joint.
+    first: Vec<usize>,
+    columns: usize,
+}
+
+/// Joint values of one assembly mode, and its closure error in parts of the size or radians.
+pub type Mode = (Vec<f64>, f64);
+
+impl Loop {
+    /// From the kinds of the joints, the frames of the first joint and of the ground's side of the last, and the transforms of the
+    /// moving links, one fewer than joints.
+    pub fn new(kinds: &[Kind], base: Pose, ground: Pose, links: &[Pose]) -> Self {
+        let closing = ground.inverse().then(&base);
+        let pitches = kinds
+            .iter()
+            .map(|k| if let Kind::Screw(a) = k { a.abs() } else { 0.0 });
+        let size: f64 = links
+            .iter()
+            .chain([&closing])
+            .map(|l| norm(l.translation))
+            .chain(pitches)
+            .sum();
+        // a spherical linkage has no lengths
+        let size = if size > 0.0 { size } else { 1.0 };
+        let small = |p: &Pose| Pose { rotation: p.rotation, translation: p.translation.map(|x| x / size) };
+        let kinds: Vec<Kind> = kinds
+            .iter()
+            .map(|k| {
+                if let Kind::Screw(a) = k {
+                    Kind::Screw(a / size)
+                } else {
+                    *k
+                }
+            })
+            .collect();
+        let links: Vec<Pose> = links.iter().map(small).collect();
+        let mut first = Vec::with_capacity(kinds.len());
+        let mut columns = 0;
+        for kind in &kinds {
+            first.push(columns);
+            columns += kind.columns();
+        }
+        Self {
+            reduced: reduce(&kinds, &small(&base), &small(&ground), &links),
+            size,
+            first,
+            columns,
+        }
+    }
+
+    /// The size of which residuals are parts.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// How many columns of joint values there are.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// How many joints.
+    pub fn joints(&self) -> usize {
+        self.first.len()
+    }
+
+    /// Freedoms that move one link only.
+    pub fn idle(&self) -> &[Idle] {
+        &self.reduced.idle
+    }
+
+    /// Freedoms of the joints less the idle ones.
+    pub fn freedoms(&self) -> usize {
+        self.reduced.freedoms
+    }
+
+    /// The chain's column of a column of the description; `None` for a ball's turn or a held joint.
+    fn chain_column(&self, column: usize) -> Option<usize> {
+        let joint = self.first.iter().rposition(|&f| f <= column)?;
+        let chain = self.reduced.chain.as_ref()?;
+        match (self.reduced.parts[joint].source, self.reduced.parts[joint].kind) {
+            (Source::Joint(_), Kind::Ball) => None,
+            (Source::Joint(j), _) => Some(chain.first[j]),
+            _ => None,
+        }
+    }
+
+    /// Whether a column is a length.
+    fn is_slide(&self, column: usize) -> bool {
+        let joint = self.first.iter().rposition(|&f| f <= column).unwrap_or(0);
+        self.reduced.parts[joint].kind == Kind::Slide
+    }
+
+    /// A value of a column as the chain has it.
+    fn inward(&self, column: usize) -> f64 {
+        if self.is_slide(column) {
+            1.0 / self.size
+        } else {
+            1.0
+        }
+    }
+
+    /// Every assembly mode at one value of a column [rad, or length]; `None` where that column is no input.
+    pub fn modes(&self, column: usize, value: f64) -> Option<(Vec<Mode>, Completeness)> {
+        let chain = self.reduced.chain.as_ref()?;
+        let input = self.chain_column(column)?;
+        let finder = modes::ModeFinder::new(chain, input);
+        let found = finder
+            .at(value * self.inward(column))
+            .iter()
+            .map(|at| (self.joint_values(at), chain.residual(&chain.place(at))))
+            .collect();
+        Some((found, finder.completeness()))
+    }
+}

@@ -1,0 +1,428 @@
+//! Every assembly mode at one input.
+//!
+//! Where all passive joints turn or slide, the closure is algebraic. Its solutions are carried from a general closure with all
+//! its solutions known (see [`super::starts`]) to this chain with its input at a general complex value, once; from there to
+//! any real input only the input moves. Chains with fewer than six passive freedoms close although they have too few; joints
+//! about axes in general position are added, and the solutions kept in which these stay at zero.
+
+use super::chain::{BALLS, COLUMNS, Chain, Columns, Configuration, Joint, product, short_way, squared_up};
+use super::dense::{Factored, ROWS};
+use super::paths::{JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::starts::{Frame, Random, STARTS, distinct, general_count, start};
+use crate::rigid::Pose;
+use num_complex::Complex64;
+
+/// How complete a set of modes is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Completeness {
+    /// All solutions over the complex numbers were accounted for.
+    Algebraic,
+    /// Found from many starts; no proof that there are no others.
+    Searched,
+}
+
+impl Completeness {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Algebraic => "algebraic",
+            Self::Searched => "searched",
+        }
+    }
+}
+
+/// A solution whose turns or slides have larger imaginary parts than this is not tried as a real one.
+const REAL: f64 = 1e-5;
+
+/// A real solution may move by this much [rad, or parts of the size] when it is polished on the chain itself.
+const POLISHED_MOVE: f64 = 1e-3;
+
+/// The closure error [rad, or parts of the size] that a mode may keep.
+pub(super) const CLOSED: f64 = 1e-11;
+
+/// Modes nearer than this in every joint [rad, or parts of the size] are one.
+pub(super) const SAME_MODE: f64 = 1e-7;
+
+/// Starts of the search where there is no algebraic way.
+const SEARCH_STARTS: usize = 1500;
+
+/// Turns to each side within which a screw joint is searched.
+pub(super) const SCREW_TURNS: f64 = 1.0;
+
+/// What an unknown of the closure stands for.
+#[derive(Clone, Copy, Debug)]
+enum Unknown {
+    Column(usize),
+    /// The first, second or third turn of a ball, about z, y and x.
+    BallTurn(usize, usize),
+    Added,
+}
+
+/// Finds the modes of one chain at any value of one input.
+pub(super) struct ModeFinder<'a> {
+    chain: &'a Chain,
+    input: usize,
+    unknowns: Vec<Unknown>,
+    slides: Slides,
+    /// The fixed transform after each unknown, the last one before the input, and that after the input.
+    transforms: Vec<Pose>,
+    generic: Option<Generic>,
+}
+
+/// The input as the closure takes it: `e^(i t)` and the slide. A screw's two are moved apart on the way to it.
+#[derive(Clone, Copy)]
+struct Input {
+    turn: Complex64,
+    slide: Complex64,
+}
+
+/// All solutions at a general complex value of the input.
+struct Generic {
+    input: Input,
+    solutions: Vec<Solution>,
+}
+
+fn about_y() -> Pose {
+    Pose {
+        rotation: [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]],
+        translation: [0.0; 3],
+    }
+}
+
+fn about_x() -> Pose {
+    Pose {
+        rotation: [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]],
+        translation: [0.0; 3],
+    }
+}
+
+impl<'a> ModeFinder<'a> {
+    pub fn new(chain: &'a Chain, input: usize) -> Self {
+        let mut finder = Self {
+            chain,
+            input,
+            unknowns: Vec::new(),
+            slides: [false; UNKNOWNS],
+            transforms: Vec::new(),
+            generic: None,
+        };
+        let input_joint = chain.joint_of(input);
+        let count = chain.joints.len();
+        // the transform that leads up to the next unknown
+        let mut lead = chain.links[input_joint];
+        let mut algebraic = true;
+        let mut before = Vec::new();
+        for step in 1..count {
+            let joint = (input_joint + step) % count;
+            match chain.joints[joint] {
+                Joint::Ball(b) => {
+                    let (y, x) = (about_y(), about_x());
+                    before.push(lead);
+                    before.push(y);
+                    before.push(y.inverse().then(&x));
+                    finder.unknowns.extend((0..3).map(|k| Unknown::BallTurn(b, k)));
+                    lead = x.inverse().then(&chain.links[joint]);
+                }
+                kind => {
+                    algebraic &= !matches!(kind, Joint::Screw(_));
+                    before.push(lead);
+                    finder.unknowns.push(Unknown::Column(chain.first[joint]));
+                    lead = chain.links[joint];
+                }
+            }
+        }
+        let mut random = Random(0x5eed);
+        while finder.unknowns.len() < UNKNOWNS {
+            let added = random_pose(&mut random);
+            before.push(lead.then(&added));
+            finder.unknowns.push(Unknown::Added);
+            lead = added.inverse();
+        }
+        before.push(lead);
+        finder.transforms = before;
+        for (slide, unknown) in finder.slides.iter_mut().zip(&finder.unknowns) {
+            *slide =
+                matches!(unknown, Unknown::Column(c) if chain.joints[chain.joint_of(*c)] == Joint::Slide);
+        }
+        if algebraic && finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0 {
+            finder.generic = Some(finder.solve_generic());
+        }
+        finder
+    }
+
+    pub fn completeness(&self) -> Completeness {
+        if self.generic.is_some() {
+            Completeness::Algebraic
+        } else {
+            Completeness::Searched
+        }
+    }
+
+    /// How many solutions there are over the complex numbers at a general input.
+    #[cfg(test)]
+    pub fn complex_count(&self) -> Option<usize> {
+        self.generic.as_ref().map(|g| g.solutions.len())
+    }
+
+    /// The closure at an input, and what its unknowns differ by from the joints' values.
+    fn parameters(&self, input: Input) -> (Parameters, [Complex64; UNKNOWNS]) {
+        let one = Complex64::ONE;
+        // the transform in front of each joint, in loop order from the first unknown; the last stands before the input
+        let normal: Vec<_> = self.transforms[1..]
+            .iter()
+            .chain(&self.transforms[..1])
+            .map(|t| Frame::from_pose(t).normal_form())
+            .collect();
+        let mut parameters = Parameters {
+            twists: std::array::from_fn(|i| normal[i].twist),
+            shifts: std::array::from_fn(|i| normal[i].shift),
+            turns: [one; JOINTS],
+            slide: Complex64::ZERO,
+        };
+        let shift: [Complex64; JOINTS] =
+            std::array::from_fn(|i| normal[i].before * normal[(i + JOINTS - 1) % JOINTS].after);
+        parameters.turns = shift;
+        parameters.turns[UNKNOWNS] *= input.turn;
+        parameters.slide = input.slide;
+        (parameters, std::array::from_fn(|i| shift[i]))
+    }
+
+    fn solve_generic(&self) -> Generic {
+        let input = self.generic_input(&mut Random(0xa110));
+        let (target, _) = self.parameters(input);
+        let want = general_count(&self.slides);
+        let mut solutions = Vec::new();
+        for n in 0..STARTS {
+            let start = start(&self.slides, n);
+            let ends = follow(&self.slides, &start.parameters, &target, &start.solutions);
+            let before = solutions.len();
+            solutions = distinct(
+                &self.slides,
+                solutions.into_iter().chain(ends.into_iter().flatten()),
+            );
+            // a second start that finds nothing new confirms a special chain; a general one needs no other word
+            if solutions.len() >= want || (n > 0 && solutions.len() == before) {
+                break;
+            }
+        }
+        Generic { input, solutions }
+    }
+
+    /// All modes with the input at this value [rad, or parts of the size].
+    pub fn at(&self, value: f64) -> Vec<Configuration> {
+        let Some(generic) = &self.generic else {
+            return self.search(value);
+        };
+        let input = self.input_at(value);
+        let (from, _) = self.parameters(generic.input);
+        let (to, shift) = self.parameters(input);
+        let mut ends: Vec<Solution> = Vec::new();
+        let mut random = Random(0xde70);
+        for attempt in 0..4 {
+            let found = if attempt == 0 {
+                follow(&self.slides, &from, &to, &generic.solutions)
+            } else {
+                // another way round whatever the straight way came too near to
+                let (aside, _) = self.parameters(self.generic_input(&mut random));
+                let first = follow(&self.slides, &from, &aside, &generic.solutions);
+                let first: Vec<Solution> = first.into_iter().flatten().collect();
+                follow(&self.slides, &aside, &to, &first)
+            };
+            let before = ends.len();
+            ends = distinct(&self.slides, ends.into_iter().chain(found.into_iter().flatten()));
+            if ends.len() >= generic.solutions.len() || (attempt > 0 && ends.len() == before) {
+                break;
+            }
+        }
+        let mut modes: Vec<Configuration> = Vec::new();
+        for end in ends {
+            let Some(rough) = self.configuration(&end, &shift, value) else {
+                continue;
+            };
+            if let Some(mode) = polish(self.chain, self.input, &rough, POLISHED_MOVE)
+                && modes.iter().all(|m| !same(self.chain, m, &mode))
+            {
+                modes.push(mode);
+            }
+        }
+        self.in_order(modes)
+    }
+
+    fn input_at(&self, value: f64) -> Input {
+        let turn = Complex64::from_polar(1.0, value);
+        match self.chain.joints[self.chain.joint_of(self.input)] {
+            Joint::Slide => Input { turn: Complex64::ONE, slide: value.into() },
+            Joint::Screw(advance) => Input { turn, slide: (advance * value).into() },
+            _ => Input { turn, slide: Complex64::ZERO },
+        }
+    }
+
+    fn generic_input(&self, random: &mut Random) -> Input {
+        let (turn, slide) = (random.phase(), random.phase());
+        match self.chain.joints[self.chain.joint_of(self.input)] {
+            Joint::Slide => Input { turn: Complex64::ONE, slide },
+            Joint::Screw(_) => Input { turn, slide },
+            _ => Input { turn, slide: Complex64::ZERO },
+        }
+    }
+
+    fn in_order(&self, mut modes: Vec<Configuration>) -> Vec<Configuration> {
+        modes.retain(|m| self.chain.counts(m));
+        for mode in &mut modes {
+            for column in 0..self.chain.columns {
+                if self.chain.is_turn(column) {
+                    mode.values[column] = short_way(mode.values[column]);
+                }
+            }
+        }
+        let key = |m: &Configuration| -> Vec<f64> {
+            let balls = m.balls.iter().flatten().flatten();
+            m.values.iter().chain(balls).map(|x| (x * 1e6).round()).collect()
+        };
+        modes.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+        modes
+    }
+
+    /// The joints of a real solution; `None` for one that is not real, or in which an added joint moved.
+    fn configuration(
+        &self,
+        solution: &Solution,
+        shift: &[Complex64; UNKNOWNS],
+        value: f64,
+    ) -> Option<Configuration> {
+        let mut out = Configuration::ZERO;
+        out.values[self.input] = value;
+        let mut turns = [[0.0; 3]; BALLS];
+        for (i, unknown) in self.unknowns.iter().enumerate() {
+            let real = if self.slides[i] {
+                let x = solution[i];
+                (x.im.abs() < REAL * (1.0 + x.re.abs())).then_some(x.re)?
+            } else {
+                let z = solution[i] / shift[i];
+                ((z.norm() - 1.0).abs() < REAL).then_some(z.arg())?
+            };
+            match *unknown {
+                Unknown::Column(c) => out.values[c] = real,
+                Unknown::BallTurn(b, k) => turns[b][k] = real,
+                Unknown::Added => {
+                    if real.abs() > REAL {
+                        return None;
+                    }
+                }
+            }
+        }
+        for (ball, t) in out.balls.iter_mut().zip(&turns) {
+            *ball = ball_rotation(t);
+        }
+        Some(out)
+    }
+
+    /// Newton from many places; screws within [`SCREW_TURNS`].
+    fn search(&self, value: f64) -> Vec<Configuration> {
+        let chain = self.chain;
+        let mut random = Random(0x5ea4c4);
+        let mut modes: Vec<Configuration> = Vec::new();
+        for _ in 0..SEARCH_STARTS {
+            let mut rough = Configuration::ZERO;
+            for (joint, &column) in chain.joints.iter().zip(&chain.first) {
+                let centred = 2.0 * random.uniform() - 1.0;
+                match joint {
+                    Joint::Slide => rough.values[column] = centred,
+                    Joint::Screw(_) => {
+                        rough.values[column] = centred * SCREW_TURNS * std::f64::consts::TAU;
+                    }
+                    Joint::Turn => rough.values[column] = centred * std::f64::consts::PI,
+                    Joint::Ball(b) => {
+                        let angle = |r: &mut Random| std::f64::consts::TAU * r.uniform();
+                        rough.balls[*b] =
+                            ball_rotation(&[angle(&mut random), angle(&mut random), angle(&mut random)]);
+                    }
+                }
+            }
+            rough.values[self.input] = value;
+            let in_range = |m: &Configuration| {
+                chain.joints.iter().zip(&chain.first).all(|(joint, &c)| {
+                    !matches!(joint, Joint::Screw(_))
+                        || c == self.input
+                        || m.values[c].abs() <= SCREW_TURNS * std::f64::consts::TAU
+                })
+            };
+            if let Some(mode) = polish(chain, self.input, &rough, f64::INFINITY)
+                && in_range(&mode)
+                && modes.iter().all(|m| !same(chain, m, &mode))
+            {
+                modes.push(mode);
+            }
+        }
+        self.in_order(modes)
+    }
+}
+
+pub(super) fn random_pose(random: &mut Random) -> Pose {
+    let v = std::array::from_fn(|_| 2.0 * random.uniform() - 1.0);
+    Pose {
+        rotation: squared_up(&super::chain::rotation(crate::rigid::scale(v, 2.0))),
+        translation: std::array::from_fn(|_| 1.2 * random.uniform() - 0.6),
+    }
+}
+
+/// `Rz(t1) Ry(t2) Rx(t3)`
+pub(super) fn ball_rotation(t: &[f64; 3]) -> [[f64; 3]; 3] {
+    let about = |axis: usize, angle: f64| {
+        super::chain::rotation(std::array::from_fn(|k| if k == axis { angle } else { 0.0 }))
+    };
+    product(&product(&about(2, t[0]), &about(1, t[1])), &about(0, t[2]))
+}
+
+pub(super) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool {
+    chain.difference(a, b).iter().all(|d| d.abs() < SAME_MODE)
+}
+
+/// Newton's method with the input held; `None` where it does not close, or goes farther than `reach`.
+pub(super) fn polish(
+    chain: &Chain,
+    input: usize,
+    rough: &Configuration,
+    reach: f64,
+) -> Option<Configuration> {
+    let mut at = *rough;
+    let mut best = f64::INFINITY;
+    for step in 0..60 {
+        let placed = chain.place(&at);
+        let residual = chain.residual(&placed);
+        if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
+            break;
+        }
+        best = best.min(residual);
+        let mut columns = [[0.0; ROWS]; COLUMNS];
+        for (c, column) in columns.iter_mut().enumerate().take(chain.columns) {
+            if c == input {
+                // held, also where redundant constraints would rather have it move
+                column[6] = 1.0;
+            } else {
+                column[..6].copy_from_slice(&placed.screws[c]);
+            }
+        }
+        let mut right = [0.0; ROWS];
+        for (r, e) in right.iter_mut().zip(&placed.error) {
+            *r = -e;
+        }
+        let by = Factored::new(columns, chain.columns).solve(right);
+        let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
+        if !longest.is_finite() || (step > 25 && residual > 1e-3) {
+            return None;
+        }
+        // a full step near the answer, a bounded one far from it
+        let factor = if longest > 1.0 { 1.0 / longest } else { 1.0 };
+        let by: Columns = by.map(|b| b * factor);
+        at = chain.moved(&at, &by);
+        for ball in &mut at.balls {
+            *ball = squared_up(ball);
+        }
+    }
+    let gone = chain
+        .difference(rough, &at)
+        .iter()
+        .fold(0.0, |m: f64, d| m.max(d.abs()));
+    (chain.residual(&chain.place(&at)) < CLOSED && gone <= reach).then_some(at)
+}

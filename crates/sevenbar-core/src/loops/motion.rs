@@ -1,0 +1,524 @@
+//! The whole motion of a loop: every circuit found, over any input and output.
+
+use super::Loop;
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
+use super::circuits::{Passes, Row, RowStatus};
+use super::curve::{Curve, End, combined, dot};
+use super::dense::singular_values;
+use super::modes::{CLOSED, Completeness, ModeFinder};
+use super::rows::Rows;
+use std::f64::consts::TAU;
+
+/// Values of a joint at which the modes are found, all of which must lie on the circuits.
+const SEEDS: usize = 24;
+
+/// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
+const SEED_JOINTS: usize = 2;
+
+/// The same where modes are searched for.
+const SEARCHED_SEEDS: usize = 4;
+
+/// Singular values below this part of the greatest are zero.
+const NO_RANK: f64 = 1e-8;
+
+/// Rows in a turn from which extremes are bracketed.
+const LEAST_ROWS: usize = 180;
+
+/// How freely a loop moves, as found in its poses.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Rank of the joints' screws, idle freedoms aside.
+    pub rank: usize,
+    /// Wrenches that the redundant constraints bear, a basis: force and moment in the frame of the first joint.
+    pub redundant: Vec<[f64; 6]>,
+    /// Freedoms of the motion as found.
+    pub finite: usize,
+}
+
+/// A change of direction of the input or the output.
+#[derive(Clone, Copy, Debug)]
+pub struct DeadCentre {
+    /// Whether it is the input that stands still.
+    pub of_input: bool,
+    /// Both joints' values.
+    pub input: f64,
+    /// The output's.
+    pub output: f64,
+    /// The pass it lies on.
+    pub branch: usize,
+    /// Norm of the inverse of the bordered Jacobian there.
+    pub condition: f64,
+}
+
+/// One connected motion over an input.
+#[derive(Clone, Debug)]
+pub struct Circuit {
+    /// The rows.
+    pub rows: Rows,
+    /// Whether it comes back to its first pose.
+    pub closed: bool,
+    /// Whether it ends where it is not smooth.
+    pub singular: bool,
+    /// Turns of the input after which it closes; none where the input rocks.
+    pub turns: usize,
+    /// Ranges of input and output; `None` for a joint that turns fully.
+    pub input: Option<[f64; 2]>,
+    /// The output's.
+    pub output: Option<[f64; 2]>,
+    /// In the order of the circuit.
+    pub dead_centres: Vec<DeadCentre>,
+    /// Lowest and highest velocity and acceleration of the output at unit speed of the input, each with the input.
+    pub extremes: [Option<[[f64; 2]; 2]>; 2],
+}
+
+/// What a loop does.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// How many freedoms it has and how they were counted; `None` where it was not found in any pose.
+    pub found: Option<Found>,
+    /// How completely the modes at the seeds are known.
+    pub completeness: Completeness,
+    /// Columns at whose values all modes were found.
+    pub seed_columns: Vec<usize>,
+    /// How many values of each.
+    pub seeds: usize,
+    /// Modes at the seeds that run into a place where the motion is not smooth, or do not move.
+    pub still: usize,
+    /// The circuits.
+    pub circuits: Vec<Circuit>,
+    /// Whether some circuit has the input at rest.
+    pub input_rests: bool,
+}
+
+/// All curves of a chain.
+struct Curves {
+    curves: Vec<Curve>,
+    found: Option<Found>,
+    completeness: Completeness,
+    seed_columns: Vec<usize>,
+    seeds: usize,
+    still: usize,
+}
+
+impl Loop {
+    /// Every circuit over the inputs of one column, on a grid of `samples` a turn or at the inputs of a law.
+    ///
+    /// `None` where one of the columns is no joint of one freedom that moves.
+    pub fn motion(
+        &self,
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<&[[f64; 4]]>,
+    ) -> Option<Motion> {
+        let Some(chain) = &self.reduced.chain else {
+            return Some(Motion {
+                found: None,
+                completeness: Completeness::Searched,
+                seed_columns: Vec::new(),
+                seeds: 0,
+                still: 0,
+                circuits: Vec::new(),
+                input_rests: false,
+            });
+        };
+        let (a, b) = (self.chain_column(input)?, self.chain_column(output)?);
+        let curves = curves(chain, &[a, b], false);
+        let passes: Vec<Option<Passes>> = curves.curves.iter().map(|c| Passes::new(chain, c, a)).collect();
+        let input_rests = passes.iter().any(Option::is_none);
+        let passes: Vec<Passes> = passes.into_iter().flatten().collect();
+        let (origin, step) = grid(chain, &passes, a, samples);
+        let circuits = passes
+            .iter()
+            .map(|p| self.circuit(p, (input, output), (a, b), (origin, step), speed, law))
+            .collect();
+        Some(Motion {
+            found: curves.found,
+            completeness: curves.completeness,
+            seed_columns: (0..self.columns)
+                .filter(|&c| {
+                    self.chain_column(c)
+                        .is_some_and(|c| curves.seed_columns.contains(&c))
+                })
+                .collect(),
+            seeds: curves.seeds,
+            still: curves.still,
+            circuits,
+            input_rests,
+        })
+    }
+
+    /// How freely the loop moves, from the first poses found over the values of a column.
+    pub fn mobility(&self, column: usize) -> Option<Found> {
+        let chain = self.reduced.chain.as_ref()?;
+        curves(chain, &[self.chain_column(column)?], true).found
+    }
+
+    fn circuit(
+        &self,
+        passes: &Passes,
+        columns: (usize, usize),
+        inner: (usize, usize),
+        grid: (f64, f64),
+        speed: f64,
+        law: Option<&[[f64; 4]]>,
+    ) -> Circuit {
+        let chain = self.reduced.chain.as_ref().unwrap_or_else(|| unreachable!());
+        let (a, b) = inner;
+        let (first, last) = (
+            &passes.curve.nodes[0],
+            &passes.curve.nodes[passes.curve.nodes.len() - 1],
+        );
+        let gained: Columns = combined(&last.at.values, 1.0, &first.at.values, -1.0);
+        let closed = passes.curve.end == End::Closed;
+        let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
+        let rocks = passes.rocks() || !turning(a);
+        let unit = [1.0, 0.0, 0.0];
+        let mut rows = passes.rows(grid.0, grid.1, &unit);
+        if !rocks {
+            begin_at_zero(chain, &mut rows, a, &gained, grid.1);
+        }
+        let extremes = if rocks || !closed || law.is_some() {
+            [None, None]
+        } else {
+            let dense;
+            let from = if rows.len() >= LEAST_ROWS {
+                &rows
+            } else {
+                dense = passes.rows(0.0, TAU / 360.0, &unit);
+                &dense
+            };
+            [1, 2].map(|order| output_extremes(passes, from, b, order, &gained))
+        };
+        // whole turns that bring the first row into (-pi, pi]
+        let mut shift = [0.0; COLUMNS];
+        if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
+            for (c, s) in shift.iter_mut().enumerate() {
+                if chain.is_turn(c) {
+                    *s = -TAU * ((row.at.values[c] - short_way(row.at.values[c])) / TAU).round();
+                }
+            }
+        }
+        let scale = |column: usize| 1.0 / self.inward(column);
+        let outward = |c: usize, column: usize, v: f64| (v + shift[c]) * scale(column);
+        let place = |n: &Configuration| {
+            (
+                outward(a, columns.0, n.values[a]),
+                outward(b, columns.1, n.values[b]),
+            )
+        };
+        let mut dead_centres: Vec<DeadCentre> = Vec::new();
+        for (n, limit) in passes.limits.iter().enumerate() {
+            if closed && n + 1 == passes.limits.len() && n > 0 {
+                break;
+            }
+            let (input, output) = place(&limit.at);
+            dead_centres.push(DeadCentre {
+                of_input: true,
+                input,
+                output,
+                branch: n.min(passes.passes.len() - 1),
+                condition: limit.inverse_norm,
+            });
+        }
+        let turnings = passes.curve.turnings(chain, b);
+        for t in &turnings {
+            let (input, output) = place(&t.node.at);
+            let branch = passes.passes.iter().position(|p| t.segment < p.to.0).unwrap_or(0);
+            dead_centres.push(DeadCentre {
+                of_input: false,
+                input,
+                output,
+                branch,
+                condition: t.node.inverse_norm,
+            });
+        }
+        let range = |c: usize, column: usize, turnings: &mut dyn Iterator<Item = f64>| {
+            let ends = turnings
+                .chain([first.at.values[c], last.at.values[c]])
+                .map(|v| outward(c, column, v))
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |m, v| {
+                    [m[0].min(v), m[1].max(v)]
+                });
+            Some(ends)
+        };
+        let input_range = if rocks {
+            range(a, columns.0, &mut passes.limits.iter().map(|n| n.at.values[a]))
+        } else {
+            None
+        };
+        let output_range = if turning(b) {
+            None
+        } else if closed && !turnings.is_empty() {
+            let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+            for t in &turnings {
+                let v = outward(b, columns.1, t.node.at.values[b]);
+                ends = [ends[0].min(v), ends[1].max(v)];
+            }
+            Some(ends)
+        } else {
+            range(b, columns.1, &mut turnings.iter().map(|t| t.node.at.values[b]))
+        };
+        if let Some(law) = law {
+            let inner_law: Vec<[f64; 4]> = law
+                .iter()
+                .map(|q| q.map(|x| x * self.inward(columns.0)))
+                .collect();
+            rows = passes.law_rows(&inner_law, chain.is_turn(a));
+        }
+        let mut offsets = vec![0.0; self.columns];
+        for (column, offset) in offsets.iter_mut().enumerate() {
+            if let Some(c) = self.chain_column(column) {
+                *offset = shift[c];
+            }
+        }
+        Circuit {
+            rows: Rows {
+                rows,
+                offsets,
+                speed: if law.is_some() {
+                    1.0
+                } else {
+                    speed * self.inward(columns.0)
+                },
+            },
+            closed,
+            singular: passes.curve.end == End::Singular,
+            turns: if rocks {
+                0
+            } else {
+                (gained[a] / TAU).abs().round() as usize
+            },
+            input: input_range,
+            output: output_range,
+            dead_centres,
+            extremes: extremes
+                .map(|e| e.map(|ends| ends.map(|[value, at]| [value * scale(columns.1), at + shift[a]]))),
+        }
+    }
+}
+
+/// The curves through all modes at the seeds, or the first: seeds are values of the wished joints if they turn, else of the
+/// first joints that do.
+fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
+    let mut seeds: Vec<usize> = Vec::new();
+    for c in wished.iter().copied().chain(0..chain.columns) {
+        if chain.is_turn(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
+            seeds.push(c);
+        }
+    }
+    let mut out = Curves {
+        curves: Vec::new(),
+        found: None,
+        completeness: Completeness::Algebraic,
+        seed_columns: seeds.clone(),
+        seeds: 0,
+        still: 0,
+    };
+    // the pose of a drawing first: the joints are zero there
+    if chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED {
+        out.take(chain, &Configuration::ZERO);
+    }
+    for seed in seeds {
+        let finder = ModeFinder::new(chain, seed);
+        let searched = finder.completeness() == Completeness::Searched;
+        if searched {
+            out.completeness = Completeness::Searched;
+        }
+        let count = if searched { SEARCHED_SEEDS } else { SEEDS };
+        out.seeds = count;
+        for k in 0..count {
+            if first_only && !out.curves.is_empty() {
+                break;
+            }
+            for mode in finder.at(TAU * k as f64 / count as f64) {
+                out.take(chain, &mode);
+            }
+        }
+    }
+    if out.seed_columns.is_empty() {
+        out.completeness = Completeness::Searched;
+    }
+    if out.curves.is_empty()
+        && let Some(found) = &mut out.found
+        && found.finite == 1
+    {
+        found.finite = 0;
+    }
+    out
+}
+
+impl Curves {
+    /// Follows the motion through a mode, unless it lies on one that was followed already.
+    fn take(&mut self, chain: &Chain, mode: &Configuration) {
+        if self.curves.iter().any(|c| lies_on(chain, c, mode)) {
+            return;
+        }
+        let placed = chain.place(mode);
+        let columns: Vec<Vec<f64>> = (0..chain.columns).map(|c| placed.screws[c].to_vec()).collect();
+        let (values, _) = singular_values(&columns);
+        let rank = values
+            .iter()
+            .take(6)
+            .filter(|&&v| v > NO_RANK * values[0])
+            .count();
+        if self.found.as_ref().is_none_or(|f| rank > f.rank) {
+            self.found = Some(Found {
+                rank,
+                redundant: wrenches(&columns, rank),
+                finite: chain.columns - rank,
+            });
+        }
+        if chain.columns - rank != 1 {
+            self.still += 1;
+            return;
+        }
+        let curve = chain.follow(mode);
+        if curve.nodes.len() < 3 || curve.end == End::Open {
+            self.still += 1;
+            return;
+        }
+        self.curves.push(curve);
+    }
+}
+
+/// A basis of the wrenches that no joint yields to: force and moment with zero power on every screw.
+fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
+    let rows: Vec<Vec<f64>> = (0..6)
+        .map(|r| {
+            let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
+            row.resize(row.len().max(6), 0.0);
+            row
+        })
+        .collect();
+    let (_, vectors) = singular_values(&rows);
+    vectors[rank.min(6)..]
+        .iter()
+        // the power of force f and moment m on (w, v) is m w + f v
+        .map(|v| [v[3], v[4], v[5], v[0], v[1], v[2]])
+        .collect()
+}
+
+/// Whether a mode is a place of a curve: by the argument of [`super::curve`] the only one in a node's ball.
+fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
+    // a scalar column tells most nodes apart at once
+    let probe = chain
+        .joints
+        .iter()
+        .zip(&chain.first)
+        .find(|(j, _)| **j == Joint::Turn)
+        .map(|(_, &c)| c);
+    curve.nodes.iter().any(|node| {
+        if let Some(c) = probe
+            && short_way(mode.values[c] - node.at.values[c]).abs() > 2.0 * node.reach
+        {
+            return false;
+        }
+        let off = chain.difference(&node.at, mode);
+        let along = dot(&off, &node.tangent);
+        let across = combined(&off, 1.0, &node.tangent, -along);
+        along.abs() <= node.reach && dot(&across, &across).sqrt() <= node.reach
+    })
+}
+
+/// Origin and step of the inputs of rows.
+fn grid(chain: &Chain, passes: &[Passes], input: usize, samples: usize) -> (f64, f64) {
+    if chain.is_turn(input) {
+        return (0.0, TAU / samples as f64);
+    }
+    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+    for pass in passes.iter().flat_map(|p| &p.passes) {
+        ends = [
+            ends[0].min(pass.start).min(pass.end),
+            ends[1].max(pass.start).max(pass.end),
+        ];
+    }
+    let span = ends[1] - ends[0];
+    if span > 0.0 {
+        (ends[0], span / samples as f64)
+    } else {
+        (0.0, 1.0)
+    }
+}
+
+/// Rows of a circuit that goes round, begun at the input zero.
+fn begin_at_zero(chain: &Chain, rows: &mut [Row], input: usize, gained: &Columns, step: f64) {
+    let whole =
+        |r: &Row| (r.at.values[input] / TAU - (r.at.values[input] / TAU).round()).abs() * TAU < 0.5 * step;
+    let Some(first) = rows.iter().position(whole) else {
+        return;
+    };
+    for row in &mut rows[..first] {
+        for c in 0..chain.columns {
+            row.at.values[c] += gained[c];
+        }
+    }
+    rows.rotate_left(first);
+}
+
+/// The lowest and highest rate of the output of an order, at zeros of the next order's, each with the input.
+fn output_extremes(
+    passes: &Passes,
+    rows: &[Row],
+    output: usize,
+    order: usize,
+    gained: &Columns,
+) -> Option<[[f64; 2]; 2]> {
+    let factorial = [1.0, 1.0, 2.0];
+    let rate = |row: &Row, n: usize| row.rates[n - 1][output] * factorial[n - 1];
+    if rows.iter().any(|r| r.status != RowStatus::Ok) {
+        return None;
+    }
+    let start = passes.passes[0].start;
+    let mut ends = [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]];
+    let mut look = |row: &Row| {
+        let (value, at) = (rate(row, order), row.at.values[passes.input]);
+        if value < ends[0][0] {
+            ends[0] = [value, at];
+        }
+        if value > ends[1][0] {
+            ends[1] = [value, at];
+        }
+    };
+    for (k, row) in rows.iter().enumerate() {
+        look(row);
+        let mut next = rows[(k + 1) % rows.len()];
+        if k + 1 == rows.len() {
+            for c in 0..COLUMNS {
+                next.at.values[c] += gained[c];
+            }
+        }
+        let (mut low, mut high) = (
+            (row.at.values[passes.input], rate(row, order + 1)),
+            (next.at.values[passes.input], rate(&next, order + 1)),
+        );
+        if low.1 * high.1 >= 0.0 {
+            continue;
+        }
+        for step in 0..40 {
+            let x = if step % 3 == 2 {
+                0.5 * (low.0 + high.0)
+            } else {
+                (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
+            };
+            let span = gained[passes.input];
+            let inside = start + (x - start).rem_euclid(span);
+            let Some(mut here) = passes.row(0, inside, &[1.0, 0.0, 0.0]) else {
+                break;
+            };
+            here.at.values[passes.input] = x;
+            look(&here);
+            let value = rate(&here, order + 1);
+            if value.abs() < 1e-13 || (high.0 - low.0).abs() < 1e-14 {
+                break;
+            }
+            if value * low.1 > 0.0 {
+                low = (x, value);
+            } else {
+                high = (x, value);
+            }
+        }
+    }
+    Some(ends)
+}

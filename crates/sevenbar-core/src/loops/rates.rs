@@ -1,0 +1,201 @@
+//! Velocities, accelerations and jerks: the closure of velocities `sum Si ui = 0` as a power series in time.
+//!
+//! A joint's screw is carried by the link before it, `Si' = [Vi, Si]` with `Vi = sum Sj uj (j before i)`, so the series of the
+//! screws follow from those of the joint rates `u`, and these order by order from one factorised matrix:
+//! `A u_k = - sum (a >= 1) Si_a ui_(k-a)`. Nothing is differenced and no angle is differentiated.
+
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket};
+use super::dense::{Factored, ROWS};
+use crate::rigid::{Pose, Vec3};
+use crate::taylor::Taylor;
+
+/// Orders of the rates: velocity, acceleration, jerk.
+pub(super) const ORDERS: usize = 3;
+
+/// Power series of the joint rates `u(t) = u0 + u1 t + u2 t^2`; a ball's are its angular velocity in the frame before it.
+pub(super) type Rates = [Columns; ORDERS];
+
+impl Chain {
+    /// The twists of the link before each joint, to the orders that the rates so far allow, and the screws' series.
+    #[inline(always)]
+    fn carried(&self, screws: &mut [[Twist; COLUMNS]; ORDERS], rates: &Rates, order: usize) {
+        // the screws' coefficients of this order, from the twists and screws of lower ones
+        let mut twists = [[0.0; 6]; ORDERS];
+        for (joint, &first) in self.joints.iter().zip(&self.first) {
+            let width = if matches!(joint, Joint::Ball(_)) { 3 } else { 1 };
+            for c in first..first + width {
+                let mut sum = [0.0; 6];
+                for a in 0..order {
+                    let part = bracket(&twists[a], &screws[order - 1 - a][c]);
+                    for k in 0..6 {
+                        sum[k] += part[k];
+                    }
+                }
+                let inverse = 1.0 / order as f64;
+                screws[order][c] = sum.map(|x| x * inverse);
+            }
+            for c in first..first + width {
+                for a in 0..order {
+                    for b in 0..=a {
+                        for k in 0..6 {
+                            twists[a][k] += screws[b][c][k] * rates[a - b][c];
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The joint rates with the input's derivatives given, by the closure factorised with the input's row.
+    #[inline(always)]
+    pub fn rates(&self, placed: &Placed, factored: &Factored, input: &[f64; ORDERS]) -> Rates {
+        let mut rates = [[0.0; COLUMNS]; ORDERS];
+        let mut screws = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
+        let mut factorial = 1.0;
+        for order in 0..ORDERS {
+            let mut right = [0.0; ROWS];
+            if order > 0 {
+                factorial *= order as f64;
+                self.carried(&mut screws, &rates, order);
+                for a in 1..=order {
+                    for c in 0..self.columns {
+                        for k in 0..6 {
+                            right[k] -= screws[a][c][k] * rates[order - a][c];
+                        }
+                    }
+                }
+            }
+            right[6] = input[order] / factorial;
+            rates[order] = factored.solve(right);
+        }
+        rates
+    }
+
+    /// The series of the twist of the link after a joint, in the frame of the first joint: `V0 + V1 t + V2 t^2`.
+    pub fn link_twist(&self, placed: &Placed, rates: &Rates, joint: usize) -> [Twist; ORDERS] {
+        let mut screws = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
+        for order in 1..ORDERS {
+            self.carried(&mut screws, rates, order);
+        }
+        let end = self.first.get(joint + 1).copied().unwrap_or(self.columns);
+        let mut twists = [[0.0; 6]; ORDERS];
+        for c in 0..end {
+            for a in 0..ORDERS {
+                for b in 0..=a {
+                    for k in 0..6 {
+                        twists[a][k] += screws[b][c][k] * rates[a - b][c];
+                    }
+                }
+            }
+        }
+        twists
+    }
+
+    /// A joint's turn and slide from the frame before it to that after, as a series.
+    pub fn joint_series(&self, joint: usize, at: &Configuration, rates: &Rates) -> [[Taylor<4>; 3]; 3] {
+        let first = self.first[joint];
+        if let Joint::Ball(b) = self.joints[joint] {
+            let spin = std::array::from_fn(|order| std::array::from_fn(|k| rates[order][first + k]));
+            return rotation_series(&at.balls[b], &spin);
+        }
+        let angle = Taylor([
+            at.values[first],
+            rates[0][first],
+            rates[1][first] / 2.0,
+            rates[2][first] / 3.0,
+        ]);
+        let (s, c) = angle.sin_cos();
+        let (zero, one) = (Taylor::constant(0.0), Taylor::constant(1.0));
+        [[c, -s, zero], [s, c, zero], [zero, zero, one]]
+    }
+}
+
+/// A rotation with the series of its angular velocity, by `B' = w x B`.
+fn rotation_series(now: &Rotation, spin: &[Vec3; ORDERS]) -> [[Taylor<4>; 3]; 3] {
+    let mut out = [[Taylor::constant(0.0); 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            out[i][j].0[0] = now[i][j];
+        }
+    }
+    for order in 1..4 {
+        for j in 0..3 {
+            let mut sum = [0.0; 3];
+            for a in 0..order {
+                let column: Vec3 = std::array::from_fn(|i| out[i][j].0[order - 1 - a]);
+                let part = crate::rigid::cross(spin[a], column);
+                for k in 0..3 {
+                    sum[k] += part[k];
+                }
+            }
+            for (i, s) in sum.iter().enumerate() {
+                out[i][j].0[order] = s / order as f64;
+            }
+        }
+    }
+    out
+}
+
+/// A point carried by a link with the series of its twist: position, velocity, acceleration, jerk.
+pub(super) fn point_rates(place: Vec3, twist: &[Twist; ORDERS]) -> [Vec3; 4] {
+    let mut series = [[0.0; 3]; 4];
+    series[0] = place;
+    for order in 1..4 {
+        let lower = order - 1;
+        let mut sum: Vec3 = std::array::from_fn(|k| twist[lower][k + 3]);
+        for a in 0..=lower {
+            let turn = [twist[a][0], twist[a][1], twist[a][2]];
+            let part = crate::rigid::cross(turn, series[lower - a]);
+            for k in 0..3 {
+                sum[k] += part[k];
+            }
+        }
+        series[order] = sum.map(|x| x / order as f64);
+    }
+    [
+        series[0],
+        series[1],
+        series[2].map(|x| 2.0 * x),
+        series[3].map(|x| 6.0 * x),
+    ]
+}
+
+/// Turns about z, y and x that make up a rotation; `None` where the middle one is a quarter turn and the others act about one
+/// line.
+pub(super) fn turns(r: &[[Taylor<4>; 3]; 3]) -> Option<[Taylor<4>; 3]> {
+    const LEVEL: f64 = 1e-8;
+    let level = r[0][0] * r[0][0] + r[1][0] * r[1][0];
+    if level.value() < LEVEL * LEVEL {
+        return None;
+    }
+    Some([
+        Taylor::atan2(r[1][0], r[0][0]),
+        Taylor::atan2(-r[2][0], level.sqrt()),
+        Taylor::atan2(r[2][1], r[2][2]),
+    ])
+}
+
+/// `a b` of moving and fixed rotations.
+pub(super) fn turned_series(a: &Rotation, b: &[[Taylor<4>; 3]; 3], c: &Rotation) -> [[Taylor<4>; 3]; 3] {
+    let sum = |f: &dyn Fn(usize) -> Taylor<4>| f(0) + f(1) + f(2);
+    let left: [[Taylor<4>; 3]; 3] =
+        std::array::from_fn(|i| std::array::from_fn(|j| sum(&|k| b[k][j].scale(a[i][k]))));
+    std::array::from_fn(|i| std::array::from_fn(|j| sum(&|k| left[i][k].scale(c[k][j]))))
+}
+
+/// `a b` of two moving rotations.
+pub(super) fn product_series(a: &[[Taylor<4>; 3]; 3], b: &[[Taylor<4>; 3]; 3]) -> [[Taylor<4>; 3]; 3] {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j])
+    })
+}
+
+/// The frame of the first joint, in which twists are written, moved into the report frame.
+pub(super) fn in_report_frame(base: &Pose, place: Vec3, rates: [Vec3; 4]) -> [Vec3; 4] {
+    [
+        base.carry(place),
+        base.turn(rates[1]),
+        base.turn(rates[2]),
+        base.turn(rates[3]),
+    ]
+}

@@ -1,0 +1,239 @@
+//! Rows of a circuit as the description's joints and links have them.
+
+use super::Loop;
+use super::chain::{Configuration, short_way, transposed};
+use super::circuits::{Row, RowStatus};
+use super::rates::{ORDERS, point_rates, product_series, turned_series, turns};
+use super::reduce::{Kind, Source, Z_TO_X};
+use crate::rigid::{Vec3, scale};
+use crate::taylor::Taylor;
+
+/// The rows of one circuit, kept as the chain has them, so that any point of any link can be asked for later.
+#[derive(Clone, Debug)]
+pub struct Rows {
+    pub(super) rows: Vec<Row>,
+    /// Turns to be added to each column of the description.
+    pub(super) offsets: Vec<f64>,
+    /// d(input)/dt at which rates are given; the rows hold them at one, or by a law.
+    pub(super) speed: f64,
+}
+
+impl Rows {
+    /// How many rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Status of each row by its number.
+    pub fn status(&self) -> Vec<i64> {
+        self.rows.iter().map(|r| r.status as i64).collect()
+    }
+
+    /// Pass of each row.
+    pub fn passes(&self) -> Vec<i64> {
+        self.rows.iter().map(|r| r.pass as i64).collect()
+    }
+
+    /// Closure error of each row: radians, or parts of the size.
+    pub fn residuals(&self) -> Vec<f64> {
+        self.rows.iter().map(|r| r.residual).collect()
+    }
+
+    /// Condition number of each row's Jacobian.
+    pub fn conditions(&self) -> Vec<f64> {
+        self.rows.iter().map(|r| r.condition).collect()
+    }
+
+    /// The row's rates at the speed asked for.
+    fn rates(&self, row: &Row) -> super::rates::Rates {
+        let mut rates = row.rates;
+        let mut factor = 1.0;
+        for order in &mut rates {
+            factor *= self.speed;
+            for x in order.iter_mut() {
+                *x *= factor;
+            }
+        }
+        rates
+    }
+}
+
+impl Loop {
+    /// Joint values of a configuration; angles as they come, a ball's turns NaN where they are undefined.
+    pub(super) fn joint_values(&self, at: &Configuration) -> Vec<f64> {
+        let still = [[0.0; super::chain::COLUMNS]; ORDERS];
+        self.joint_rates(at, &still)
+            .iter()
+            .enumerate()
+            .map(|(c, q)| {
+                if self.is_slide(c) {
+                    q[0]
+                } else {
+                    self.wrapped(c, q[0])
+                }
+            })
+            .collect()
+    }
+
+    fn wrapped(&self, column: usize, angle: f64) -> f64 {
+        let joint = self.first.iter().rposition(|&f| f <= column).unwrap_or(0);
+        if matches!(self.reduced.parts[joint].kind, Kind::Screw(_)) {
+            angle
+        } else {
+            short_way(angle)
+        }
+    }
+
+    /// Value and three derivatives of each column of the description, lengths in its unit.
+    fn joint_rates(&self, at: &Configuration, rates: &super::rates::Rates) -> Vec<[f64; 4]> {
+        let mut out = vec![[0.0; 4]; self.columns];
+        let Some(chain) = &self.reduced.chain else {
+            return out;
+        };
+        for (part, &first) in self.reduced.parts.iter().zip(&self.first) {
+            match (part.source, part.kind) {
+                (Source::Held, _) => {}
+                (Source::Joint(joint), Kind::Ball) => {
+                    let series = chain.joint_series(joint, at, rates);
+                    write_turns(&mut out[first..first + 3], turns(&series));
+                }
+                (Source::Joint(joint), kind) => {
+                    let c = chain.first[joint];
+                    let factor = if kind == Kind::Slide { self.size } else { 1.0 };
+                    out[first] = [
+                        at.values[c] * factor,
+                        rates[0][c] * factor,
+                        rates[1][c] * factor,
+                        2.0 * rates[2][c] * factor,
+                    ];
+                }
+                (Source::Universal(joint, frame), _) => {
+                    let a = chain.joint_series(joint, at, rates);
+                    let b = chain.joint_series(joint + 1, at, rates);
+                    let b = turned_series(&Z_TO_X, &b, &transposed(&Z_TO_X));
+                    let series = turned_series(&frame, &product_series(&a, &b), &transposed(&frame));
+                    write_turns(&mut out[first..first + 3], turns(&series));
+                }
+            }
+        }
+        out
+    }
+
+    /// Values and three derivatives of every column, order by order: `4 x rows x columns`; angles unwrapped along the rows.
+    pub fn joint_table(&self, rows: &Rows) -> Vec<f64> {
+        let (count, columns) = (rows.len(), self.columns);
+        let mut out = vec![f64::NAN; 4 * count * columns];
+        let mut before: Vec<Option<f64>> = vec![None; columns];
+        for (n, row) in rows.rows.iter().enumerate() {
+            if row.status == RowStatus::NoSolution {
+                continue;
+            }
+            let table = self.joint_rates(&row.at, &rows.rates(row));
+            for (c, q) in table.iter().enumerate() {
+                for (order, value) in q.iter().enumerate() {
+                    out[(order * count + n) * columns + c] = *value;
+                }
+                let mut value = q[0] + rows.offsets[c];
+                if self.is_ball_turn(c) && value.is_finite() {
+                    if let Some(b) = before[c] {
+                        value = b + short_way(value - b);
+                    }
+                    before[c] = Some(value);
+                }
+                out[n * columns + c] = value;
+            }
+        }
+        out
+    }
+
+    fn is_ball_turn(&self, column: usize) -> bool {
+        let joint = self.first.iter().rposition(|&f| f <= column).unwrap_or(0);
+        self.reduced.parts[joint].kind == Kind::Ball
+    }
+
+    /// Position, velocity, acceleration and jerk of a point, `4 x rows x 3`, in the report frame.
+    ///
+    /// `link` counts from 0 the joint before it; `at` is in the frame after that joint. Rows without a pose are NaN; at dead
+    /// centres only the position is given.
+    pub fn point(&self, rows: &Rows, link: usize, at: Vec3) -> Vec<f64> {
+        let count = rows.len();
+        let mut out = vec![f64::NAN; 12 * count];
+        for (n, row) in rows.rows.iter().enumerate() {
+            let Some((place, twist)) = self.carried_point(rows, row, link, scale(at, 1.0 / self.size)) else {
+                continue;
+            };
+            let moved = point_rates(place, &twist);
+            let placed = super::rates::in_report_frame(&self.reduced.base, place, moved);
+            for (order, value) in placed.iter().enumerate() {
+                for k in 0..3 {
+                    out[(order * count + n) * 3 + k] = value[k] * self.size;
+                }
+            }
+        }
+        out
+    }
+
+    /// A point of a link in the chain's frame, and the link's twist.
+    fn carried_point(
+        &self,
+        rows: &Rows,
+        row: &Row,
+        link: usize,
+        at: Vec3,
+    ) -> Option<(Vec3, [super::chain::Twist; ORDERS])> {
+        let chain = self.reduced.chain.as_ref()?;
+        if row.status == RowStatus::NoSolution {
+            return None;
+        }
+        let (joint, pose) = self.reduced.parts[link].link;
+        let Some(joint) = joint else {
+            let fixed = self.reduced.base.inverse().carry(pose.carry(at));
+            return Some((fixed, [[0.0; 6]; ORDERS]));
+        };
+        let frame = chain.frames(&row.at)[joint];
+        let place = frame.carry(pose.carry(at));
+        let placed = chain.place(&row.at);
+        Some((place, chain.link_twist(&placed, &rows.rates(row), joint)))
+    }
+
+    /// Frames of all links, `rows x joints x 3 x 4`, in the report frame, lengths in its unit; NaN where there is no pose.
+    pub fn link_frames(&self, rows: &Rows) -> Vec<f64> {
+        let joints = self.reduced.parts.len();
+        let mut out = vec![f64::NAN; rows.len() * joints * 12];
+        let Some(chain) = &self.reduced.chain else {
+            return out;
+        };
+        for (n, row) in rows.rows.iter().enumerate() {
+            if row.status == RowStatus::NoSolution {
+                continue;
+            }
+            let frames = chain.frames(&row.at);
+            for (i, part) in self.reduced.parts.iter().enumerate() {
+                let frame = match part.link {
+                    (None, pose) => pose,
+                    (Some(joint), pose) => self.reduced.base.then(&frames[joint]).then(&pose),
+                };
+                for r in 0..3 {
+                    let place = ((n * joints + i) * 3 + r) * 4;
+                    out[place..place + 3].copy_from_slice(&frame.rotation[r]);
+                    out[place + 3] = frame.translation[r] * self.size;
+                }
+            }
+        }
+        out
+    }
+}
+
+fn write_turns(out: &mut [[f64; 4]], turns: Option<[Taylor<4>; 3]>) {
+    for (k, slot) in out.iter_mut().enumerate() {
+        *slot = match &turns {
+            Some(t) => std::array::from_fn(|order| t[k].derivative(order)),
+            None => [f64::NAN; 4],
+        };
+    }
+}

@@ -1,0 +1,79 @@
+//! The numerical work on loops with known answers.
+
+use super::chain::{Chain, Joint, UNTURNED};
+use super::curve::End;
+use super::modes::{ModeFinder, random_pose};
+use super::starts::Random;
+use crate::rigid::Pose;
+
+/// A loop of turning joints by Denavit and Hartenberg's lengths, offsets and twists.
+fn loop_of(length: &[f64], offset: &[f64], twist_deg: &[f64]) -> Chain {
+    let size: f64 = length.iter().chain(offset).map(|x| x.abs()).sum();
+    let links = (0..length.len())
+        .map(|i| {
+            let (s, c) = twist_deg[i].to_radians().sin_cos();
+            Pose {
+                rotation: [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
+                translation: [length[i] / size, 0.0, offset[i] / size],
+            }
+        })
+        .collect();
+    Chain::new(vec![Joint::Turn; length.len()], links)
+}
+
+/// The 7R paper's.
+fn seven_r() -> Chain {
+    loop_of(
+        &[45.0, 15.0, 100.0, -115.0, 10.0, 35.0, 35.0],
+        &[70.0, 10.0, 10.0, 10.0, 10.0, 10.0, -60.0],
+        &[80.0, -95.0, 0.0, 0.0, -75.0, 80.0, 150.0],
+    )
+}
+
+#[test]
+fn the_loop_of_liu_and_zhu_has_sixteen_modes() {
+    let chain = loop_of(
+        &[0.4, 0.3, 1.0, 0.0, 1.5, 0.0, 0.7090433494384545],
+        &[-0.189116062654422, 0.0, 0.0, 0.2, 0.0, 0.0, 0.1956089470001161],
+        &[50.0, 90.0, 1.0, 90.0, 1.0, 90.0, 35.107829405198316],
+    );
+    let modes = ModeFinder::new(&chain, 0).at(11.557058720012146_f64.to_radians());
+    assert_eq!(modes.len(), 16);
+}
+
+#[test]
+fn the_paper_s_loop_has_eight_solutions_all_of_them_real() {
+    let chain = seven_r();
+    let finder = ModeFinder::new(&chain, 0);
+    assert_eq!(finder.complex_count(), Some(8));
+    for k in 0..12 {
+        assert_eq!(finder.at(0.5 * f64::from(k)).len(), 8);
+    }
+}
+
+#[test]
+fn general_loops_have_sixteen_solutions_and_an_even_number_of_real_ones() {
+    let mut random = Random(77);
+    for _ in 0..40 {
+        let mut links: Vec<Pose> = (0..6).map(|_| random_pose(&mut random)).collect();
+        let still = Pose { rotation: UNTURNED, translation: [0.0; 3] };
+        let all = links.iter().fold(still, |a, b| a.then(b));
+        links.push(all.inverse());
+        let chain = Chain::new(vec![Joint::Turn; 7], links);
+        let finder = ModeFinder::new(&chain, 0);
+        assert_eq!(finder.complex_count(), Some(16));
+        let modes = finder.at(0.0);
+        assert!(modes.len().is_multiple_of(2) && !modes.is_empty());
+    }
+}
+
+#[test]
+fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
+    let chain = seven_r();
+    for mode in ModeFinder::new(&chain, 0).at(0.3) {
+        let curve = chain.follow(&mode);
+        assert_eq!(curve.end, End::Closed);
+        let gained = curve.nodes[curve.nodes.len() - 1].at.values[0] - mode.values[0];
+        assert!((gained.abs() - std::f64::consts::TAU).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,246 @@
+//! Eight numbers in the machine's vector registers, for code whose lanes are too entangled for the compiler to find them.
+//!
+//! With [`crate::simd`] the only place of `unsafe`: instructions of a vector unit are used by types that are only made after the
+//! unit was seen at run time.
+
+#![allow(unsafe_code)]
+
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::{
+    __m256d, __m512d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_div_pd,
+    _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_storeu_pd,
+    _mm256_sub_pd, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_fmadd_pd, _mm512_fnmadd_pd,
+    _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_storeu_pd, _mm512_sub_pd,
+};
+
+/// How many numbers stand side by side.
+pub(crate) const LANES: usize = 8;
+
+/// One number for each lane.
+pub(crate) type Reals = [f64; LANES];
+
+/// Eight numbers on which one instruction works (or a few, on lesser machines).
+pub(crate) trait Vector: Copy {
+    /// The same number in each lane.
+    fn splat(x: f64) -> Self;
+    /// A number for each lane.
+    fn load(x: &Reals) -> Self;
+    /// The numbers of the lanes.
+    fn store(self) -> Reals;
+    /// `self + b`
+    fn add(self, b: Self) -> Self;
+    /// `self - b`
+    fn sub(self, b: Self) -> Self;
+    /// `self b`
+    fn mul(self, b: Self) -> Self;
+    /// `self / b`
+    fn div(self, b: Self) -> Self;
+    /// `self + a b`
+    fn plus_product(self, a: Self, b: Self) -> Self;
+    /// `self - a b`
+    fn minus_product(self, a: Self, b: Self) -> Self;
+    /// `yes` in the lanes where `self > b`, `no` in the others.
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self;
+}
+
+/// Code to be compiled once for each vector unit. Implementations are `#[inline(always)]`.
+pub(crate) trait LaneKernel {
+    /// Runs it.
+    fn run<V: Vector>(self);
+}
+
+impl Vector for Reals {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        [x; LANES]
+    }
+    #[inline(always)]
+    fn load(x: &Reals) -> Self {
+        *x
+    }
+    #[inline(always)]
+    fn store(self) -> Reals {
+        self
+    }
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        std::array::from_fn(|k| self[k] + b[k])
+    }
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        std::array::from_fn(|k| self[k] - b[k])
+    }
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        std::array::from_fn(|k| self[k] * b[k])
+    }
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        std::array::from_fn(|k| self[k] / b[k])
+    }
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        std::array::from_fn(|k| self[k] + a[k] * b[k])
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        std::array::from_fn(|k| self[k] - a[k] * b[k])
+    }
+    #[inline(always)]
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        std::array::from_fn(|k| if self[k] > b[k] { yes[k] } else { no[k] })
+    }
+}
+
+/// One register of AVX-512.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+struct Wide(__m512d);
+
+/// Two registers of AVX2.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+struct Middle([__m256d; 2]);
+
+// SAFETY of all blocks in the two implementations: the types are private and only [`dispatch`] names them, after it saw the unit
+#[cfg(target_arch = "x86_64")]
+impl Vector for Wide {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self(unsafe { _mm512_set1_pd(x) })
+    }
+    #[inline(always)]
+    fn load(x: &Reals) -> Self {
+        Self(unsafe { _mm512_loadu_pd(x.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> Reals {
+        let mut x = [0.0; LANES];
+        unsafe { _mm512_storeu_pd(x.as_mut_ptr(), self.0) };
+        x
+    }
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self(unsafe { _mm512_add_pd(self.0, b.0) })
+    }
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self(unsafe { _mm512_sub_pd(self.0, b.0) })
+    }
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        Self(unsafe { _mm512_mul_pd(self.0, b.0) })
+    }
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        Self(unsafe { _mm512_div_pd(self.0, b.0) })
+    }
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        Self(unsafe { _mm512_fmadd_pd(a.0, b.0, self.0) })
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        Self(unsafe { _mm512_fnmadd_pd(a.0, b.0, self.0) })
+    }
+    #[inline(always)]
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        Self(unsafe { _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, b.0), no.0, yes.0) })
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Middle {
+    #[inline(always)]
+    fn both(self, b: Self, f: impl Fn(__m256d, __m256d) -> __m256d) -> Self {
+        Self([f(self.0[0], b.0[0]), f(self.0[1], b.0[1])])
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Vector for Middle {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self([unsafe { _mm256_set1_pd(x) }; 2])
+    }
+    #[inline(always)]
+    fn load(x: &Reals) -> Self {
+        Self(unsafe { [_mm256_loadu_pd(x.as_ptr()), _mm256_loadu_pd(x.as_ptr().add(4))] })
+    }
+    #[inline(always)]
+    fn store(self) -> Reals {
+        let mut x = [0.0; LANES];
+        unsafe {
+            _mm256_storeu_pd(x.as_mut_ptr(), self.0[0]);
+            _mm256_storeu_pd(x.as_mut_ptr().add(4), self.0[1]);
+        }
+        x
+    }
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        self.both(b, |x, y| unsafe { _mm256_add_pd(x, y) })
+    }
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        self.both(b, |x, y| unsafe { _mm256_sub_pd(x, y) })
+    }
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        self.both(b, |x, y| unsafe { _mm256_mul_pd(x, y) })
+    }
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        self.both(b, |x, y| unsafe { _mm256_div_pd(x, y) })
+    }
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        Self(unsafe {
+            [
+                _mm256_fmadd_pd(a.0[0], b.0[0], self.0[0]),
+                _mm256_fmadd_pd(a.0[1], b.0[1], self.0[1]),
+            ]
+        })
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        Self(unsafe {
+            [
+                _mm256_fnmadd_pd(a.0[0], b.0[0], self.0[0]),
+                _mm256_fnmadd_pd(a.0[1], b.0[1], self.0[1]),
+            ]
+        })
+    }
+    #[inline(always)]
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        let half = |k: usize| unsafe {
+            _mm256_blendv_pd(no.0[k], yes.0[k], _mm256_cmp_pd::<_CMP_GT_OQ>(self.0[k], b.0[k]))
+        };
+        Self([half(0), half(1)])
+    }
+}
+
+/// Runs a kernel on the best vector unit at hand.
+#[cfg(target_arch = "x86_64")]
+pub(crate) fn dispatch<K: LaneKernel>(kernel: K) {
+    #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
+    fn wide<K: LaneKernel>(kernel: K) {
+        kernel.run::<Wide>();
+    }
+    #[target_feature(enable = "avx2,fma")]
+    fn middle<K: LaneKernel>(kernel: K) {
+        kernel.run::<Middle>();
+    }
+    match crate::simd::level() {
+        // SAFETY: the unit was seen on this machine just now
+        "avx512" => unsafe { wide(kernel) },
+        // SAFETY: as above
+        "avx2" => unsafe { middle(kernel) },
+        _ => kernel.run::<Reals>(),
+    }
+}
+
+/// Runs a kernel as the compiler vectorises it.
+#[cfg(not(target_arch = "x86_64"))]
+pub(crate) fn dispatch<K: LaneKernel>(kernel: K) {
+    kernel.run::<Reals>();
+}

@@ -1,0 +1,231 @@
+//! Any single loop, for Python.
+
+use crate::{CoreError, flat};
+use numpy::ndarray::{ArrayView2, Axis};
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadonlyArray3,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use sevenbar_core::loops::{self, Circuit, Idle, Kind};
+use sevenbar_core::rigid::Pose;
+use std::sync::Arc;
+
+pub(crate) fn pose(m: ArrayView2<'_, f64>) -> Pose {
+    Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| m[[i, j]])))
+}
+
+/// A single closed loop of R, P, H and S joints.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct Loop(Arc<loops::Loop>);
+
+/// Rows of a circuit: of them any link can be asked.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct Rows {
+    owner: Arc<loops::Loop>,
+    rows: loops::Rows,
+}
+
+type Modes<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, &'static str);
+
+fn no_input(column: usize) -> PyErr {
+    CoreError::new_err(format!("column {column} has no freedom of its own"))
+}
+
+#[pymethods]
+impl Loop {
+    /// From the joints' letters R P H S, the advance of each for a radian (H), the frames of the first joint and of the ground's
+    /// side of the last, each (4, 4), and the transforms of the moving links (n - 1, 4, 4).
+    #[new]
+    fn new(
+        letters: &str,
+        advances: PyReadonlyArray1<'_, f64>,
+        base: PyReadonlyArray2<'_, f64>,
+        ground: PyReadonlyArray2<'_, f64>,
+        links: PyReadonlyArray3<'_, f64>,
+    ) -> PyResult<Self> {
+        let advances = flat("advances", &advances)?;
+        let kinds = letters
+            .chars()
+            .zip(advances)
+            .map(|(letter, &advance)| match letter {
+                'R' => Ok(Kind::Turn),
+                'P' => Ok(Kind::Slide),
+                'H' => Ok(Kind::Screw(advance)),
+                'S' => Ok(Kind::Ball),
+                other => Err(CoreError::new_err(format!(
+                    "'{other}' is no joint; give R, P, H or S"
+                ))),
+            })
+            .collect::<PyResult<Vec<Kind>>>()?;
+        let (base, ground, links) = (base.as_array(), ground.as_array(), links.as_array());
+        let right = base.shape() == [4, 4]
+            && ground.shape() == [4, 4]
+            && links.shape() == [kinds.len().saturating_sub(1), 4, 4]
+            && kinds.len() > 1;
+        if !right {
+            return Err(CoreError::new_err(
+                "base and ground need shape (4, 4), links one (4, 4) less than joints",
+            ));
+        }
+        let links: Vec<Pose> = links.axis_iter(Axis(0)).map(pose).collect();
+        Ok(Self(Arc::new(loops::Loop::new(
+            &kinds,
+            pose(base),
+            pose(ground),
+            &links,
+        ))))
+    }
+
+    /// The size of which residuals are parts.
+    #[getter]
+    fn size(&self) -> f64 {
+        self.0.size()
+    }
+
+    /// Freedoms of the joints less the idle ones.
+    #[getter]
+    fn freedoms(&self) -> usize {
+        self.0.freedoms()
+    }
+
+    /// Idle freedoms: a word, the joint concerned and its neighbour, counted from 0.
+    #[getter]
+    fn idle(&self) -> Vec<(&'static str, usize, usize)> {
+        self.0
+            .idle()
+            .iter()
+            .map(|idle| match *idle {
+                Idle::BetweenBalls(a) => ("between-balls", a, a + 1),
+                Idle::BallOnAxis(held, ball) => ("ball-on-axis", held, ball),
+                Idle::OneAxis(held, other) => ("one-axis", held, other),
+                Idle::OneDirection(held, other) => ("one-direction", held, other),
+            })
+            .collect()
+    }
+
+    /// Joint values (m, columns) and closure errors (m,) of every assembly mode at one value of a column, and how complete they are.
+    fn assembly_modes<'py>(&self, py: Python<'py>, column: usize, value: f64) -> PyResult<Modes<'py>> {
+        let (modes, completeness) = py
+            .detach(|| self.0.modes(column, value))
+            .ok_or_else(|| no_input(column))?;
+        let residuals: Vec<f64> = modes.iter().map(|m| m.1).collect();
+        let values: Vec<f64> = modes.iter().flat_map(|m| m.0.iter().copied()).collect();
+        let columns = self.0.columns();
+        Ok((
+            PyArray1::from_vec(py, values).reshape([modes.len(), columns])?,
+            residuals.into_pyarray(py),
+            completeness.name(),
+        ))
+    }
+
+    /// How freely it moves, from the first poses found over the values of a column; empty where there are none.
+    fn mobility<'py>(&self, py: Python<'py>, column: usize) -> PyResult<Bound<'py, PyDict>> {
+        let result = PyDict::new(py);
+        if let Some(found) = py.detach(|| self.0.mobility(column)) {
+            write_found(&result, &found)?;
+        }
+        Ok(result)
+    }
+
+    /// The whole motion over the inputs of a column.
+    #[pyo3(signature = (input, output, samples, speed, law=None))]
+    fn motion<'py>(
+        &self,
+        py: Python<'py>,
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<PyReadonlyArray2<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let law: Option<Vec<[f64; 4]>> = law.map(|rows| {
+            rows.as_array()
+                .outer_iter()
+                .map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0)))
+                .collect()
+        });
+        let motion = py
+            .detach(|| self.0.motion(input, output, samples, speed, law.as_deref()))
+            .ok_or_else(|| no_input(input))?;
+        let result = PyDict::new(py);
+        if let Some(found) = &motion.found {
+            write_found(&result, found)?;
+        }
+        result.set_item("completeness", motion.completeness.name())?;
+        result.set_item("seed_columns", motion.seed_columns.clone())?;
+        result.set_item("seeds", motion.seeds)?;
+        result.set_item("still", motion.still)?;
+        result.set_item("input_rests", motion.input_rests)?;
+        let circuits = motion
+            .circuits
+            .into_iter()
+            .map(|c| self.circuit_dict(py, c))
+            .collect::<PyResult<Vec<_>>>()?;
+        result.set_item("circuits", circuits)?;
+        Ok(result)
+    }
+}
+
+fn write_found(result: &Bound<'_, PyDict>, found: &loops::Found) -> PyResult<()> {
+    result.set_item("rank", found.rank)?;
+    result.set_item("finite", found.finite)?;
+    result.set_item("wrenches", found.redundant.clone())
+}
+
+impl Loop {
+    fn circuit_dict<'py>(&self, py: Python<'py>, circuit: Circuit) -> PyResult<Bound<'py, PyDict>> {
+        let result = PyDict::new(py);
+        let rows = circuit.rows;
+        let table = py.detach(|| self.0.joint_table(&rows));
+        result.set_item(
+            "joints",
+            PyArray1::from_vec(py, table).reshape([4, rows.len(), self.0.columns()])?,
+        )?;
+        result.set_item("status", rows.status().into_pyarray(py))?;
+        result.set_item("branch", rows.passes().into_pyarray(py))?;
+        result.set_item("residual", rows.residuals().into_pyarray(py))?;
+        result.set_item("condition", rows.conditions().into_pyarray(py))?;
+        result.set_item("closed", circuit.closed)?;
+        result.set_item("singular", circuit.singular)?;
+        result.set_item("turns", circuit.turns)?;
+        result.set_item("input", circuit.input.map(|e| (e[0], e[1])))?;
+        result.set_item("output", circuit.output.map(|e| (e[0], e[1])))?;
+        let dead_centres: Vec<_> = circuit
+            .dead_centres
+            .iter()
+            .map(|d| {
+                (
+                    if d.of_input { "input" } else { "output" },
+                    d.input,
+                    d.output,
+                    d.branch,
+                    d.condition,
+                )
+            })
+            .collect();
+        result.set_item("dead_centres", dead_centres)?;
+        let ends = |e: Option<[[f64; 2]; 2]>| e.map(|e| [(e[0][0], e[0][1]), (e[1][0], e[1][1])]);
+        result.set_item("velocity", ends(circuit.extremes[0]))?;
+        result.set_item("acceleration", ends(circuit.extremes[1]))?;
+        result.set_item("rows", Rows { owner: self.0.clone(), rows })?;
+        Ok(result)
+    }
+}
+
+#[pymethods]
+impl Rows {
+    /// A point of a link with three derivatives by time, (4, n, 3), in the report frame; `link` counts from 0, `at` is in the
+    /// frame after that link's joint.
+    fn point<'py>(&self, py: Python<'py>, link: usize, at: [f64; 3]) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let out = py.detach(|| self.owner.point(&self.rows, link, at));
+        PyArray1::from_vec(py, out).reshape([4, self.rows.len(), 3])
+    }
+
+    /// Frames of the links after each joint, (n, joints, 3, 4), in the report frame.
+    fn frames<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray4<f64>>> {
+        let out = py.detach(|| self.owner.link_frames(&self.rows));
+        PyArray1::from_vec(py, out).reshape([self.rows.len(), self.owner.joints(), 3, 4])
+    }
+}

@@ -1,0 +1,167 @@
+"""The RSSR in closed form: what the core's arrays come to for its crank, coupler and rocker."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from sevenbar import _core
+from sevenbar.errors import RequestError
+from sevenbar.motion import (
+    SPIN_UNDEFINED,
+    STATUSES,
+    Circuit,
+    DeadCentre,
+    Extremes,
+    Floats,
+    Law,
+    Modes,
+    Motion,
+    Output,
+    Trace,
+    driven_time,
+    sampled_extremes,
+    scaled_extremes,
+)
+
+if TYPE_CHECKING:
+    from sevenbar.linkage import Linkage
+
+Side = Literal["crank", "rocker"]
+
+
+class ClosedForm:
+    """The solver of one RSSR; columns 0 and 7 are the crank's and the rocker's angles."""
+
+    def __init__(self, linkage: Linkage) -> None:
+        self._linkage = linkage
+        self._core = _core.Rssr(linkage.base, linkage.ground, linkage.links)
+
+    @property
+    def size(self) -> float:
+        """The size [length] of which residuals are parts."""
+        return self._core.size
+
+    @property
+    def lengths(self) -> tuple[float, float, float]:
+        """Crank, coupler and rocker [length]."""
+        crank, coupler, rocker = self._core.lengths
+        return crank, coupler, rocker
+
+    def outputs(
+        self,
+        values: Floats,
+        order: int,
+        column: int,
+        speed: float,
+        law: tuple[Floats, ...] | None,
+    ) -> Output:
+        """Both branches of the other side at many inputs."""
+        results = [np.empty((2, values.size)) for _ in range(order + 1)]
+        try:
+            self._core.outputs(values, results, _side(column), speed, law)
+        except _core.CoreError as error:
+            raise RequestError(str(error)) from None
+        return Output(*results)
+
+    def modes(self, column: int, value: float) -> Modes:
+        """Both ways to assemble it at one input."""
+        q, residual = self._core.assembly_modes(value, _side(column))
+        return Modes(q, residual * self.size, "closed-form", self._linkage.columns, value)
+
+    def motion(self, column: int, samples: int, speed: float, law: Law | None) -> Motion:
+        """Every circuit over the whole range of one side."""
+        linkage = self._linkage
+        raw = self._core.motion(_side(column), samples, speed, None if law is None else law.table)
+        other = _other(column)
+        return Motion(
+            linkage=linkage,
+            input=linkage.columns[column],
+            output=linkage.columns[other],
+            speed=np.nan if law is not None else speed,
+            samples=samples,
+            motion_type=raw["motion_type"],
+            limits=raw["limits"],
+            change_points=raw["change_points"],
+            circuits=tuple(
+                self._circuit(i, c, (column, other), speed, law) for i, c in enumerate(raw["circuits"])
+            ),
+            completeness="closed-form",
+            established="all modes in closed form, the ranges of the input by the roots of a quartic",
+            # two circles and a distance never repeat each other
+            redundant=(),
+            law=law,
+        )
+
+    def _circuit(
+        self, index: int, raw: Mapping[str, Any], columns: tuple[int, int], speed: float, law: Law | None
+    ) -> Circuit:
+        q, dq, ddq, dddq = raw["joints"]
+        input_column, output_column = columns
+        inputs = q[:, input_column]
+        if law is None:
+            velocity = scaled_extremes(raw["velocity"], speed)
+            acceleration = scaled_extremes(raw["acceleration"], speed * speed)
+        else:
+            velocity = sampled_extremes(dq[:, output_column], inputs)
+            acceleration = sampled_extremes(ddq[:, output_column], inputs)
+        (least, least_at), (greatest, greatest_at) = raw["transmission"]
+        change_point = raw["motion_type"] == "change-point"
+        ends = [0, len(self._linkage.columns) - 1]
+        rates = np.stack([q[:, ends], dq[:, ends], ddq[:, ends], dddq[:, ends]], axis=-1)
+        return Circuit(
+            index=index,
+            motion_type=raw["motion_type"],
+            closed=True,
+            turns=raw["turns"],
+            columns=self._linkage.columns,
+            q=q,
+            dq=dq,
+            ddq=ddq,
+            dddq=dddq,
+            time=driven_time(inputs, speed, law),
+            status=np.array(STATUSES)[raw["status"]],
+            branch=raw["branch"],
+            mode=raw["mode"],
+            residual=raw["residual"] * self.size,
+            condition=raw["condition"],
+            dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
+            input_range=raw["input"],
+            output_range=_followed_range(q[:, output_column]) if change_point else raw["output"],
+            transmission=Extremes(least, least_at, greatest, greatest_at),
+            velocity=velocity,
+            acceleration=acceleration,
+            input_column=input_column,
+            output_column=output_column,
+            size=self.size,
+            _frames=self._linkage.point_frames,
+            _point=lambda link, at: self._trace(link, at, rates),
+        )
+
+    def _trace(self, link: int, at: Floats, rates: Floats) -> Trace:
+        """A point, `at` in its link's own frame, along rows of both sides' rates, (n, 2, 4)."""
+        crank, rocker = (np.ascontiguousarray(rates[:, end]) for end in (0, 1))
+        position, velocity, acceleration, jerk = self._core.point(link, at, crank, rocker)
+        status = np.full(len(rates), "ok", dtype="<U15")
+        status[np.isnan(velocity[:, 0])] = "dead-centre"
+        unsolved = np.isnan(rates[:, :, 0]).any(axis=1)
+        status[np.isnan(position[:, 0])] = SPIN_UNDEFINED
+        status[unsolved] = "no-solution"
+        return Trace(position, velocity, acceleration, jerk, status)
+
+
+def _side(column: int) -> Side:
+    return "crank" if column == 0 else "rocker"
+
+
+def _other(column: int) -> int:
+    return 7 - column
+
+
+def _followed_range(angles: Floats) -> tuple[float, float] | None:
+    """The range of an output as sampled along its circuit; `None` where it gains a turn."""
+    if not np.isfinite(angles).all() or abs(angles[-1] - angles[0]) > np.pi:
+        return None
+    return float(angles.min()), float(angles.max())

@@ -1,0 +1,284 @@
+"""Any single loop by the general path: what the core's arrays come to, and what they mean."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sevenbar import _core
+from sevenbar.errors import RequestError
+from sevenbar.mobility import Mobility, redundant_constraints
+from sevenbar.motion import (
+    STATUSES,
+    Circuit,
+    DeadCentre,
+    Floats,
+    Law,
+    Modes,
+    Motion,
+    Trace,
+    driven_time,
+    sampled_extremes,
+    scaled_extremes,
+)
+
+if TYPE_CHECKING:
+    from sevenbar.linkage import Linkage
+
+#: Rank six, and the one that is driven.
+MOST_FREEDOMS = 7
+
+#: Limits [rad] nearer than this are one.
+SAME_LIMIT = 1e-6
+
+
+class GeneralLoop:
+    """The solver of one loop. C and U are two joints each for the core, so links are counted anew there."""
+
+    def __init__(self, linkage: Linkage) -> None:
+        self._linkage = linkage
+        letters, advances, links, self._link = _expanded(linkage)
+        self._core = _core.Loop(letters, np.array(advances), linkage.base, linkage.ground, np.array(links))
+
+    @property
+    def size(self) -> float:
+        """The size [length] of which residuals are parts."""
+        return self._core.size
+
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move one link only, in words."""
+        owner = [0] * (max(self._link) + 1)
+        for joint, last in enumerate(self._link):
+            owner[last] = joint
+        for inner in range(len(owner)):
+            if inner not in self._link:
+                owner[inner] = owner[inner + 1]
+        names = [joint.name for joint in self._linkage.joints]
+
+        def told(word: str, held: int, other: int) -> str:
+            a, b = owner[held], owner[other]
+            first, second = names[a], names[b]
+            link = 1 + (a if (a + 1) % len(names) == b else b)
+            match word:
+                case "between-balls" if self._linkage.kind == "RSSR":
+                    return f"spin of the coupler (link {link}) about the line of {first} and {second}"
+                case "between-balls":
+                    return f"spin of link {link} about the line of {first} and {second}"
+                case "ball-on-axis":
+                    return f"spin of link {link} about the axis of {first}, on which {second} lies"
+                case "one-axis":
+                    return f"turn of link {link} about the common axis of {second} and {first}"
+                case _:
+                    return f"slide of link {link} along the common direction of {second} and {first}"
+
+        return tuple(told(*freedom) for freedom in self._core.idle)
+
+    def modes(self, column: int, value: float) -> Modes:
+        """Every assembly mode at one value of a column."""
+        q, residual, completeness = self._solve(column, self._core.assembly_modes, column, value)
+        return Modes(q, residual * self.size, completeness, self._linkage.columns, value)
+
+    def mobility(self, column: int) -> Mobility:
+        """How freely the loop moves; poses are looked for over the values of a column."""
+        return self._mobility(self._solve(column, self._core.mobility, column))
+
+    def motion(self, column: int, output: int, samples: int, speed: float, law: Law | None) -> Motion:
+        """Every circuit over the whole range of one column."""
+        linkage = self._linkage
+        table = None if law is None else law.table
+        raw = self._solve(column, self._core.motion, column, output, samples, speed, table)
+        mobility = self._mobility(raw)
+        if raw["input_rests"] and not raw["circuits"]:
+            name = linkage.columns[column]
+            raise RequestError(
+                f"input: joint '{name}' stands still while others move, so it cannot drive; "
+                f"give another: {', '.join(linkage.drivable(column))}"
+            )
+        circuits = tuple(
+            self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw["circuits"])
+        )
+        limits = [d.input for c in circuits for d in c.dead_centres if d.kind == "input"]
+        return Motion(
+            linkage=linkage,
+            input=linkage.columns[column],
+            output=linkage.columns[output],
+            speed=math.nan if law is not None else speed,
+            samples=samples,
+            motion_type=_motion_type(circuits, mobility),
+            limits=_merged(limits, turns=linkage.column_kinds[column] == "turn"),
+            change_points=np.array([]),
+            circuits=circuits,
+            completeness=raw["completeness"],
+            redundant=mobility.redundant,
+            established=_established(raw, linkage.columns),
+            law=law,
+        )
+
+    def _solve(self, column: int, call: Any, *arguments: Any) -> Any:
+        try:
+            return call(*arguments)
+        except _core.CoreError:
+            linkage = self._linkage
+            if self._core.freedoms > MOST_FREEDOMS:
+                left = self._core.freedoms
+                raise RequestError(
+                    f"linkage: {left} freedoms remain with idle ones held, {left - 6} of which must be "
+                    "driven; give a loop that one input moves"
+                ) from None
+            idle = "; ".join(self.idle())
+            raise RequestError(
+                f"input: joint '{linkage.columns[column]}' has no freedom that drives the loop"
+                + (f" ({idle})" if idle else "")
+                + f"; give another: {', '.join(linkage.drivable(column))}"
+            ) from None
+
+    def _mobility(self, raw: Mapping[str, Any]) -> Mobility:
+        linkage = self._linkage
+        freedoms = len(linkage.columns)
+        rank = raw.get("rank")
+        idle = self.idle()
+        finite = raw.get("finite") if rank is not None else None
+        if rank is None and self._core.freedoms > MOST_FREEDOMS:
+            # rank six at most
+            finite = self._core.freedoms - 6
+        return Mobility(
+            freedoms=freedoms,
+            gruebler=freedoms - 6,
+            rank=rank,
+            idle=idle,
+            redundant=redundant_constraints(np.array(raw.get("wrenches", [])).reshape(-1, 6), linkage.base),
+            finite=finite,
+        )
+
+    def _circuit(
+        self, index: int, raw: Mapping[str, Any], columns: tuple[int, int], speed: float, law: Law | None
+    ) -> Circuit:
+        q, dq, ddq, dddq = raw["joints"]
+        input_column, output_column = columns
+        status = np.array(STATUSES)[raw["status"]]
+        # the pose of a row may be known where a ball's turns are not
+        undefined = (status == "ok") & np.isnan(q).any(axis=1)
+        status[undefined] = "turns-undefined"
+        inputs = q[:, input_column]
+        if law is None:
+            velocity = scaled_extremes(raw["velocity"], speed)
+            acceleration = scaled_extremes(raw["acceleration"], speed * speed)
+        else:
+            velocity = sampled_extremes(dq[:, output_column], inputs)
+            acceleration = sampled_extremes(ddq[:, output_column], inputs)
+        rows = raw["rows"]
+        kinds = self._linkage.column_kinds
+        words = _word(kinds[input_column], raw["input"]), _word(kinds[output_column], raw["output"])
+        return Circuit(
+            index=index,
+            motion_type="change-point" if raw["singular"] else _pair(*words),
+            closed=raw["closed"],
+            turns=raw["turns"],
+            columns=self._linkage.columns,
+            q=q,
+            dq=dq,
+            ddq=ddq,
+            dddq=dddq,
+            time=driven_time(inputs, speed, law),
+            status=status,
+            branch=raw["branch"],
+            mode=np.full(len(q), index),
+            residual=raw["residual"] * self.size,
+            condition=raw["condition"],
+            dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
+            input_range=raw["input"],
+            output_range=raw["output"],
+            transmission=None,
+            velocity=velocity,
+            acceleration=acceleration,
+            input_column=input_column,
+            output_column=output_column,
+            size=self.size,
+            _frames=self._linkage.point_frames,
+            _point=lambda link, at: self._trace(rows, link, at, status),
+        )
+
+    def _trace(self, rows: Any, link: int, at: Floats, status: Any) -> Trace:
+        count = len(self._linkage.joints)
+        if link == count:
+            position = np.broadcast_to(at, (len(status), 3)).copy()
+            position[status == "no-solution"] = np.nan
+            rest = np.where(np.isnan(position), np.nan, 0.0)
+            rest[status == "dead-centre"] = np.nan
+            velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
+        else:
+            position, velocity, acceleration, jerk = rows.point(self._link[link - 1], at)
+        own = np.array(status)
+        own[own == "turns-undefined"] = "ok"
+        return Trace(position, velocity, acceleration, jerk, own)
+
+
+def _expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[int]]:
+    """The joints as the core takes them: letters, advances for a radian, links, and where each link went."""
+    letters, advances, links, last = "", [], [], []
+    still = np.eye(4)
+    for i, joint in enumerate(linkage.joints):
+        if joint.kind == "C":
+            letters += "RP"
+            advances += [0.0, 0.0]
+            links.append(still)
+        elif joint.kind == "U":
+            letters += "RR"
+            advances += [0.0, 0.0]
+            cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
+            links.append(
+                np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
+            )
+        else:
+            letters += joint.kind
+            advances.append(joint.pitch / math.tau)
+        last.append(len(letters) - 1)
+        if i < len(linkage.links):
+            links.append(np.array(linkage.links[i]))
+    return letters, advances, links, last
+
+
+def _word(kind: str, ends: tuple[float, float] | None) -> str:
+    if kind == "slide":
+        return "slider"
+    return "crank" if ends is None else "rocker"
+
+
+def _pair(first: str, second: str) -> str:
+    return f"double-{first}" if first == second else f"{first}-{second}"
+
+
+def _motion_type(circuits: Sequence[Circuit], mobility: Mobility) -> str:
+    if circuits:
+        types = {c.motion_type for c in circuits}
+        return types.pop() if len(types) == 1 else "mixed"
+    if mobility.finite is not None and mobility.finite > 1:
+        return "two-inputs"
+    return "cannot-assemble" if mobility.rank is None else "rigid"
+
+
+def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
+    if not raw["seeds"]:
+        return "from the drawn pose only"
+    how = {
+        "algebraic": "all modes over the complex numbers",
+        "searched": "modes by search from many starts, screws within one turn to each side",
+    }[raw["completeness"]]
+    joints = " and of ".join(columns[c] for c in raw["seed_columns"])
+    text = f"{how} at {raw['seeds']} values of {joints}; each lies on a circuit"
+    if raw["still"]:
+        text += f", but {raw['still']} from which no motion could be followed"
+    return text
+
+
+def _merged(limits: Sequence[float], *, turns: bool) -> Floats:
+    values: Floats = np.sort(np.mod(limits, math.tau) if turns else np.asarray(limits, dtype=np.float64))
+    if values.size == 0:
+        return np.array([])
+    kept: Floats = values[np.concatenate([[True], np.diff(values) > SAME_LIMIT])]
+    if turns and kept.size > 1 and kept[0] + math.tau - kept[-1] < SAME_LIMIT:
+        kept = kept[:-1]
+    return kept
