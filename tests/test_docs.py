@@ -47,3 +47,17 @@ def test_links_of_the_documentation_lead_somewhere():
     for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
         for target in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_the_tables_on_the_seven_r_are_those_of_today():
+    page = (ROOT / "docs" / "seven_r.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    printed = ""
+    for command in (["-c", code], ["benches/finite_differences.py"]):
+        run = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=True)
+        printed += run.stdout
+    rows = [line for line in printed.splitlines() if line.startswith("| ")]
+    # errors of exact rates are rounding, and differ from machine to machine
+    rows = [row for row in rows if not row.startswith("| exact")]
+    assert len(rows) == 8 + 4 + 9
+    assert [row for row in rows if f"{row}\n" not in page] == []

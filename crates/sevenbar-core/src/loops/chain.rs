@@ -65,6 +65,7 @@ impl Configuration {
 }
 
 /// The screw with this axis through a point, and the advance for each radian.
+#[inline(always)]
 fn screw(axis: Vec3, point: Vec3, advance: f64) -> Twist {
     let moment = add(cross(point, axis), scale(axis, advance));
     [axis[0], axis[1], axis[2], moment[0], moment[1], moment[2]]
@@ -207,6 +208,7 @@ impl Chain {
     }
 
     /// The move from one configuration to another, turns taken the short way.
+    #[inline(always)]
     pub fn difference(&self, from: &Configuration, to: &Configuration) -> Columns {
         let mut by = [0.0; COLUMNS];
         for (joint, &column) in self.joints.iter().zip(&self.first) {
@@ -225,9 +227,11 @@ impl Chain {
     }
 
     /// How far the loop is from closing: the greater of the angle [rad] and the gap in parts of the size.
+    #[inline(always)]
     pub fn residual(&self, placed: &Placed) -> f64 {
         let e = &placed.error;
-        let (turn, gap) = (norm([e[0], e[1], e[2]]), norm([e[3], e[4], e[5]]));
+        let length = |x: f64, y: f64, z: f64| (x * x + y * y + z * z).sqrt();
+        let (turn, gap) = (length(e[0], e[1], e[2]), length(e[3], e[4], e[5]));
         if placed.closing_cosine < 0.0 {
             return f64::max(1.0, gap);
         }
@@ -248,9 +252,10 @@ impl Chain {
 }
 
 /// An angle moved by whole turns into (-pi, pi].
+#[inline(always)]
 pub(super) fn short_way(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
-    let short = angle - turn * (angle / turn).round();
+    let short = angle - turn * (angle / turn).round_ties_even();
     if short <= -std::f64::consts::PI {
         short + turn
     } else {

@@ -2,7 +2,9 @@
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, squared_up};
 use super::curve::{Curve, End, Node, bordered, combined, dot};
+use super::many;
 use super::rates::{ORDERS, Rates};
+use crate::simd::{Kernel, dispatch};
 use std::f64::consts::TAU;
 
 /// A rate of a column below this part of the curve's is zero.
@@ -12,7 +14,7 @@ const AT_REST: f64 = 1e-13;
 const SAME_ROW: f64 = 1e-9;
 
 /// A correction [rad, or parts of the size] after which the next is rounding.
-const SETTLED: f64 = 1e-8;
+const SETTLED: f64 = 1e-7;
 
 /// Corrections of a row, and how far they may lead together [rad, or parts of the size].
 const MOST_CORRECTIONS: usize = 8;
@@ -80,13 +82,14 @@ impl Curve {
         let mut found = Vec::new();
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
+            let cubic = self.cubic(chain, segment);
             let mut before = (0.0, a.tangent[column]);
             for look in 1..=LOOKS {
                 let s = a.step * look as f64 / LOOKS as f64;
                 let rate = if look == LOOKS {
                     b.tangent[column]
                 } else {
-                    self.interpolated_rate(chain, segment, s)[column]
+                    cubic.rate(column, s)
                 };
                 if before.1 * rate < 0.0
                     && let Some(node) = turning_between(chain, a, column, before, (s, rate))
@@ -101,36 +104,48 @@ impl Curve {
         found
     }
 
-    /// The move from a node to a place ahead of it, by the cubic through both ends of the segment.
-    pub fn interpolated(&self, chain: &Chain, segment: usize, s: f64) -> Columns {
+    /// The cubic through both ends of a segment.
+    #[inline(always)]
+    fn cubic(&self, chain: &Chain, segment: usize) -> Cubic {
         let (a, b) = (&self.nodes[segment], &self.nodes[segment + 1]);
-        let h = a.step;
-        let whole = chain.difference(&a.at, &b.at);
-        let x = s / h;
-        let (second, third) = (x * x * (3.0 - 2.0 * x), x * x * (x - 1.0) * h);
-        let first = x * (1.0 - x) * (1.0 - x) * h;
-        let end = self.end_rate(segment);
-        std::array::from_fn(|k| whole[k] * second + a.tangent[k] * first + end[k] * third)
+        // lengths are measured along the tangent of the segment's start
+        let pace = 1.0 / dot(&a.tangent, &b.tangent);
+        Cubic {
+            length: a.step,
+            whole: chain.difference(&a.at, &b.at),
+            start: a.tangent,
+            end: b.tangent.map(|t| t * pace),
+        }
+    }
+}
+
+/// A segment of a curve between two nodes, as a move from the first: values and rates at both ends.
+struct Cubic {
+    length: f64,
+    whole: Columns,
+    start: Columns,
+    end: Columns,
+}
+
+impl Cubic {
+    #[inline(always)]
+    fn column(&self, k: usize, s: f64) -> f64 {
+        let (h, x) = (self.length, s / self.length);
+        self.whole[k] * x * x * (3.0 - 2.0 * x)
+            + h * x * (1.0 - x) * (self.start[k] * (1.0 - x) - self.end[k] * x)
     }
 
-    fn interpolated_rate(&self, chain: &Chain, segment: usize, s: f64) -> Columns {
-        let (a, b) = (&self.nodes[segment], &self.nodes[segment + 1]);
-        let h = a.step;
-        let whole = chain.difference(&a.at, &b.at);
-        let x = s / h;
-        let end = self.end_rate(segment);
-        std::array::from_fn(|k| {
-            whole[k] / h * 6.0 * x * (1.0 - x)
-                + a.tangent[k] * (1.0 - 4.0 * x + 3.0 * x * x)
-                + end[k] * (3.0 * x * x - 2.0 * x)
-        })
+    #[inline(always)]
+    fn rate(&self, k: usize, s: f64) -> f64 {
+        let x = s / self.length;
+        self.whole[k] / self.length * 6.0 * x * (1.0 - x)
+            + self.start[k] * (1.0 - x) * (1.0 - 3.0 * x)
+            + self.end[k] * x * (3.0 * x - 2.0)
     }
 
-    /// d x / d s at the end of a segment, s being measured along the tangent of its start.
-    fn end_rate(&self, segment: usize) -> Columns {
-        let (a, b) = (&self.nodes[segment], &self.nodes[segment + 1]);
-        let pace = dot(&a.tangent, &b.tangent);
-        b.tangent.map(|t| t / pace)
+    #[inline(always)]
+    fn all(&self, s: f64) -> Columns {
+        std::array::from_fn(|k| self.column(k, s))
     }
 }
 
@@ -177,6 +192,7 @@ impl Chain {
     }
 
     /// The configuration with the input at a value, by Newton from a near one, with its rates.
+    #[inline(always)]
     pub fn solved(
         &self,
         input: usize,
@@ -289,7 +305,19 @@ impl<'a> Passes<'a> {
     }
 
     /// The row of a pass at an input, which lies in it.
+    #[inline(always)]
     pub fn row(&self, pass: usize, value: f64, rates: &[f64; ORDERS]) -> Option<Row> {
+        let (segment, s, rough) = self.rough(pass, value);
+        let row = self
+            .chain
+            .solved(self.input, value, &rough, rates)
+            .or_else(|| self.beside(segment, s, value, rates))?;
+        Some(Row { pass, ..row })
+    }
+
+    /// Where the cubics through the nodes of a pass have an input: segment, length into it, and configuration.
+    #[inline(always)]
+    fn rough(&self, pass: usize, value: f64) -> (usize, f64, Configuration) {
         let p = &self.passes[pass];
         let nodes = &self.curve.nodes[p.from.0..=p.to.0];
         let rising = p.end > p.start;
@@ -299,37 +327,30 @@ impl<'a> Passes<'a> {
         });
         let segment = p.from.0 + past.saturating_sub(1).min(nodes.len() - 2);
         let a = &self.curve.nodes[segment];
-        // where the cubic has this input
+        let cubic = self.curve.cubic(self.chain, segment);
         let (mut low, mut high) = (0.0, a.step);
         let target = value - a.at.values[self.input];
-        let mut s = 0.5 * a.step;
+        let mut s = (target / cubic.whole[self.input]).clamp(0.0, 1.0) * a.step;
         for _ in 0..40 {
-            let here = self.curve.interpolated(self.chain, segment, s)[self.input];
+            let here = cubic.column(self.input, s);
             if (here < target) == rising {
                 low = s;
             } else {
                 high = s;
             }
-            let rate = self.curve.interpolated_rate(self.chain, segment, s)[self.input];
-            let newton = s + (target - here) / rate;
+            let newton = s + (target - here) / cubic.rate(self.input, s);
             let next = if newton > low && newton < high {
                 newton
             } else {
                 0.5 * (low + high)
             };
-            if (next - s).abs() < 1e-12 * a.step {
+            let settled = (next - s).abs() < 1e-9 * a.step;
+            s = next;
+            if settled {
                 break;
             }
-            s = next;
         }
-        let rough = self
-            .chain
-            .moved(&a.at, &self.curve.interpolated(self.chain, segment, s));
-        let row = self
-            .chain
-            .solved(self.input, value, &rough, rates)
-            .or_else(|| self.beside(segment, s, value, rates))?;
-        Some(Row { pass, ..row })
+        (segment, s, self.chain.moved(&a.at, &cubic.all(s)))
     }
 
     /// The row where the input nearly stands still: along the curve first, then the input.
@@ -370,6 +391,12 @@ impl<'a> Passes<'a> {
     /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres.
     pub fn rows(&self, origin: f64, step: f64, rates: &[f64; ORDERS]) -> Vec<Row> {
         let mut rows = Vec::new();
+        dispatch(OnGrid { passes: self, grid: (origin, step), rates, rows: &mut rows });
+        rows
+    }
+
+    #[inline(always)]
+    fn rows_on_grid(&self, (origin, step): (f64, f64), rates: &[f64; ORDERS], rows: &mut Vec<Row>) {
         let closed = self.curve.end == End::Closed;
         let slack = SAME_ROW * step;
         for (n, pass) in self.passes.iter().enumerate() {
@@ -391,21 +418,19 @@ impl<'a> Passes<'a> {
                 high + slack
             };
             let (first, last) = (index(low).ceil() as i64, index(high).floor() as i64);
-            let count = (last - first + 1).max(0);
-            for m in 0..count {
+            let values = (0..(last - first + 1).max(0)).map(|m| {
                 let k = if pass.end > pass.start {
                     first + m
                 } else {
                     last - m
                 };
-                let value = origin + step * k as f64;
-                rows.push(self.row(n, value, rates).unwrap_or(missing(n)));
-            }
+                origin + step * k as f64
+            });
+            self.rows_at(n, values, rates, rows);
             if ends_at_limit && !closed && n + 1 == self.passes.len() {
                 rows.push(self.limit_row(n, &self.curve.nodes[pass.to.0]));
             }
         }
-        rows
     }
 
     /// Rows at the inputs of a law, once for each pass.
@@ -433,6 +458,51 @@ impl<'a> Passes<'a> {
             }
         }
         rows
+    }
+}
+
+impl Passes<'_> {
+    /// Rows of a pass at inputs in it, side by side where the chain suits.
+    #[inline(always)]
+    fn rows_at(
+        &self,
+        pass: usize,
+        values: impl Iterator<Item = f64>,
+        rates: &[f64; ORDERS],
+        rows: &mut Vec<Row>,
+    ) {
+        let single = |value: f64| self.row(pass, value, rates).unwrap_or(missing(pass));
+        if !many::suits(self.chain) || *rates != [1.0, 0.0, 0.0] {
+            rows.extend(values.map(single));
+            return;
+        }
+        let rough: Vec<Columns> = values
+            .map(|value| {
+                let mut columns = self.rough(pass, value).2.values;
+                columns[self.input] = value;
+                columns
+            })
+            .collect();
+        let together = many::solved(self.chain, self.input, &rough);
+        rows.extend(together.into_iter().zip(&rough).map(|(row, rough)| match row {
+            Some(row) => Row { pass, ..row },
+            None => single(rough[self.input]),
+        }));
+    }
+}
+
+/// [`Passes::rows`], compiled for each vector unit.
+struct OnGrid<'a, 'b> {
+    passes: &'b Passes<'a>,
+    grid: (f64, f64),
+    rates: &'b [f64; ORDERS],
+    rows: &'b mut Vec<Row>,
+}
+
+impl Kernel for OnGrid<'_, '_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        self.passes.rows_on_grid(self.grid, self.rates, self.rows);
     }
 }
 

@@ -11,6 +11,7 @@
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, Twist, squared_up};
 use super::dense::{Factored, ROWS};
+use crate::simd::{Kernel, dispatch};
 
 /// Longest step [rad, or parts of the size].
 const LONGEST: f64 = 0.25;
@@ -26,6 +27,9 @@ const FARTHEST: f64 = 50.0;
 
 /// The closure error of a node above which redundant constraints have stopped to agree.
 const OPEN: f64 = 1e-9;
+
+/// The closure error of a step that did not arrive.
+const NOT_CLOSED: f64 = 1e-7;
 
 /// Back at the start when nearer than this in every column.
 const RETURNED: f64 = 1e-7;
@@ -44,6 +48,8 @@ pub(super) struct Node {
     pub reach: f64,
     /// Norm of the inverse of the bordered Jacobian.
     pub inverse_norm: f64,
+    /// Closure error [rad, or parts of the size], where the node was stepped to.
+    pub residual: f64,
 }
 
 /// Why a curve ends.
@@ -66,6 +72,7 @@ pub(super) struct Curve {
     pub end: End,
 }
 
+#[inline(always)]
 pub(super) fn dot(a: &Columns, b: &Columns) -> f64 {
     let mut sum = 0.0;
     for k in 0..COLUMNS {
@@ -74,6 +81,7 @@ pub(super) fn dot(a: &Columns, b: &Columns) -> f64 {
     sum
 }
 
+#[inline(always)]
 pub(super) fn combined(a: &Columns, x: f64, b: &Columns, y: f64) -> Columns {
     std::array::from_fn(|k| a[k] * x + b[k] * y)
 }
@@ -148,13 +156,22 @@ impl Chain {
         out
     }
 
-    /// A bound of the third derivative of the closure: with lengths in parts of their sum no point is farther than one.
-    fn third_derivative(&self) -> f64 {
+    /// A bound of the third derivative of the closure: no point is farther than the sum of the links, one, and of the slides.
+    fn third_derivative(&self, at: &Configuration) -> f64 {
         let joints = self.joints.len() as f64;
-        2.0 * joints * joints.sqrt()
+        let mut farthest = 1.0;
+        for (joint, &c) in self.joints.iter().zip(&self.first) {
+            farthest += match *joint {
+                Joint::Slide => at.values[c].abs(),
+                Joint::Screw(advance) => (advance * at.values[c]).abs(),
+                _ => 0.0,
+            };
+        }
+        2.0 * farthest * joints * joints.sqrt()
     }
 
     /// The node at a closed configuration, with the direction that goes along `before`.
+    #[inline(always)]
     pub fn node(&self, rough: &Configuration, before: &Columns) -> Option<Node> {
         let placed = self.place(rough);
         let n = self.columns;
@@ -197,7 +214,7 @@ impl Chain {
         let inverse_norm = inverse_square.sqrt();
         let curvature = square.sqrt();
         // w = curvature + third / w: within the ball of radius 1 / (2 w) about points up to 1 / (2 w) away
-        let third = inverse_norm * self.third_derivative();
+        let third = inverse_norm * self.third_derivative(rough);
         let bound = 0.5 * (curvature + (curvature * curvature + 4.0 * third).sqrt());
         let mut at = self.moved(rough, &correction);
         for ball in &mut at.balls {
@@ -212,10 +229,12 @@ impl Chain {
             step: 0.0,
             reach: 0.5 / bound,
             inverse_norm,
+            residual: 0.0,
         })
     }
 
     /// The node a step farther along the curve, if its solution lies in the ball of the argument.
+    #[inline(always)]
     pub fn ahead(&self, from: &Node, step: f64) -> Option<Node> {
         let guess = combined(&from.tangent, step, &from.bend, 0.5 * step * step);
         let (near, correction) = self.corrected(&self.moved(&from.at, &guess), from)?;
@@ -224,12 +243,13 @@ impl Chain {
         if length(&off) > from.reach || length(&off).is_nan() {
             return None;
         }
-        let node = self.node(&near, &from.tangent)?;
-        let residual = self.residual(&self.place(&node.at));
-        (residual < 1e-7).then_some(node)
+        let mut node = self.node(&near, &from.tangent)?;
+        node.residual = self.residual(&self.place(&node.at));
+        (node.residual < NOT_CLOSED).then_some(node)
     }
 
     /// One Newton step in the plane across the tangent of a node.
+    #[inline(always)]
     fn corrected(&self, rough: &Configuration, from: &Node) -> Option<(Configuration, Columns)> {
         let placed = self.place(rough);
         let (factored, right) = bordered(&placed.screws, &placed.error, self.columns, &from.tangent);
@@ -278,6 +298,13 @@ impl Chain {
     }
 
     fn walk(&self, first: Node) -> Curve {
+        let mut curve = Curve { nodes: Vec::new(), end: End::Far };
+        dispatch(Walk { chain: self, first, curve: &mut curve });
+        curve
+    }
+
+    #[inline(always)]
+    fn walk_on(&self, first: Node) -> Curve {
         let mut nodes = vec![first];
         let mut gone = 0.0;
         loop {
@@ -293,7 +320,7 @@ impl Chain {
                 }
                 step *= 0.5;
             };
-            if self.residual(&self.place(&next.at)) > OPEN {
+            if next.residual > OPEN {
                 return Curve { nodes, end: End::Open };
             }
             gone += step;
@@ -342,5 +369,19 @@ impl Chain {
         }
         here.step = 0.0;
         Some((along, here))
+    }
+}
+
+/// [`Chain::walk`], compiled for each vector unit.
+struct Walk<'a> {
+    chain: &'a Chain,
+    first: Node,
+    curve: &'a mut Curve,
+}
+
+impl Kernel for Walk<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        *self.curve = self.chain.walk_on(self.first);
     }
 }

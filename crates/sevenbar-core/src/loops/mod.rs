@@ -8,6 +8,7 @@ mod circuits;
 mod curve;
 mod dense;
 mod lanes;
+mod many;
 mod modes;
 mod motion;
 mod paths;

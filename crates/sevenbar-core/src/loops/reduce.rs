@@ -111,7 +111,7 @@ fn spin_middle(axis: Vec3, line: Vec3, frame: &Rotation) -> f64 {
 /// The chain of a description: lengths in parts of the size.
 pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose]) -> Reduced {
     let count = kinds.len();
-    let idle = idle_freedoms(kinds, base, ground, links);
+    let idle = idle_freedoms(kinds, links);
     let held = |i: usize| {
         idle.iter().any(|f| {
             matches!(f, Idle::BallOnAxis(h, _) | Idle::OneAxis(h, _) | Idle::OneDirection(h, _) if *h == i)
@@ -202,24 +202,18 @@ pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose])
 }
 
 /// Freedoms of the link between two neighbouring joints that nothing else takes part in, in every pose.
-fn idle_freedoms(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose]) -> Vec<Idle> {
+fn idle_freedoms(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
     let count = kinds.len();
     let mut found: Vec<Idle> = Vec::new();
     let mut taken = vec![false; count];
-    for i in 0..count {
-        let next = (i + 1) % count;
-        let link = if i + 1 < count {
-            links[i]
-        } else {
-            ground.inverse().then(base)
-        };
-        if taken[i] || taken[next] || !dependent(kinds[i], kinds[next], &link) {
+    // the ground cannot spin, so the last joint and the first are no such pair
+    for i in 0..count.saturating_sub(1) {
+        let next = i + 1;
+        if taken[i] || taken[next] || !dependent(kinds[i], kinds[next], &links[i]) {
             continue;
         }
         let idle = match (kinds[i], kinds[next]) {
-            // the ground cannot spin
-            (Kind::Ball, Kind::Ball) if next > 0 => Idle::BetweenBalls(i),
-            (Kind::Ball, Kind::Ball) => continue,
+            (Kind::Ball, Kind::Ball) => Idle::BetweenBalls(i),
             (Kind::Ball, _) => Idle::BallOnAxis(next, i),
             (_, Kind::Ball) => Idle::BallOnAxis(i, next),
             (Kind::Slide, Kind::Slide) => Idle::OneDirection(next, i),

@@ -77,3 +77,30 @@ fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
         assert!((gained.abs() - std::f64::consts::TAU).abs() < 1e-12);
     }
 }
+
+#[test]
+fn rows_side_by_side_are_the_rows_solved_singly() {
+    let chain = seven_r();
+    for mode in ModeFinder::new(&chain, 0).at(0.3) {
+        let curve = chain.follow(&mode);
+        let passes = super::circuits::Passes::new(&chain, &curve, 0).unwrap();
+        let rows = passes.rows(0.0, 0.01, &[1.0, 0.0, 0.0]);
+        let rough: Vec<_> = rows.iter().map(|r| r.at.values).collect();
+        let together = super::many::solved(&chain, 0, &rough);
+        let settled = together.iter().flatten().count();
+        assert!(settled * 100 > rows.len() * 99, "{settled} of {}", rows.len());
+        for (row, one) in rows.iter().zip(together) {
+            let single = chain
+                .solved(0, row.at.values[0], &row.at, &[1.0, 0.0, 0.0])
+                .unwrap();
+            let Some(one) = one else { continue };
+            for order in 0..3 {
+                for c in 0..7 {
+                    let (a, b) = (one.rates[order][c], single.rates[order][c]);
+                    assert!((a - b).abs() < 1e-11 * (1.0 + a.abs()), "{order} {c} {a} {b}");
+                }
+            }
+            assert!((one.condition / single.condition - 1.0).abs() < 1e-9);
+        }
+    }
+}
