@@ -65,8 +65,11 @@ wheel: $(VENV)/.maturin  ## Build dist/*.whl
 	$(BIN)/maturin build --release $(LOCKED) --out "$(DIST)"
 
 .PHONY: bench
-bench: $(VENV)/.installed  ## Time the batch output against NumPy
+bench: $(VENV)/.installed  ## Time the closed form and the general loop against their peers
+	$(BIN)/python -m pip install --quiet "scipy>=1.13"
 	$(BIN)/python benches/rssr_output.py
+	$(BIN)/python benches/seven_r.py
+	$(BIN)/python benches/finite_differences.py
 
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too

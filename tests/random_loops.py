@@ -189,6 +189,8 @@ def three_parallel(rng: np.random.Generator) -> Rows:
     twist[start : start + 2] = rng.choice([0.0, np.pi], 2)
     if start == 0 and rng.random() < 0.5:
         twist[3:5] = 0.0
+        # no turn of the seventh axis is made up for by two such triples: it stands still and cannot drive
+        return rows(rng, kinds, length, twist, offset).begun_at(int(rng.integers(6)))
     return _closed(rng, (kinds, length, twist, offset))
 
 
@@ -215,7 +217,8 @@ def coaxial(rng: np.random.Generator) -> Rows:
 def zero_lengths(rng: np.random.Generator) -> Rows:
     """Lengths and offsets vanish at random."""
     kinds, length, twist, offset = _special(rng)
-    return _closed(rng, (kinds, _thinned(rng, length), twist, _thinned(rng, offset)))
+    length, offset = _thinned(rng, length), _thinned(rng, offset)
+    return _closed(rng, (kinds, length, twist, _without_four_in_a_point(length, offset)))
 
 
 def right_twists(rng: np.random.Generator) -> Rows:
@@ -231,7 +234,8 @@ def right_and_zero(rng: np.random.Generator) -> Rows:
     length = _thinned(rng, np.round(length * 2) / 2)
     # axes on one line are one joint, not two
     length[(np.sin(twist) == 0) | (np.abs(np.sin(twist)) < 1e-9)] = 1.0
-    return _closed(rng, (kinds, length, twist, _thinned(rng, np.round(offset * 2) / 2)))
+    offset = _without_four_in_a_point(length, _thinned(rng, np.round(offset * 2) / 2))
+    return _closed(rng, (kinds, length, twist, offset))
 
 
 def spherical_wrist(rng: np.random.Generator) -> Rows:
@@ -265,6 +269,15 @@ def _thinned(rng: np.random.Generator, values: np.ndarray, share: float = 0.45) 
     return np.where(rng.random(values.size) < share, 0.0, values)
 
 
+def _without_four_in_a_point(length: np.ndarray, offset: np.ndarray) -> np.ndarray:
+    """Offsets with which no four axes in a row meet: such a part moves alone, and the other joints cannot drive."""
+    kept = offset.copy()
+    for k in range(3):
+        if not length[k : k + 3].any() and not kept[k : k + 2].any():
+            kept[k] = 1.0
+    return kept
+
+
 def _squared(rng: np.random.Generator, twist: np.ndarray, share: float = 0.6) -> np.ndarray:
     chosen = rng.choice([0.0, np.pi / 2, np.pi, -np.pi / 2], twist.size, p=[0.2, 0.35, 0.1, 0.35])
     return np.where(rng.random(twist.size) < share, chosen, twist)
@@ -275,7 +288,7 @@ def _squared(rng: np.random.Generator, twist: np.ndarray, share: float = 0.6) ->
 #: Loops of more than one-freedom joints with Gruebler count 1, or 2 with an idle spin between two balls.
 COMPOUND = (
     "RCCC", "RSCR", "RSUR", "RRSC", "RUUC", "CUUR", "RRRSR", "RRCRRR", "RUURR", "CRCRR", "RSRRR", "RUCRR",
-    "RSPRR", "PSUR", "UUCR", "SUU", "SCC", "RCPC", "RRSS", "RSSR", "RSSP", "PSSP", "RPUUR", "PPSC",
+    "RSPRR", "PSUR", "UUCR", "USU", "CSC", "RRSS", "RSSR", "RSSP", "PSSP", "RPUUR", "PPSC",
 )  # fmt: skip
 
 
@@ -299,10 +312,11 @@ def compound(rng: np.random.Generator, kinds: str = "") -> Drawn:
     chosen = kinds or str(rng.choice(COMPOUND))
     joints = [place(rng, kind) for kind in chosen]
     if rng.random() < 0.3:
-        lined = [joint for joint in joints if "axis" in joint]
+        # parallel slides move together and leave the input nothing to drive
+        lined = [joint for joint in joints if joint["kind"] in "RC"]
         if len(lined) >= 2:
             one, other = rng.choice(len(lined), 2, replace=False)
-            if rng.random() < 0.5:
+            if rng.random() < 0.5 and "R" in lined[one]["kind"] + lined[other]["kind"]:
                 lined[one]["axis"] = lined[other]["axis"]
             else:
                 lined[one]["at"] = lined[other]["at"]

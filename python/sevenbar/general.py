@@ -268,7 +268,10 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
         "searched": "modes by search from many starts, screws within one turn to each side",
     }[raw["completeness"]]
     joints = " and of ".join(columns[c] for c in raw["seed_columns"]) or "a turn of a ball"
-    text = f"{how} at {raw['seeds']} values of {joints}; each lies on a circuit"
+    text = f"{how} at {raw['seeds']} values of {joints}; "
+    if raw.get("rank") is None:
+        return text + "there are none"
+    text += "each lies on a circuit"
     if raw["still"]:
         text += f", but {raw['still']} from which no motion could be followed"
     return text

@@ -226,7 +226,7 @@ impl Chain {
                 let residual = self.residual(&placed);
                 return (residual < ROW_CLOSED).then(|| Row {
                     at,
-                    rates: self.rates(&placed, &factored, rates),
+                    rates: self.rates(&placed, &factored, (input, rates)),
                     status: RowStatus::Ok,
                     pass: 0,
                     residual,

@@ -7,8 +7,8 @@
 
 use super::chain::{BALLS, COLUMNS, Chain, Columns, Configuration, Joint, product, short_way, squared_up};
 use super::dense::{Factored, ROWS};
-use super::paths::{JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
-use super::starts::{Frame, Random, STARTS, distinct, general_count, start};
+use super::paths::{BRISK, CAREFUL, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::starts::{Frame, Random, SAME_GENERAL, STARTS, distinct, general_count, start};
 use crate::rigid::Pose;
 use num_complex::Complex64;
 
@@ -42,6 +42,9 @@ pub(super) const CLOSED: f64 = 1e-11;
 
 /// Modes nearer than this in every joint [rad, or parts of the size] are one.
 pub(super) const SAME_MODE: f64 = 1e-7;
+
+/// Starts that must find no new solution before a special chain's are believed to be all.
+const CONFIRMING_STARTS: usize = 2;
 
 /// Starts of the search where there is no algebraic way.
 const SEARCH_STARTS: usize = 1500;
@@ -192,16 +195,19 @@ impl<'a> ModeFinder<'a> {
         let (target, _) = self.parameters(input);
         let want = general_count(&self.slides);
         let mut solutions = Vec::new();
+        let mut idle = 0;
         for n in 0..STARTS {
             let start = start(&self.slides, n);
-            let ends = follow(&self.slides, &start.parameters, &target, &start.solutions);
+            let ends = follow(&self.slides, &start.parameters, &target, &start.solutions, BRISK);
             let before = solutions.len();
             solutions = distinct(
                 &self.slides,
                 solutions.into_iter().chain(ends.into_iter().flatten()),
+                SAME_GENERAL,
             );
-            // a second start that finds nothing new confirms a special chain; a general one needs no other word
-            if solutions.len() >= want || (n > 0 && solutions.len() == before) {
+            idle = if solutions.len() == before { idle + 1 } else { 0 };
+            // a general chain has all; a special one is believed when further starts find nothing new
+            if solutions.len() >= want || idle == CONFIRMING_STARTS {
                 break;
             }
         }
@@ -218,19 +224,25 @@ impl<'a> ModeFinder<'a> {
         let (to, shift) = self.parameters(input);
         let mut ends: Vec<Solution> = Vec::new();
         let mut random = Random(0xde70);
-        for attempt in 0..4 {
-            let found = if attempt == 0 {
-                follow(&self.slides, &from, &to, &generic.solutions)
-            } else {
+        for attempt in 0..3 {
+            let found = match attempt {
+                0 => follow(&self.slides, &from, &to, &generic.solutions, BRISK),
+                // two paths that end near each other may have become one
+                1 => follow(&self.slides, &from, &to, &generic.solutions, CAREFUL),
                 // another way round whatever the straight way came too near to
-                let (aside, _) = self.parameters(self.generic_input(&mut random));
-                let first = follow(&self.slides, &from, &aside, &generic.solutions);
-                let first: Vec<Solution> = first.into_iter().flatten().collect();
-                follow(&self.slides, &aside, &to, &first)
+                _ => {
+                    let (aside, _) = self.parameters(self.generic_input(&mut random));
+                    let first = follow(&self.slides, &from, &aside, &generic.solutions, CAREFUL);
+                    let first: Vec<Solution> = first.into_iter().flatten().collect();
+                    follow(&self.slides, &aside, &to, &first, CAREFUL)
+                }
             };
-            let before = ends.len();
-            ends = distinct(&self.slides, ends.into_iter().chain(found.into_iter().flatten()));
-            if ends.len() >= generic.solutions.len() || (attempt > 0 && ends.len() == before) {
+            ends = distinct(
+                &self.slides,
+                ends.into_iter().chain(found.into_iter().flatten()),
+                SAME_MODE,
+            );
+            if ends.len() >= generic.solutions.len() {
                 break;
             }
         }

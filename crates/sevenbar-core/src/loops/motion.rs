@@ -132,6 +132,8 @@ impl Loop {
         let circuits = passes
             .iter()
             .map(|p| self.circuit(p, (input, output), (a, b), (origin, step), speed, law))
+            // a pose so far out that the loop hardly closes leaves nothing to tell
+            .filter(|c| !c.rows.is_empty())
             .collect();
         Some(Motion {
             found: curves.found,

@@ -18,16 +18,31 @@ pub(super) const JOINTS: usize = 7;
 /// Most steps on one path; the longest of 10^5 random paths that arrive took 300.
 const MOST_STEPS: usize = 800;
 
-/// First correction [rad, or parts of the size] that steps aim at, and that which they must not exceed.
-const AIMED_CORRECTION: f64 = 1e-2;
-const LARGEST_CORRECTION: f64 = 8e-2;
+/// How short the steps are kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    /// First correction [rad, or parts of the size] that steps aim at, and that which they must not exceed.
+    aimed: f64,
+    largest: f64,
+    /// Second correction that a step must not exceed; the next would be its square.
+    second: f64,
+}
 
-/// Second correction that a step must not exceed, also as a part of the first; the next would be its square.
-const LARGEST_SECOND: f64 = 2e-3;
+/// Paths that keep apart, as between general parameters.
+pub(super) const BRISK: Pace = Pace { aimed: 1e-2, largest: 8e-2, second: 2e-3 };
+
+/// Paths that come near each other, as at the end beside a dead centre.
+pub(super) const CAREFUL: Pace = Pace { aimed: 1e-4, largest: 1e-3, second: 1e-5 };
+
+/// Second correction as a part of the first.
 const LEAST_CONTRACTION: f64 = 0.1;
 
 /// Second correction at the end of a path, where the next would be rounding.
 const LAST_SECOND: f64 = 1e-8;
+
+/// The same for far solutions, `e^(i t)` in the hundreds, where rounding is that much greater; after so many corrections.
+const LAST_SECOND_FAR: f64 = 3e-5;
+const LAST_CORRECTIONS: usize = 4;
 
 /// A longer predicted move of a joint [rad] is made in shorter steps.
 const LONGEST_MOVE: f64 = 0.5;
@@ -66,9 +81,10 @@ pub(super) fn follow(
     from: &Parameters,
     to: &Parameters,
     starts: &[Solution],
+    pace: Pace,
 ) -> Vec<Option<Solution>> {
     let mut ends = vec![None; starts.len()];
-    dispatch(Follow { slides, from, to, starts, ends: &mut ends });
+    dispatch(Follow { slides, from, to, starts, pace, ends: &mut ends });
     ends
 }
 
@@ -77,6 +93,7 @@ struct Follow<'a> {
     from: &'a Parameters,
     to: &'a Parameters,
     starts: &'a [Solution],
+    pace: Pace,
     ends: &'a mut [Option<Solution>],
 }
 
@@ -288,6 +305,8 @@ struct Walk<V> {
     /// The path in each lane; past the last one the lane rests.
     path: [usize; LANES],
     count: [usize; LANES],
+    /// Corrections at the end of the path.
+    settling: [usize; LANES],
 }
 
 impl LaneKernel for Follow<'_> {
@@ -303,6 +322,7 @@ impl LaneKernel for Follow<'_> {
             step_before: [0.0; LANES],
             path: [usize::MAX; LANES],
             count: [0; LANES],
+            settling: [0; LANES],
         };
         let mut next = 0;
         self.load(&mut walk, [true; LANES], &mut next);
@@ -327,6 +347,7 @@ impl Follow<'_> {
             };
             *next += usize::from(walk.path[lane] != usize::MAX);
             walk.count[lane] = 0;
+            walk.settling[lane] = 0;
             walk.t[lane] = 0.0;
             walk.step[lane] = 0.0;
             walk.step_before[lane] = 0.0;
@@ -386,9 +407,9 @@ impl Follow<'_> {
         let mut accepted = [0.0; LANES];
         for k in 0..LANES {
             let good = reach[k] <= LONGEST_MOVE
-                && first[k] <= LARGEST_CORRECTION
-                && last[k] <= LARGEST_SECOND
-                && last[k] <= LEAST_CONTRACTION * first[k].max(LAST_SECOND);
+                && first[k] <= self.pace.largest
+                && last[k] <= self.pace.second
+                && last[k] <= (LEAST_CONTRACTION * first[k]).max(LAST_SECOND_FAR);
             accepted[k] = f64::from(u8::from(good));
             walk.count[k] += 1;
             let room = LONGEST_MOVE * 0.8 / reach[k].max(1e-3);
@@ -397,7 +418,7 @@ impl Follow<'_> {
                 if step[k] > 0.0 {
                     walk.step_before[k] = step[k];
                 }
-                let factor = (AIMED_CORRECTION / first[k].max(1e-9))
+                let factor = (self.pace.aimed / first[k].max(1e-9))
                     .sqrt()
                     .sqrt()
                     .clamp(0.5, 2.0);
@@ -446,7 +467,11 @@ impl Follow<'_> {
             }
             let infinite = greatest[k] > INFINITE * INFINITE || least[k] * INFINITE * INFINITE < 1.0;
             let stuck = (accepted[k] == 0.0 && walk.step[k] < SHORTEST_STEP) || walk.count[k] > MOST_STEPS;
-            let arrived = walk.t[k] >= 1.0 && accepted[k] > 0.0 && last[k] <= LAST_SECOND;
+            let at_end = walk.t[k] >= 1.0 && accepted[k] > 0.0;
+            walk.settling[k] += usize::from(at_end);
+            let settled =
+                last[k] <= LAST_SECOND || (walk.settling[k] > LAST_CORRECTIONS && last[k] <= LAST_SECOND_FAR);
+            let arrived = at_end && settled;
             done[k] = arrived || infinite || stuck;
             ends_here[k] = arrived;
         }

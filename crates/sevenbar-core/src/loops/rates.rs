@@ -48,7 +48,12 @@ impl Chain {
 
     /// The joint rates with the input's derivatives given, by the closure factorised with the input's row.
     #[inline(always)]
-    pub fn rates(&self, placed: &Placed, factored: &Factored, input: &[f64; ORDERS]) -> Rates {
+    pub fn rates(
+        &self,
+        placed: &Placed,
+        factored: &Factored,
+        (column, input): (usize, &[f64; ORDERS]),
+    ) -> Rates {
         let mut rates = [[0.0; COLUMNS]; ORDERS];
         let mut screws = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
         let mut factorial = 1.0;
@@ -67,6 +72,8 @@ impl Chain {
             }
             right[6] = input[order] / factorial;
             rates[order] = factored.solve(right);
+            // given, not solved for
+            rates[order][column] = right[6];
         }
         rates
     }

@@ -92,8 +92,13 @@ impl Loop {
     /// Value and three derivatives of each column of the description, lengths in its unit.
     fn joint_rates(&self, at: &Configuration, rates: &super::rates::Rates) -> Vec<[f64; 4]> {
         let mut out = vec![[0.0; 4]; self.columns];
+        self.write_joint_rates(at, rates, &mut out);
+        out
+    }
+
+    fn write_joint_rates(&self, at: &Configuration, rates: &super::rates::Rates, out: &mut [[f64; 4]]) {
         let Some(chain) = &self.reduced.chain else {
-            return out;
+            return;
         };
         for (part, &first) in self.reduced.parts.iter().zip(&self.first) {
             match (part.source, part.kind) {
@@ -121,7 +126,6 @@ impl Loop {
                 }
             }
         }
-        out
     }
 
     /// Values and three derivatives of every column, order by order: `4 x rows x columns`; angles unwrapped along the rows.
@@ -129,17 +133,19 @@ impl Loop {
         let (count, columns) = (rows.len(), self.columns);
         let mut out = vec![f64::NAN; 4 * count * columns];
         let mut before: Vec<Option<f64>> = vec![None; columns];
+        let ball_turn: Vec<bool> = (0..columns).map(|c| self.is_ball_turn(c)).collect();
+        let mut table = vec![[0.0; 4]; columns];
         for (n, row) in rows.rows.iter().enumerate() {
             if row.status == RowStatus::NoSolution {
                 continue;
             }
-            let table = self.joint_rates(&row.at, &rows.rates(row));
+            self.write_joint_rates(&row.at, &rows.rates(row), &mut table);
             for (c, q) in table.iter().enumerate() {
                 for (order, value) in q.iter().enumerate() {
                     out[(order * count + n) * columns + c] = *value;
                 }
                 let mut value = q[0] + rows.offsets[c];
-                if self.is_ball_turn(c) && value.is_finite() {
+                if ball_turn[c] && value.is_finite() {
                     if let Some(b) = before[c] {
                         value = b + short_way(value - b);
                     }

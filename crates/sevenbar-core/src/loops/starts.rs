@@ -5,7 +5,7 @@
 //! carried round loops in the space of the parameters, the solutions are exchanged until all have been seen. The numbers
 //! come from a fixed seed, so every machine has the same starts.
 
-use super::paths::{JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::paths::{BRISK, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::sync::OnceLock;
@@ -49,8 +49,8 @@ pub(super) fn start(slides: &Slides, n: usize) -> &'static Start {
         let first = start(slides, 0);
         loop {
             let parameters = random.parameters();
-            let ends = follow(slides, &first.parameters, &parameters, &first.solutions);
-            let solutions = distinct(slides, ends.into_iter().flatten());
+            let ends = follow(slides, &first.parameters, &parameters, &first.solutions, BRISK);
+            let solutions = distinct(slides, ends.into_iter().flatten(), SAME_GENERAL);
             if solutions.len() == first.solutions.len() {
                 return Start { parameters, solutions };
             }
@@ -65,15 +65,26 @@ fn by_monodromy(slides: &Slides, random: &mut Random) -> Start {
         let mut known = vec![solution];
         for _ in 0..60 {
             let (a, b) = (random.parameters(), random.parameters());
-            let there = follow(slides, &parameters, &a, &known);
-            let across = follow(slides, &a, &b, &there.into_iter().flatten().collect::<Vec<_>>());
+            let there = follow(slides, &parameters, &a, &known, BRISK);
+            let across = follow(
+                slides,
+                &a,
+                &b,
+                &there.into_iter().flatten().collect::<Vec<_>>(),
+                BRISK,
+            );
             let back = follow(
                 slides,
                 &b,
                 &parameters,
                 &across.into_iter().flatten().collect::<Vec<_>>(),
+                BRISK,
             );
-            known = distinct(slides, known.into_iter().chain(back.into_iter().flatten()));
+            known = distinct(
+                slides,
+                known.into_iter().chain(back.into_iter().flatten()),
+                SAME_GENERAL,
+            );
             if known.len() >= want {
                 break;
             }
@@ -84,26 +95,30 @@ fn by_monodromy(slides: &Slides, random: &mut Random) -> Start {
     }
 }
 
-/// Each solution once.
-pub(super) fn distinct(slides: &Slides, solutions: impl Iterator<Item = Solution>) -> Vec<Solution> {
+/// Each solution once; those nearer than `apart` [rad, or parts of the size] are one.
+pub(super) fn distinct(
+    slides: &Slides,
+    solutions: impl Iterator<Item = Solution>,
+    apart: f64,
+) -> Vec<Solution> {
     let mut kept: Vec<Solution> = Vec::new();
     for solution in solutions {
-        if kept.iter().all(|k| !same(slides, k, &solution)) {
+        if kept.iter().all(|k| !same(slides, k, &solution, apart)) {
             kept.push(solution);
         }
     }
     kept
 }
 
-/// Nearer than this [rad, or parts of the size] two solutions are one.
-const SAME: f64 = 1e-6;
+/// Solutions at general parameters lie farther apart than this; far ones are not known better.
+pub(super) const SAME_GENERAL: f64 = 1e-4;
 
-fn same(slides: &Slides, a: &Solution, b: &Solution) -> bool {
+fn same(slides: &Slides, a: &Solution, b: &Solution, apart: f64) -> bool {
     (0..UNKNOWNS).all(|i| {
         if slides[i] {
-            (a[i] - b[i]).norm() < SAME * (1.0 + a[i].norm())
+            (a[i] - b[i]).norm() < apart * (1.0 + a[i].norm())
         } else {
-            (a[i] / b[i] - 1.0).norm() < SAME
+            (a[i] / b[i] - 1.0).norm() < apart
         }
     })
 }
