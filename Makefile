@@ -26,16 +26,21 @@ help:  ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: demo
-demo: $(VENV)/.installed  ## Analyse the RSSR paper's linkage; tables and figures into demo/
+demo: $(VENV)/.installed  ## Analyse the two papers' linkages; tables and figures into demo/
 	$(BIN)/sevenbar analyze rssr --out demo
+	$(BIN)/sevenbar analyze seven_r --out demo/seven_r
 
 .PHONY: check
 check: lint rust-test  ## The lints and the fast tests, for every change
-	$(BIN)/pytest -m "not slow"
+	$(BIN)/pytest -m "not slow and not proof"
 
 .PHONY: test
 test: $(VENV)/.installed-dev rust-test  ## Every test, the long proofs too
 	$(BIN)/pytest
+
+.PHONY: proof
+proof: $(VENV)/.installed-dev  ## The longest: ten thousand random loops against a search, and the like
+	$(BIN)/pytest -m proof
 
 # import-linter without its cache, which has passed for a module that was gone
 .PHONY: lint

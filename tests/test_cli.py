@@ -1,15 +1,22 @@
 """The command line as a person meets it: what it prints, what it writes, what it says of mistakes."""
 
 import csv
+import io
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from rich.console import Console
 
 import sevenbar as sb
+from sevenbar import report
+from sevenbar.gallery import names
 
+KNOWN = ", ".join(names())
 EXAMPLES = Path(__file__).parent.parent / "examples"
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
 
@@ -150,8 +157,191 @@ def test_animation_goes_where_it_is_told(tmp_path):
     ).stdout.startswith("w")
 
 
-def test_the_gallery_lists_its_linkages():
-    assert sevenbar("gallery").stdout.split() == ["rssr", "RSSR", "of", "Sun", "and", "Zhou"]
+def test_the_gallery_lists_its_linkages_with_their_titles_in_line():
+    lines = sevenbar("gallery").stdout.splitlines()
+    assert [line.split()[0] for line in lines] == list(names())
+    (start,) = {len(line) - len(line.split(maxsplit=1)[1]) for line in lines}
+    assert {line[start:] for line in lines} == {sb.load(name).name for name in names()}
+
+
+def test_the_report_of_a_general_loop_says_how_it_moves():
+    run = sevenbar("analyze", "bennett")
+    assert run.returncode == 0, run.stderr
+    for words in (
+        "1 (Gruebler 4 - 6 = -2, rank 3, 3 redundant constraints)",
+        "all modes over the complex numbers",
+        "joint before it",
+        "R theta_4 (ground)",
+    ):
+        assert words in run.stdout
+    assert "transmission" not in run.stdout
+    assert "idle" not in run.stdout
+
+
+def test_eight_circuits_have_a_line_each_and_no_cell_is_cut():
+    run = sevenbar("analyze", "seven_r")
+    lines = run.stdout.splitlines()
+    assert max(len(line) for line in lines) <= 80
+    assert "…" not in run.stdout
+    motion = sb.load("seven_r").motion()
+    for circuit in motion:
+        cell = f"{circuit.velocity.lowest:.6g} @ "
+        assert any(line.split()[:1] == [str(circuit.index)] and cell in line for line in lines)
+    (row,) = [line.split() for line in lines if "R theta_4" in line and line.split()[0] == "4"]
+    assert row == ["4", "R", "theta_4", "-115", "10", "0"]
+
+
+def test_a_slide_is_told_in_the_length_unit():
+    text = sevenbar("analyze", "rssp").stdout
+    circuit = sb.load("rssp").motion().circuits[0]
+    assert f"{circuit.swing:.6g} mm" in text
+    assert "slider position max [mm]" in text
+    assert f"{circuit.velocity.highest:.6g} @ {math.degrees(circuit.velocity.highest_at):.3f}°" in text
+    text = sevenbar("analyze", "rssp", "--input", "slider", "--speed", "12 mm/s", "--output", "crank").stdout
+    assert "slider at 12 mm/s, output crank" in text
+    assert "value @ position of" in text
+    assert "crank velocity" in text
+    assert "no bound at limits" in text
+
+
+def test_json_tells_mobility_and_how_the_circuits_were_established():
+    report = json.loads(sevenbar("analyze", "bennett", "--json").stdout)
+    assert report["mobility"] == {"gruebler": -2, "freedoms": 4, "rank": 3, "finite": 1}
+    assert "modes" in report["established"]
+    assert len(report["redundant"]) == 3
+    assert report["linkage"]["columns"][0] == {"name": "theta_1", "kind": "turn"}
+
+
+def test_the_modes_of_a_loop_are_a_table():
+    run = sevenbar("modes", "seven_r", "--at", "0.5rad")
+    assert (run.returncode, run.stderr) == (0, "")
+    modes = sb.load("seven_r").assembly_modes(0.5)
+    assert f"8 assembly modes at theta_1 = {math.degrees(0.5):.3f}°, algebraic" in run.stdout
+    for index, q in enumerate(modes.q):
+        (row,) = [
+            line.split() for line in run.stdout.splitlines() if line.split()[:2] == [str(index), "28.648"]
+        ]
+        assert [float(x) for x in row[1:8]] == pytest.approx(np.degrees(q), abs=5.1e-4)
+    assert max(len(line) for line in run.stdout.splitlines()) <= 80
+
+
+@pytest.mark.parametrize(
+    ("at", "value"),
+    [("30", math.pi / 6), ("30deg", math.pi / 6), ("-0.25 rad", -0.25), ("1e1", math.pi / 18)],
+)
+def test_an_angle_is_given_in_degrees_or_with_its_unit(at, value):
+    report = json.loads(sevenbar("modes", "seven_r", "--json", f"--at={at}").stdout)
+    assert report["input"] == {"joint": "theta_1", "value": pytest.approx(value, rel=1e-14)}
+    assert (report["count"], report["completeness"]) == (8, "algebraic")
+    assert np.array(report["modes"][3]["q"]) == pytest.approx(
+        sb.load("seven_r").assembly_modes(report["input"]["value"]).q[3]
+    )
+
+
+@pytest.mark.parametrize(("at", "value"), [("-20", -20.0), ("-2cm", -20.0), ("-20mm", -20.0)])
+def test_a_slide_is_given_in_lengths(at, value):
+    report = json.loads(sevenbar("modes", "rssp", "--json", "--input", "slider", f"--at={at}").stdout)
+    assert report["input"] == {"joint": "slider", "value": pytest.approx(value, rel=1e-14)}
+
+
+def test_no_mode_is_an_answer():
+    run = sevenbar("modes", "rssp", "--input", "slider", "--at", "5m")
+    assert run.returncode == 0
+    assert "no assembly modes at slider = 5000 mm" in run.stdout
+
+
+def test_the_modes_are_drawn(tmp_path):
+    assert sevenbar("modes", "bennett", "--out", tmp_path / "modes.svg").returncode == 0
+    assert "</svg>" in (tmp_path / "modes.svg").read_text()
+
+
+def test_each_kind_of_figure_is_written(tmp_path):
+    run = sevenbar("plot", "rssp", "--samples", 24, "--out", tmp_path)
+    assert run.returncode == 0, run.stderr
+    kinds = {"motion.png", "joints.png", "modes.png", "configuration.png", "path_B.png"}
+    assert {p.name for p in tmp_path.iterdir()} == kinds
+    more = ("--kind", "point", "--link", 2, "--at", "50,0,1", "--circuit", 1, "--figures", "svg")
+    assert sevenbar("plot", "rssp", "--samples", 24, *more, "--out", tmp_path).returncode == 0
+    assert {p.name for p in tmp_path.iterdir()} == {*kinds, "path_link_2_50_0_1.svg"}
+
+
+def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
+    assert sevenbar("analyze", "rssp", "--samples", 24, "--out", tmp_path).returncode == 0
+    figures = {"configuration.png", "motion.png", "joints.png", "path_B.png"}
+    assert {p.name for p in tmp_path.iterdir()} == {"report.json", "motion.csv", *figures}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ["modes", "rssp", "--at", "3mm"],
+            "--at: '3mm' is no value of crank, which turns; give 30, 30deg or 0.5rad",
+        ),
+        (
+            ["modes", "rssp", "--input", "slider", "--at", "9deg"],
+            "--at: '9deg' is no value of slider, which slides; give 12 or 12mm",
+        ),
+        (
+            ["modes", "rssp", "--input", "ball_a"],
+            "--input: joint 'ball_a' is a ball; give a joint with one freedom: crank, slider",
+        ),
+        (
+            ["plot", "rssp", "--kind", "path", "--out", "out"],
+            "--kind: 'path' is not a figure; allowed: curves, joints, modes, configuration, point, all",
+        ),
+        (["plot", "rssp", "--point", "C", "--out", "out"], "--point: no point 'C'; this linkage has B"),
+        (
+            ["plot", "rssp", "--link", "2", "--out", "out"],
+            "--at: missing; a point of a link needs --link and --at",
+        ),
+        (
+            ["plot", "rssp", "--link", "5", "--at", "1,2,3", "--out", "out"],
+            "--link: 5 is not a link; give 1 to 4, the last is the ground",
+        ),
+        (
+            ["plot", "rssp", "--link", "2", "--at", "1,2", "--out", "out"],
+            "--at: '1,2' is not a place; give three numbers, as in '-100,-90,-80'",
+        ),
+        (
+            ["plot", "bennett", "--kind", "point", "--out", "out"],
+            "--kind: point needs a point; give --link and --at, as the linkage names none",
+        ),
+        (
+            ["plot", "bennett", "--circuit", "3", "--out", "out"],
+            "circuit: 3 is not a circuit of this motion; give 0",
+        ),
+    ],
+)
+def test_each_mistake_with_modes_and_figures_ends_with_its_message(tmp_path, arguments, message):
+    assert mistake(*arguments, cwd=tmp_path) == message
+    assert not list(tmp_path.iterdir())
+
+
+def _report(motion):
+    console = Console(width=100, file=io.StringIO())
+    report.print_text(motion, console)
+    return console.file.getvalue()
+
+
+def test_each_way_not_to_move_is_told_in_a_sentence():
+    def turning(twist):
+        return sb.from_dh("R" * len(twist), length=[40.0, 60, 50, 70, 45, 55, 65, 50][: len(twist)],
+                          twist=twist, offset=[5.0, 10, 15, 20, 5, 10, 15, 20][: len(twist)])  # fmt: skip
+
+    two = turning([0.5, 1.0, -0.7, 0.9, 1.2, -0.4, 0.8, 1.1]).motion(samples=12)
+    assert two.motion_type == "two-inputs"
+    assert "moves with 2 freedoms, so one input does not determine it" in _report(two)
+    short = sb.from_dh("RRRR", length=[1.0, 1.0, 1.0, 50.0], twist=[0.0] * 4, offset=[0.0] * 4)
+    assert short.motion().motion_type == "cannot-assemble"
+    told = _report(short.motion())
+    assert "no values of the joints were found that close the loop" in told
+    assert "turns fully" not in told
+
+
+def test_every_linkage_of_the_gallery_has_its_report():
+    for name in names():
+        assert sb.load(name).name in _report(sb.load(name).motion(samples=36))
 
 
 @pytest.fixture
@@ -168,10 +358,10 @@ def folder(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["no.toml"], "no.toml: no such file; give the path of a TOML file or a gallery name: rssr"),
+        (["no.toml"], f"no.toml: no such file; give the path of a TOML file or a gallery name: {KNOWN}"),
         (
-            ["rsrs"],
-            "rsrs: no such file; did you mean 'rssr'? give the path of a TOML file or a gallery name: rssr",
+            ["rssrr"],
+            f"rssrr: no such file; did you mean 'rssr'? give the path of a TOML file or a gallery name: {KNOWN}",
         ),
         (["."], ".: is a folder; give the path of a TOML file in it"),
         (["junk.toml"], "junk.toml: not text: byte 128 is not UTF-8; give a TOML file of format 1"),

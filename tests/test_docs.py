@@ -21,7 +21,7 @@ def test_docstring_examples_give_what_they_show(name):
 
 
 def test_the_examples_of_the_readme_print_what_their_comments_say():
-    (code,) = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
+    code = "\n".join(re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL))
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(code, {})
@@ -32,6 +32,8 @@ def test_the_examples_of_the_readme_print_what_their_comments_say():
         assert [float(x) for x in line.split()] == pytest.approx(
             [float(x) for x in promise.split()], rel=1e-12
         )
+    for line, promise in zip(lines[-3:], promised[-3:], strict=True):
+        assert promise.startswith(line)
 
 
 def test_the_report_in_the_readme_is_the_report_of_today():

@@ -55,7 +55,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
 }
 
 
-@pytest.fixture(params=["few", pytest.param("many", marks=pytest.mark.slow)])
+@pytest.fixture(params=["few", pytest.param("many", marks=pytest.mark.proof)])
 def amount(request: pytest.FixtureRequest) -> str:
     return request.param
 

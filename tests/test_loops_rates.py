@@ -59,7 +59,7 @@ def many_digits() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(params=["few", pytest.param("many", marks=pytest.mark.slow)])
+@pytest.fixture(params=["few", pytest.param("many", marks=pytest.mark.proof)])
 def amount(request: pytest.FixtureRequest) -> int:
     return LINKAGES[request.param]
 

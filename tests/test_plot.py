@@ -19,7 +19,7 @@ from PIL import Image
 
 import sevenbar as sb
 from sevenbar import animate as animation
-from sevenbar import plot, scene
+from sevenbar import plot, skeleton
 from sevenbar.animate import animate
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
 
@@ -150,7 +150,7 @@ def test_a_length_is_as_long_along_each_axis_and_all_is_inside(name: str) -> Non
     ranges = np.ptp(limits, axis=1)
     aspect = np.array(axes.get_box_aspect())
     np.testing.assert_allclose(ranges / aspect, (ranges / aspect)[0], rtol=1e-12)
-    frame = scene.skeleton(motion, motion.circuits[-1])
+    frame = skeleton.skeleton(motion, motion.circuits[-1])
     places = frame.places.reshape(-1, 3)
     assert (places >= limits[:, 0]).all()
     assert (places <= limits[:, 1]).all()
@@ -160,27 +160,27 @@ def test_a_length_is_as_long_along_each_axis_and_all_is_inside(name: str) -> Non
 def test_every_drawn_pose_is_an_assembled_pose(name: str) -> None:
     motion = MOTIONS[name]()
     circuit, positions = motion.circuits[0], 5
-    frame = scene.skeleton(motion, circuit)
+    frame = skeleton.skeleton(motion, circuit)
     axes: Any = plot.configuration(motion, positions=positions).axes[0]
     crank, coupler, rocker = motion.linkage.lengths
     bars = [np.array(line.get_data_3d()).T for line in axes.lines if len(line.get_data_3d()[0]) == 2]
-    rows = {tuple(np.round(row.ravel(), 6)) for row in frame.places[:, [scene.A, scene.B]]}
+    rows = {tuple(np.round(row.ravel(), 6)) for row in frame.places[:, [skeleton.A, skeleton.B]]}
     couplers = [bar for bar in bars if tuple(np.round(bar.ravel(), 6)) in rows]
     assert len(couplers) >= positions
     for bar in couplers:
         assert np.linalg.norm(bar[0] - bar[1]) == pytest.approx(coupler, rel=1e-9)
     np.testing.assert_allclose(
-        np.linalg.norm(frame.places[:, scene.A] - frame.places[:, scene.A0], axis=1), crank, rtol=1e-9
+        np.linalg.norm(frame.places[:, skeleton.A] - frame.places[:, skeleton.A0], axis=1), crank, rtol=1e-9
     )
     np.testing.assert_allclose(
-        np.linalg.norm(frame.places[:, scene.B] - frame.places[:, scene.B0], axis=1), rocker, rtol=1e-9
+        np.linalg.norm(frame.places[:, skeleton.B] - frame.places[:, skeleton.B0], axis=1), rocker, rtol=1e-9
     )
 
 
 def test_centres_are_those_of_the_paper(crank_rocker: sb.Motion) -> None:
-    frame = scene.skeleton(crank_rocker, crank_rocker.circuits[0])
-    np.testing.assert_allclose(frame.pose(0)[scene.A0], [0, 0, 700], atol=1e-9)
-    np.testing.assert_allclose(frame.pose(0)[scene.B0], [700, 0, 0], atol=1e-9)
+    frame = skeleton.skeleton(crank_rocker, crank_rocker.circuits[0])
+    np.testing.assert_allclose(frame.pose(0)[skeleton.A0], [0, 0, 700], atol=1e-9)
+    np.testing.assert_allclose(frame.pose(0)[skeleton.B0], [700, 0, 0], atol=1e-9)
     np.testing.assert_allclose(np.abs(frame.axes), [[0, 0, 1], [1, 0, 0]], atol=1e-12)
 
 
@@ -248,7 +248,7 @@ def test_a_rocking_velocity_is_the_slope_over_time(name: str) -> None:
 def test_a_cycle_closes_in_angle_and_time(name: str) -> None:
     motion = MOTIONS[name]()
     for circuit in motion:
-        path = scene.walk(motion, circuit)
+        path = skeleton.walk(motion, circuit)
         assert math.remainder(path.input[-1] - path.input[0], math.tau) == pytest.approx(0, abs=1e-9)
         assert math.remainder(path.output[-1] - path.output[0], math.tau) == pytest.approx(0, abs=1e-9)
         travelled = np.abs(np.diff(path.input)).sum()
@@ -399,7 +399,7 @@ def test_a_gif_has_its_pictures_its_pace_and_no_end(crank_rocker: sb.Motion, tmp
 def test_the_picture_after_the_last_is_the_first(name: str) -> None:
     motion = MOTIONS[name]()
     circuit = motion.circuits[0]
-    path, frame = scene.walk(motion, circuit), scene.skeleton(motion, circuit)
+    path, frame = skeleton.walk(motion, circuit), skeleton.skeleton(motion, circuit)
     frames = 50
     rows = animation._rows(motion, path, frames)
     times = np.interp(rows, np.arange(len(path.time)), path.time)
@@ -411,7 +411,7 @@ def test_the_picture_after_the_last_is_the_first(name: str) -> None:
 @pytest.mark.parametrize("name", ROCKING)
 def test_a_rocking_input_goes_forth_and_back(name: str) -> None:
     motion = MOTIONS[name]()
-    path = scene.walk(motion, motion.circuits[0])
+    path = skeleton.walk(motion, motion.circuits[0])
     inputs = np.interp(animation._rows(motion, path, 100), np.arange(len(path.time)), path.input)
     turns = np.flatnonzero(np.diff(np.sign(np.diff(inputs))))
     assert len(turns) == 1

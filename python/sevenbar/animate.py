@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import math
 import os
 import shutil
 import subprocess
@@ -19,8 +18,9 @@ from matplotlib import rc_context
 from matplotlib.artist import Artist
 from PIL import Image
 
-from sevenbar import plot, scene
+from sevenbar import plot, scene, skeleton
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
+from sevenbar.figure import STYLE, chosen_circuit, new_figure, shown_value, slides, title, written_whole
 from sevenbar.motion import Circuit, Floats, Motion
 
 Picture = npt.NDArray[np.uint8]
@@ -56,7 +56,7 @@ def animate(
     target = Path(path)
     ffmpeg = check_target(target)
     ending = target.suffix.lower()
-    chosen = plot.chosen_circuit(motion, circuit)
+    chosen = chosen_circuit(motion, circuit)
     if (
         isinstance(frames, bool)
         or not isinstance(frames, (int, np.integer))
@@ -71,7 +71,7 @@ def animate(
         raise RequestError(
             f"fps: {shown(fps)} is not offered; give 0.1 to {FASTEST[ending]:g} for a {ending} file"
         )
-    with plot.written_whole(target) as file, rc_context(plot.STYLE):
+    with written_whole(target) as file, rc_context(STYLE):
         pictures = _reported(_pictures(motion, chosen, int(frames)), int(frames), progress)
         if ending == ".gif":
             _write_gif(pictures, file, int(frames), float(fps))
@@ -85,7 +85,7 @@ def check_target(target: Path) -> str:
     ending = target.suffix.lower()
     if ending not in FASTEST:
         raise OutputError(f"{target}: {shown(target.suffix)} is not an animation format; give .gif or .mp4")
-    with plot.written_whole(target, keep=False) as file:
+    with written_whole(target, keep=False) as file:
         file.touch()
     return _ffmpeg() if ending == ".mp4" else ""
 
@@ -99,7 +99,7 @@ def _reported(
             progress(done, total)
 
 
-def _rows(motion: Motion, path: scene.Walk, frames: int) -> Floats:
+def _rows(motion: Motion, path: skeleton.Walk, frames: int) -> Floats:
     """Where on the walk each picture stands: rows, with shares of the way to the next, (frames,)."""
     if motion.law is None:
         times = path.time[0] + (path.time[-1] - path.time[0]) * np.arange(frames) / frames
@@ -110,18 +110,18 @@ def _rows(motion: Motion, path: scene.Walk, frames: int) -> Floats:
 
 def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture]:
     """The pictures (height, width, 3), one after the other; only what moves is drawn anew."""
-    path, frame = scene.walk(motion, circuit), scene.skeleton(motion, circuit)
-    figure = plot.new_figure(*SIZE)
+    path, frame = skeleton.walk(motion, circuit), skeleton.skeleton(motion, circuit)
+    figure = new_figure(*SIZE)
     figure.set_dpi(DPI)
     space = figure.add_axes((0.0, 0.02, SIZE[1] / SIZE[0], 1.0), projection="3d")
     scene.stage(space, motion, frame)
-    scene.label(space, frame, frame.pose(0), (scene.A0, scene.B0))
+    scene.label(space, frame, frame.pose(0), frame.standing)
     curve = figure.add_axes((0.65, 0.3, 0.32, 0.5))
     drawn = [line for line in plot.passes(motion) if line.circuit is circuit]
     plot.panel(curve, motion, drawn, "angle", "input")
-    figure.suptitle(f"{plot.title(motion)}\ncircuit {circuit.index}", fontsize=11)
+    figure.suptitle(f"{title(motion)}\ncircuit {circuit.index}", fontsize=11)
     figure.legend(handles=scene.link_keys(motion, frame), loc="lower left", ncols=4, frameon=False)
-    keys = plot.curve_keys(curve, drawn)
+    keys = plot.curve_keys([curve], drawn)
     figure.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.81, 0.2), ncols=2, frameon=False)
 
     bars = scene.bars(space, motion, frame)
@@ -140,13 +140,17 @@ def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture
     canvas.draw()
     still = canvas.copy_from_bbox(figure.bbox)
     count = np.arange(len(path.time))
+    ends = ((motion.input, path.input), (motion.output, path.output))
+    units = [f" {motion.linkage.length_unit}" if slides(motion, c) else "°" for c, _ in ends]
     for row in _rows(motion, path, frames):
-        angle, output = (math.degrees(np.interp(row, count, values)) for values in (path.input, path.output))
+        angle, output = (
+            float(shown_value(motion, column, np.interp(row, count, values))) for column, values in ends
+        )
         scene.put(bars, frame.pose(float(row)))
         cursor.set_data([angle, angle], curve.get_ylim())
         dot.set_data([angle], [output])
         time = float(np.interp(row, count, path.time))
-        reading.set_text(f"t = {time:.3f} s    input {angle:.1f}°    output {output:.1f}°")
+        reading.set_text(f"t = {time:.3f} s    input {angle:.1f}{units[0]}    output {output:.1f}{units[1]}")
         canvas.restore_region(still)
         for draw, artist in moving:
             draw(artist)

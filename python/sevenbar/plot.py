@@ -1,70 +1,80 @@
-"""Figures of a motion: the linkage in space and the curves of its output (Figures 3 and 4 of the paper)."""
+"""Figures of a motion: the linkage in space and the curves of its output (Figures 3 and 4 of the paper).
+
+The public place of all figures: those of `paths`, and `save`, can be called from here.
+"""
 
 from __future__ import annotations
 
 import math
-import os
-import uuid
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from sevenbar.errors import OutputError, RequestError, shown
+from sevenbar.errors import RequestError, shown
+from sevenbar.figure import (
+    CIRCUIT_COLOURS,
+    CUT,
+    FORMATS,
+    LINE_STYLES,
+    STYLE,
+    chosen_circuit,
+    input_label,
+    new_figure,
+    note,
+    rocking,
+    save,
+    shown_value,
+    slides,
+    title,
+)
 from sevenbar.motion import Circuit, Extremes, Floats, Motion
-from sevenbar.scene import Skeleton, bars, label, link_keys, put, short, skeleton, stage, walk
+from sevenbar.paths import joints, modes_overview, point_path
+from sevenbar.scene import bars, label, link_keys, put, stage
+from sevenbar.skeleton import Skeleton, skeleton, walk
 
-#: What a figure can be written as.
-FORMATS = ("png", "svg", "pdf")
+__all__ = ["FORMATS", "configuration", "curves", "joints", "modes_overview", "point_path", "save"]
 
-PNG_DPI = 200
-
-CIRCUIT_COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7")
-
-LINE_STYLES = ("-", (0, (5, 1.6)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
-
-#: Names may hold dollars, so mathematical text is off.
-STYLE: dict[Any, Any] = {
-    "font.size": 9.0,
-    "text.usetex": False,
-    "text.parse_math": False,
-    "axes.unicode_minus": True,
-    "svg.hashsalt": "sevenbar",
-    "pdf.fonttype": 42,
-    "grid.color": "#e2e2e2",
-}
-
-#: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it).
-CUT = {"velocity": 4.0, "acceleration": 9.0}
 
 #: Marks in the curves' legend.
 EXTREME, LIMIT, CHANGE_POINT = "extreme", "input limit", "change point"
 
-LABELS = {
-    "angle": "angle [deg]",
-    "velocity": "angular velocity [rad/s]",
-    "acceleration": "angular acceleration [rad/s²]",
-}
+
+#: The rows of the output's curves.
+QUANTITIES = ("angle", "velocity", "acceleration")
 
 
-def configuration(motion: Motion, circuit: int = 0, positions: int = 6) -> Figure:
+def _label(motion: Motion, quantity: str) -> str:
+    if slides(motion, motion.output):
+        unit = motion.linkage.length_unit
+        name = "output position" if quantity == "angle" else quantity
+        suffix = {"angle": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
+        return f"{name} [{unit}{suffix}]"
+    return {
+        "angle": "output angle [deg]",
+        "velocity": "angular velocity [rad/s]",
+        "acceleration": "angular acceleration [rad/s²]",
+    }[quantity]
+
+
+def configuration(motion: Motion, circuit: int = 0, positions: int | None = None) -> Figure:
     """The linkage in space, in several positions spread over a circuit: one strong, the others faint.
 
-    `circuit` is its index in `motion.circuits`, `positions` how many poses (1 to 100). Lengths are in the
-    linkage's unit, equal along all three axes. Raises `RequestError` where there is no such circuit.
+    `circuit` is its index in `motion.circuits`, `positions` how many poses (1 to 100; six for an RSSR, else
+    three). Lengths are in the linkage's unit, equal along all three axes. Raises `RequestError` where there
+    is no such circuit.
 
     Source: Sun and Zhou, Figure 3.
     """
     chosen = chosen_circuit(motion, circuit)
+    if positions is None:
+        positions = 6 if motion.linkage.kind == "RSSR" else 3
     if (
         isinstance(positions, bool)
         or not isinstance(positions, (int, np.integer))
@@ -87,46 +97,25 @@ def configuration(motion: Motion, circuit: int = 0, positions: int = 6) -> Figur
     return figure
 
 
-def chosen_circuit(motion: Motion, index: int) -> Circuit:
-    """The circuit of this index, or `RequestError` saying why there is none."""
-    count = len(motion.circuits)
-    if count == 0:
-        closing = "at no input" if motion.motion_type == "cannot-assemble" else "along no circuit"
-        raise RequestError(
-            f"motion: {motion.motion_type}, the loop closes {closing}, so there is nothing to draw"
-        )
-    if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
-        allowed = "0" if count == 1 else f"0 to {count - 1}"
-        raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
-    return motion.circuits[index]
-
-
-def new_figure(width: float, height: float) -> Figure:
-    """An empty white figure [inch] with a canvas of its own, outside pyplot's register."""
-    figure = Figure(figsize=(width, height), facecolor="white")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def title(motion: Motion) -> str:
-    """The linkage's name and motion type."""
-    return f"{short(motion.linkage.name, 60)}: {motion.motion_type}"
-
-
 def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -> list[int]:
     """Rows with a pose, evenly spread by the travel of both angles, a rocking circuit's off its ends."""
     path = walk(motion, circuit)
-    solved = np.flatnonzero(~np.isnan(frame.places[:, :4]).any(axis=(1, 2)))
-    steps = np.hypot(np.diff(path.input[solved]), np.diff(path.output[solved]))
+    solved = np.flatnonzero(~np.isnan(frame.places[:, : frame.solid]).any(axis=(1, 2)))
+    ends = ((motion.input, path.input[solved]), (motion.output, path.output[solved]))
+    # of a slide its whole range counts as much as half a turn
+    scaled = [v * math.pi / (np.ptp(v) or 1.0) if slides(motion, column) else v for column, v in ends]
+    steps = np.hypot(*(np.diff(values) for values in scaled))
     travel = np.concatenate([[0.0], np.cumsum(steps)])
     start = 0.0 if circuit.input_range is None else 0.5
+    if motion.linkage.kind != "RSSR":
+        start = 0.35  # many a loop lies flat, or folded, at zero
     wanted = (np.arange(positions) + start) / positions * travel[-1]
     return [int(solved[np.argmin(np.abs(travel - place))]) for place in wanted]
 
 
 @dataclass(frozen=True, eq=False)
 class Pass:
-    """A pass of a circuit as drawn: `input`, `angle` [deg], `time` [s] and the two rates, arrays (n,)."""
+    """A pass of a circuit as drawn: `input`, `angle` [deg, or length], `time` [s], the two rates; (n,)."""
 
     circuit: Circuit
     label: str
@@ -153,14 +142,22 @@ def passes(motion: Motion) -> list[Pass]:
                     label += ": input rising" if rise > 0 else ": input falling"
             rates = path.rows[part], circuit.output_column
             colour = CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)]
-            style = {"color": colour, "ls": LINE_STYLES[len(made) % len(LINE_STYLES)], "lw": 1.6}
-            angles = np.degrees(path.input[part]), path.time[part], np.degrees(path.output[part])
+            style = {
+                "color": colour,
+                "ls": LINE_STYLES[(len(made) + len(made) // 8) % len(LINE_STYLES)],
+                "lw": 1.6,
+            }
+            angles = (
+                shown_value(motion, motion.input, path.input[part]),
+                path.time[part],
+                shown_value(motion, motion.output, path.output[part]),
+            )
             made.append(Pass(circuit, label, style, *angles, way * circuit.dq[rates], circuit.ddq[rates]))
     return made
 
 
 def curves(motion: Motion, against: Literal["both", "input", "time"] = "both") -> Figure:
-    """Output angle [deg], velocity [rad/s] and acceleration [rad/s^2] of every circuit.
+    """Output angle [deg], velocity [rad/s] and acceleration [rad/s^2] of every circuit; of a slide lengths.
 
     `against` "input" [deg] or "time" [s] draws one of the two; "both" puts time on a second scale above where
     the input turns fully at constant speed, else in a second column. Where a rocking input goes back, the
@@ -179,7 +176,7 @@ def curves(motion: Motion, against: Literal["both", "input", "time"] = "both") -
         figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
         grid = figure.subplots(3, len(columns), sharex="col", sharey="row", squeeze=False)
         cut = False
-        for row, quantity in enumerate(LABELS):
+        for row, quantity in enumerate(QUANTITIES):
             for column, over in enumerate(columns):
                 panel(grid[row, column], motion, drawn, quantity, over)
             cut |= _cut(grid[row, 0], drawn, quantity)
@@ -189,9 +186,14 @@ def curves(motion: Motion, against: Literal["both", "input", "time"] = "both") -
             _time_above(grid[0, 0], motion, drawn[0])
         figure.align_ylabels()
         figure.suptitle(title(motion), fontsize=11)
-        keys = curve_keys(grid[0, 0], drawn)
-        look = {"title": _note(motion, cut), "title_fontsize": 8.5, "frameon": False}
-        figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 3), **look)
+        keys = curve_keys(grid[:, 0], drawn)
+        look = {"title": note(motion, cut), "title_fontsize": 8.5, "frameon": False}
+        figure.legend(
+            handles=keys,
+            loc="outside lower center",
+            ncols=min(len(keys), 3 if len(keys) < 7 else 5 if len(columns) == 1 else 6),
+            **look,
+        )
     return figure
 
 
@@ -205,9 +207,13 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over
         extremes: Extremes | None = getattr(circuit, quantity)
         if own and extremes is not None:
             sides = ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at))
-            values = [math.degrees(value) if quantity == "angle" else value for value, _ in sides]
+            values = [
+                shown_value(motion, motion.output, value) if quantity == "angle" else value
+                for value, _ in sides
+            ]
+            period = math.inf if slides(motion, motion.input) else 360.0
             places = [
-                _place(own, quantity, over, v, math.degrees(at))
+                _place(own, quantity, over, v, shown_value(motion, motion.input, at), period)
                 for v, (_, at) in zip(values, sides, strict=True)
             ]
             look = {"ms": 4.5, "mfc": "white", "mec": own[0].style["color"], "mew": 1.2, "zorder": 4}
@@ -217,21 +223,26 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over
     if np.ptp(ends) > 0:
         axes.set_xlim(ends.min() - room, ends.max() + room)
     if over == "input":
-        axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+        if not slides(motion, motion.input):
+            axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
         for inputs, style, name in ((motion.limits, "--", LIMIT), (motion.change_points, ":", CHANGE_POINT)):
-            lifted = np.degrees(inputs) + 360.0 * np.arange(-4, 5)[:, None]
+            lifted = inputs[None, :]
+            if not slides(motion, motion.input):
+                lifted = np.degrees(inputs) + 360.0 * np.arange(-4, 5)[:, None]
             for place in lifted[(lifted > ends.min() - 1e-6) & (lifted < ends.max() + 1e-6)]:
                 axes.axvline(place, color="#505050", lw=1.0, ls=style, zorder=1, label=name)
-    axes.set_xlabel(f"input angle: {short(motion.input, 40)} [deg]" if over == "input" else "time [s]")
-    axes.set_ylabel(("output " if quantity == "angle" else "") + LABELS[quantity])
+    axes.set_xlabel(input_label(motion) if over == "input" else "time [s]")
+    axes.set_ylabel(_label(motion, quantity))
 
 
-def _place(own: Sequence[Pass], quantity: str, over: str, value: float, at: float) -> float:
-    """Where along a panel the passes of a circuit take a value at an input [deg], known to whole turns."""
+def _place(own: Sequence[Pass], quantity: str, over: str, value: float, at: float, period: float) -> float:
+    """Where along a panel the passes of a circuit take a value at an input, known to whole periods."""
     found = [(math.inf, math.nan)]
     for line in own:
-        off = (line.input - at + 180.0) % 360.0 - 180.0
-        for i in np.flatnonzero((off[:-1] * off[1:] <= 0) & (np.abs(off[:-1] - off[1:]) < 180.0)):
+        off = line.input - at
+        if math.isfinite(period):
+            off = (off + period / 2) % period - period / 2
+        for i in np.flatnonzero((off[:-1] * off[1:] <= 0) & (np.abs(off[:-1] - off[1:]) < period / 2)):
             share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.0
             x, y = (v[i] + share * (v[i + 1] - v[i]) for v in (getattr(line, over), getattr(line, quantity)))
             found.append((abs(y - value), x))
@@ -241,20 +252,16 @@ def _place(own: Sequence[Pass], quantity: str, over: str, value: float, at: floa
 def _cut(axes: Axes, drawn: Sequence[Pass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; tells whether it did."""
     drawn = [line for line in drawn if np.isfinite(getattr(line, quantity)).any()]
-    if quantity not in CUT or not any(_rocking(line.circuit) for line in drawn):
+    if quantity not in CUT or not any(rocking(line.circuit) for line in drawn):
         return False
     spans: list[Floats] = []
     for line in drawn:
         values = getattr(line, quantity)
-        share = CUT[quantity] if _rocking(line.circuit) else 0.0
+        share = CUT[quantity] if rocking(line.circuit) else 0.0
         spans.append(np.percentile(values[np.isfinite(values)], [share, 100 - share]))
     low, high = np.min(spans), np.max(spans)
     axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
     return True
-
-
-def _rocking(circuit: Circuit) -> bool:
-    return any(centre.kind == "input" for centre in circuit.dead_centres)
 
 
 def _time_above(axes: Axes, motion: Motion, line: Pass) -> None:
@@ -270,19 +277,9 @@ def _time_above(axes: Axes, motion: Motion, line: Pass) -> None:
     above.set_xlabel("time [s]")
 
 
-def _note(motion: Motion, cut: bool) -> str:
-    name = short(motion.input, 40)
-    note = f"{name} at {motion.speed:g} rad/s"
-    if motion.law is not None:
-        note = f"{name} driven by a law"
-    elif any(circuit.input_range is not None for circuit in motion):
-        note = f"{name} at ±{abs(motion.speed):g} rad/s"
-    return note + ("; rates grow without bound at dead centres: axes cut" if cut else "")
-
-
-def curve_keys(axes: Axes, drawn: Sequence[Pass]) -> list[Line2D]:
+def curve_keys(panels: Iterable[Axes], drawn: Sequence[Pass]) -> list[Line2D]:
     """One legend entry for each pass and for each kind of mark."""
-    lines = {str(line.get_label()): line for line in axes.lines}
+    lines = {str(line.get_label()): line for axes in panels for line in axes.lines}
     if EXTREME in lines:  # drawn in each circuit's colour
         lines[EXTREME] = Line2D([], [], ls="", marker="o", ms=4.5, mfc="white", mec="#404040", label=EXTREME)
     return [
@@ -290,38 +287,3 @@ def curve_keys(axes: Axes, drawn: Sequence[Pass]) -> list[Line2D]:
         for label in (*(line.label for line in drawn), EXTREME, LIMIT, CHANGE_POINT)
         if label in lines
     ]
-
-
-def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
-    """Writes a figure as PNG (200 dpi), SVG or PDF, by the path's ending; returns the path.
-
-    Raises `OutputError` for another ending and where the file cannot be written; then nothing is left behind.
-    """
-    target = Path(path)
-    ending = target.suffix.lower().removeprefix(".")
-    if ending not in FORMATS:
-        raise OutputError(f"{target}: {shown(target.suffix)} is not a figure format; give .png, .svg or .pdf")
-    dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
-    with written_whole(target) as file, rc_context(STYLE):
-        figure.savefig(file, format=ending, dpi=PNG_DPI, metadata=dates.get(ending))
-    return target
-
-
-@contextmanager
-def written_whole(target: Path, *, keep: bool = True) -> Iterator[Path]:
-    """A file beside `target` to write to; put in its place when all went well and `keep`, else removed."""
-    partial = target.parent / f".partial-{uuid.uuid4().hex}{target.suffix}"
-    try:
-        if target.is_dir():
-            raise IsADirectoryError(0, "it is a folder")
-        yield partial
-        if keep:
-            partial.replace(target)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise OutputError(
-            f"{target}: cannot be written: {reason}; give a path in a folder that exists and can be written"
-        ) from None
-    finally:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)

@@ -1,11 +1,9 @@
-"""The linkage in space: its places along a circuit, and the artists that draw them."""
+"""The linkage in space: the artists that draw its places."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,124 +12,28 @@ from matplotlib.patheffects import Normal, withStroke
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[import-untyped]
 
-from sevenbar.errors import RequestError
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Floats, Integers, Motion
+from sevenbar.motion import Floats, Motion
+from sevenbar.skeleton import A0, B0, LINK_ENDS, A, B, Chain, Skeleton, short
 
 #: Colours of Okabe and Ito, told apart by colour-blind readers too.
 INPUT, OUTPUT, COUPLER, GROUND = "#0072B2", "#D55E00", "#009E73", "#808080"
 
+
+JOINT, PATH = "#9a9a9a", "#b5c7bd"
+
+
 POINT_COLOURS = ("#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
-#: Places of the pose: the two centres and the two balls; further named points come after them.
-A0, A, B, B0 = 0, 1, 2, 3
-
-#: The places between which each link lies.
-LINK_ENDS = {1: (A0, A), 2: (A, B), 3: (B, B0), 4: (B0, A0)}
 
 #: The thinnest side of the drawn box, as a share of its longest.
 THINNEST_BOX = 0.4
 
 
-@dataclass(frozen=True, eq=False)
-class Walk:
-    """A circuit as it is walked; closed by its first row, a turn on, unless a law drives.
-
-    `rows` index the circuit; `input`, `output` [rad] and `time` [s] run on over the closure, each (n,).
-    `passes` are the stretches between input dead centres, both ends included.
-    """
-
-    rows: Integers
-    input: Floats
-    output: Floats
-    time: Floats
-    passes: tuple[slice, ...]
-
-
-def walk(motion: Motion, circuit: Circuit) -> Walk:
-    """The rows of a circuit in the order of its motion."""
-    count = len(circuit.time)
-    starts = [0, *(np.flatnonzero(np.diff(circuit.branch)) + 1), count]
-    rows = np.arange(count)
-    if motion.law is not None or count < 2:
-        passes = tuple(slice(a, b) for a, b in pairwise(starts))
-        return Walk(rows, circuit.input, circuit.output, circuit.time, passes)
-    way = math.copysign(circuit.turns * math.tau, motion.speed)
-    first = circuit.output[0]
-    ahead = 2 * circuit.output[-1] - circuit.output[-2]
-    gained = 0.0 if circuit.output_range is not None else round((ahead - first) / math.tau) * math.tau
-    last = circuit.input[0] + way
-    period = circuit.time[-1] + abs(last - circuit.input[-1]) / abs(motion.speed)
-    return Walk(
-        np.append(rows, 0),
-        np.append(circuit.input, last),
-        np.append(circuit.output, first + gained),
-        np.append(circuit.time, period),
-        tuple(slice(a, b + 1) for a, b in pairwise(starts)),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class Skeleton:
-    """The places of a linkage along a walk, in the report frame [length].
-
-    `places` (n, 4 + k, 3): A0, A, B, B0 and k further named points, `names` of each; `axes` (2, 3) unit
-    vectors along the joints at A0 and B0; `stays` the chains of places that tie further points to links.
-    """
-
-    places: Floats
-    names: tuple[str, ...]
-    axes: Floats
-    stays: tuple[tuple[int, int, int], ...]
-
-    def pose(self, row: float) -> Floats:
-        """The places (4 + k, 3) at a row, between two rows on the straight line between them."""
-        low = min(int(row), len(self.places) - 1)
-        high, share = min(low + 1, len(self.places) - 1), row - low
-        between: Floats = (1 - share) * self.places[low] + share * self.places[high]
-        return self.places[low] if share == 0 else between
-
-    @property
-    def moving(self) -> tuple[int, ...]:
-        """The places whose paths are drawn."""
-        return (A, B, *range(4, len(self.names)))
-
-    @property
-    def span(self) -> float:
-        """The largest extent along x, y or z [length]."""
-        flat = self.places.reshape(-1, 3)
-        return float((np.nanmax(flat, axis=0) - np.nanmin(flat, axis=0)).max())
-
-
-def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
-    """The places of the linkage along the walk of a circuit."""
-    linkage: Linkage = motion.linkage
-    rows = walk(motion, circuit).rows
-    traces = [circuit.point(point.link, point.at).position[rows] for point in linkage.points]
-    solved = np.flatnonzero(~np.isnan(traces[0]).any(axis=1) & ~np.isnan(traces[1]).any(axis=1))
-    if solved.size == 0:
-        raise RequestError(
-            f"circuit: circuit {circuit.index} has no pose at the inputs of the law; nothing to draw"
-        )
-    frames = (linkage.base, linkage.ground)
-    axes = np.stack([frame[:3, 2] for frame in frames])
-    centres = []
-    for frame, axis, trace in zip(frames, axes, traces, strict=False):
-        arm = trace[solved[0]] - frame[:3, 3]
-        centres.append(np.broadcast_to(frame[:3, 3] + (arm @ axis) * axis, trace.shape))
-    places = np.stack([centres[0], traces[0], traces[1], centres[1], *traces[2:]], axis=1)
-    names = ("A₀", "A", "B", "B₀", *(short(point.name, 24) for point in linkage.points[2:]))
-    ends = [LINK_ENDS[point.link] for point in linkage.points[2:]]
-    return Skeleton(places, names, axes, tuple((a, 4 + i, b) for i, (a, b) in enumerate(ends)))
-
-
-def short(text: str, width: int) -> str:
-    """The text, cut to so many letters."""
-    return text if len(text) <= width else text[: width - 1] + "…"
-
-
 def stage(axes: Any, motion: Motion, frame: Skeleton) -> None:
     """Draws into 3D axes what stands still: paths, ground, bearings, joint axes; and sets the view."""
+    if isinstance(frame, Chain):
+        return stage_chain(axes, motion.linkage, frame)
     axes.computed_zorder = False
     elevation, azimuth = _view(frame)
     axes.view_init(elevation, azimuth)
@@ -150,6 +52,48 @@ def stage(axes: Any, motion: Motion, frame: Skeleton) -> None:
         side = axis * (math.copysign(1.0, away) if abs(away) > 0.1 * frame.span else down)
         drawn.append(_bearing(axes, centre, side, unit, min(unit, max(0.4 * unit, 0.4 * arm))))
     _equal_box(axes, np.concatenate(drawn), motion.linkage.length_unit)
+    return None
+
+
+def stage_chain(
+    axes: Any, linkage: Linkage, frame: Chain, *, around: Chain | None = None, fill: float = 0.74
+) -> None:
+    """Draws into 3D axes what stands still of any loop: the paths and the ground; and sets the view.
+
+    The view shows all places of `around`, of the frame itself where none is given.
+    """
+    prepare_view(axes, (around or frame).places.reshape(-1, 3), linkage.length_unit, fill)
+    if len(frame.places) > 1:
+        for place in frame.joints[1:-1]:
+            axes.plot(*frame.places[:, place].T, color=PATH, lw=0.8, zorder=1)
+        for place, colour in zip(frame.points, _point_colours(frame), strict=True):
+            axes.plot(*frame.places[:, place].T, color=colour, lw=1.4, alpha=0.9, zorder=2)
+    ground = frame.pose(0)[list(frame.links[-1])]
+    axes.plot(*ground.T, color=GROUND, lw=4, alpha=0.6, zorder=2, solid_capstyle="round")
+
+
+def prepare_view(axes: Any, places: Floats, unit: str, fill: float = 0.74) -> None:
+    """Sets the view and the limits of 3D axes to show places (n, 3) [length] well, over a share `fill`."""
+    axes.computed_zorder = False
+    axes.view_init(*_wide_view(places))
+    axes.set_proj_type("ortho")
+    _equal_box(axes, places, unit, fill)
+    for scale in (axes.xaxis, axes.yaxis):  # the last ones would fall together in the corner
+        scale.get_major_locator().set_params(prune="both")
+
+
+def _wide_view(places: Floats) -> tuple[float, float]:
+    """Elevation and azimuth [deg] from which places (n, 3) cover the most."""
+    azimuths = (np.arange(-180.0, 180.0, 90.0)[:, None] + [25.0, 45.0, 65.0]).ravel()
+    elevation, azimuth = (grid.ravel() for grid in np.meshgrid([20.0, 30.0, 45.0], azimuths))
+    kept = places[~np.isnan(places).any(axis=1)]
+    spread = (kept - kept.mean(axis=0)).T @ (kept - kept.mean(axis=0))
+    screens = [_directions(*view) for view in zip(elevation, azimuth, strict=True)]
+    covered = np.array([np.sqrt(max(np.linalg.det(s @ spread @ s.T), 0.0)) for s in screens])
+    # among like views the usual one, x to the right and y away
+    unusual = (1 - np.cos(np.radians(azimuth + 60.0))) / 2 + np.abs(elevation - 30.0) / 100
+    best = int(np.argmax(covered / (covered.max() or 1.0) - 0.3 * unusual))
+    return float(elevation[best]), float(azimuth[best])
 
 
 def _arc(frame: Skeleton, ball: int) -> Floats:
@@ -214,7 +158,7 @@ def _bearing(axes: Any, centre: Floats, side: Floats, unit: float, radius: float
     return np.concatenate([ends, near, far, np.stack(corners)])
 
 
-def _equal_box(axes: Any, drawn: Floats, unit: str) -> None:
+def _equal_box(axes: Any, drawn: Floats, unit: str, fill: float = 0.74) -> None:
     """Limits round everything drawn, a length unit as long along each axis, as large as the axes can hold."""
     low, high = np.nanmin(drawn, axis=0), np.nanmax(drawn, axis=0)
     extent = np.maximum(high - low, THINNEST_BOX * (high - low).max()) * 1.04
@@ -231,7 +175,7 @@ def _equal_box(axes: Any, drawn: Floats, unit: str) -> None:
         scale.labelpad = 25 * stand_off - 21
     right, above = _screen(axes)
     seen = max(np.abs(right) @ extent, np.abs(above) @ extent * 1.06) / np.linalg.norm(extent)
-    axes.set_box_aspect(extent, zoom=0.74 / seen)
+    axes.set_box_aspect(extent, zoom=fill / seen)
 
 
 def _ends_colours(motion: Motion) -> tuple[str, str]:
@@ -240,7 +184,7 @@ def _ends_colours(motion: Motion) -> tuple[str, str]:
 
 
 def _point_colours(frame: Skeleton) -> list[str]:
-    return [POINT_COLOURS[i % len(POINT_COLOURS)] for i in range(len(frame.names) - 4)]
+    return [POINT_COLOURS[i % len(POINT_COLOURS)] for i in range(len(frame.names) - frame.solid)]
 
 
 Bars = list[tuple[Any, tuple[int, ...]]]
@@ -248,6 +192,8 @@ Bars = list[tuple[Any, tuple[int, ...]]]
 
 def bars(axes: Any, motion: Motion, frame: Skeleton, *, ghost: bool = False) -> Bars:
     """New artists for one pose, each with the places it joins: bars, balls, points; `put` moves them."""
+    if isinstance(frame, Chain):
+        return chain_bars(axes, motion.linkage, frame, (motion.input, motion.output), ghost=ghost)
     first, second = _ends_colours(motion)
     order, width = (3, 2.0) if ghost else (6, 5.0)
     look = {"alpha": 0.28 if ghost else 1.0, "zorder": order}
@@ -273,6 +219,66 @@ def bars(axes: Any, motion: Motion, frame: Skeleton, *, ghost: bool = False) -> 
     return made
 
 
+def chain_colours(linkage: Linkage, ends: tuple[str, str]) -> tuple[list[str], list[str]]:
+    """The colours of the moving links and of the joints, from the columns of input and output."""
+    owner = {column: i for i, joint in enumerate(linkage.joints) for column in joint.columns}
+    count = len(linkage.joints)
+    links, joints = [COUPLER] * (count - 1), [JOINT] * count
+    # the output first, so that the input wins a link that both move
+    for column, colour in zip(ends[::-1], (OUTPUT, INPUT), strict=True):
+        joint = owner[column]
+        joints[joint] = colour
+        links[min(joint, count - 2)] = colour
+    return links, joints
+
+
+def chain_bars(
+    axes: Any,
+    linkage: Linkage,
+    frame: Chain,
+    ends: tuple[str, str],
+    *,
+    ghost: bool = False,
+    scale: float = 1.0,
+) -> Bars:
+    """`bars` of any loop; `ends` are the columns of input and output, `scale` that of the widths."""
+    colours, joint_colours = chain_colours(linkage, ends)
+    order, width = (3, 1.5) if ghost else (6, 4.0 * scale)
+    look = {"alpha": 0.25 if ghost else 1.0, "zorder": order, "solid_capstyle": "round"}
+    made: Bars = []
+
+    def add(places: tuple[int, ...], **style: Any) -> None:
+        line = Line3D([], [], [], **look | style)
+        axes.add_line(line)
+        made.append((line, places))
+
+    if not ghost:
+        for stay in frame.stays:
+            add(stay, color=COUPLER, lw=width / 3)
+    for places, colour in zip(frame.links[:-1], colours, strict=True):
+        outline = [] if ghost else [withStroke(linewidth=width + 1.4 * scale, foreground="#202020"), Normal()]
+        add(places, color=colour, lw=width, path_effects=outline)
+    if not ghost:
+        for joint, word, joined in frame.marks:
+            add(joined, **_mark(word, joint_colours[joint], scale), zorder=order + (word != "axis"))
+    for place, colour in zip(frame.points, _point_colours(frame), strict=True):
+        add((place,), ls="", marker="o", color=colour, ms=3.0 if ghost else 7.0 * scale, zorder=order + 2)
+    return made
+
+
+def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
+    """The look of a joint's mark."""
+    outline = [withStroke(linewidth=9.6 * scale, foreground="#202020"), Normal()]
+    return {
+        "axis": {"color": "#404040", "lw": 0.9 * scale, "ls": (0, (7, 2, 1.5, 2))},
+        "cylinder": {"color": colour, "lw": 8 * scale, "solid_capstyle": "butt", "path_effects": outline},
+        "thread": {"color": "white", "lw": 7 * scale, "ls": (0, (0.22, 0.22)), "dash_capstyle": "butt"},
+        "arm": {"color": colour, "lw": 5 * scale, "solid_capstyle": "butt"},
+        "block": {"color": colour, "ls": "", "marker": "s", "ms": 9 * scale, "mec": "#202020", "mew": 0.8},
+        "ball": {"color": "#f4f4f4", "ls": "", "marker": "o", "ms": 8 * scale, "mec": "#303030", "mew": 2.4},
+    }[word]
+
+
 def put(made: Bars, pose: Floats) -> None:
     """Moves the artists of `bars` to a pose, places (4 + k, 3)."""
     for artist, places in made:
@@ -283,11 +289,9 @@ def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> No
     """Writes the names of places of a pose, each on its freest side; what falls together shares one label."""
     screen = _screen(axes)
     seen = pose @ screen.T
-    lines = [seen[[a, b]] for a, b in LINK_ENDS.values()]
-    for centre, axis in zip((A0, B0), frame.axes @ screen.T * frame.span / 6, strict=True):
-        lines.append(np.stack([seen[centre] - axis, seen[centre] + axis]))
+    lines = frame.lines(pose, screen)
     named: dict[int, list[str]] = {}
-    for i in places:
+    for i in (place for place in places if frame.names[place]):
         near = [k for k in named if np.linalg.norm(seen[k] - seen[i]) < 0.03 * frame.span]
         named.setdefault(near[0] if near else i, []).append(frame.names[i])
     turns = np.linspace(0, math.tau, 24, endpoint=False)
@@ -297,12 +301,24 @@ def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> No
         place = pose[i] + 0.045 * frame.span * np.array([math.cos(best), math.sin(best)]) @ screen
         side = "center" if abs(math.cos(best)) < 0.5 else "left" if math.cos(best) > 0 else "right"
         halo = [withStroke(linewidth=2.5, foreground="white")]
-        axes.text(*place, ", ".join(names), fontsize=11, ha=side, va="center", zorder=9, path_effects=halo)
+        axes.text(
+            *place,
+            ", ".join(dict.fromkeys(names)),
+            fontsize=11,
+            ha=side,
+            va="center",
+            zorder=9,
+            path_effects=halo,
+        )
 
 
 def _screen(axes: Any) -> Floats:
     """The directions, unit vectors (2, 3), that are seen as right and up."""
-    up, round_ = math.radians(axes.elev), math.radians(axes.azim)
+    return _directions(axes.elev, axes.azim)
+
+
+def _directions(elevation: float, azimuth: float) -> Floats:
+    up, round_ = math.radians(elevation), math.radians(azimuth)
     above = [-math.sin(up) * math.cos(round_), -math.sin(up) * math.sin(round_), math.cos(up)]
     return np.array([[-math.sin(round_), math.cos(round_), 0.0], above])
 
@@ -315,6 +331,15 @@ def _distance(spot: Floats, line: Floats) -> float:
 
 def link_keys(motion: Motion, frame: Skeleton) -> list[Line2D]:
     """The legend's entries of a 3D view."""
+    if isinstance(frame, Chain):
+        paths = [
+            Line2D([], [], color=colour, lw=1.4, label=f"path of {frame.names[place]}")
+            for place, colour in zip(frame.points, _point_colours(frame), strict=True)
+        ]
+        inner = frame.places[:, list(frame.joints[1:-1])]
+        if np.nanmax(np.ptp(inner[~np.isnan(inner).any(axis=(1, 2))], axis=0)) > 1e-6 * frame.span:
+            paths.insert(0, Line2D([], [], color=PATH, lw=0.8, label="paths of the joints"))
+        return [*chain_keys(motion.linkage, (motion.input, motion.output)), *paths]
     keys = [
         Line2D([], [], color=INPUT, lw=5, label=f"input: {short(motion.input, 24)}"),
         Line2D([], [], color=COUPLER, lw=5, label="coupler"),
@@ -324,3 +349,33 @@ def link_keys(motion: Motion, frame: Skeleton) -> list[Line2D]:
     for place, colour in zip(frame.moving, (*_ends_colours(motion), *_point_colours(frame)), strict=True):
         keys.append(Line2D([], [], color=colour, lw=1.1, label=f"path of {frame.names[place]}"))
     return [*keys, Line2D([], [], color="#404040", lw=0.9, ls=(0, (7, 2, 1.5, 2)), label="joint axis")]
+
+
+#: The words for joints in a legend, and the mark of each.
+KINDS = {
+    "R": ("hinge", "cylinder"),
+    "P": ("slide", "block"),
+    "H": ("screw", "thread"),
+    "C": ("cylinder, slides too", "cylinder"),
+    "U": ("universal joint", "arm"),
+    "S": ("ball", "ball"),
+}
+
+
+def chain_keys(linkage: Linkage, ends: tuple[str, str]) -> list[Line2D]:
+    """The legend's entries of any loop: its links and the kinds of its joints."""
+    colours, _ = chain_colours(linkage, ends)
+    names = [f"input: {short(ends[0], 24)}", f"output: {short(ends[1], 24)}"]
+    keys = [Line2D([], [], color=c, lw=5, label=name) for c, name in zip((INPUT, OUTPUT), names, strict=True)]
+    if COUPLER in colours:
+        keys.append(Line2D([], [], color=COUPLER, lw=5, label="other moving links"))
+    keys.append(Line2D([], [], color=GROUND, lw=4, alpha=0.6, label="ground"))
+    for kind, (word, mark) in KINDS.items():
+        if kind in linkage.kind:
+            style = {
+                "cylinder": {"marker": "s", "ms": 7},
+                "thread": {"marker": "s", "ms": 6, "mfc": "white", "mew": 2.4},
+            }
+            look = style.get(mark) or ({"marker": "P", "ms": 8} if mark == "arm" else _mark(mark, JOINT))
+            keys.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=word))
+    return keys

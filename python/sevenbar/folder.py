@@ -1,0 +1,121 @@
+"""A folder of files to keep, the figures and the rows of a motion: all of them appear, or none."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sevenbar.errors import OutputError
+from sevenbar.motion import Motion
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def fill_folder(folder: Path, fill: Callable[[Path], None]) -> list[Path]:
+    """Lets `fill` write into a folder aside, then moves its files into `folder`: whole, or not at all."""
+    made = [p for p in (folder, *folder.parents) if not p.exists()]
+    staging = None
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        staging = Path(tempfile.mkdtemp(prefix=".partial-", dir=folder))
+        fill(staging)
+        files = sorted(staging.iterdir())
+        for file in files:
+            if (folder / file.name).is_dir():
+                raise OutputError(
+                    f"{folder / file.name}: is a folder where a file should go; give another folder"
+                )
+        return [file.replace(folder / file.name) for file in files]
+    except OSError as error:
+        _undo(made, staging)
+        reason = (error.strerror or str(error)).lower()
+        raise OutputError(
+            f"{folder}: cannot be written: {reason}; give a folder that can be made or written"
+        ) from None
+    except BaseException:
+        _undo(made, staging)
+        raise
+    finally:
+        if staging is not None:
+            shutil.rmtree(staging, ignore_errors=True)
+
+
+def _undo(made: Sequence[Path], staging: Path | None) -> None:
+    if staging is not None:
+        shutil.rmtree(staging, ignore_errors=True)
+    for path in made:
+        with suppress(OSError):
+            path.rmdir()
+
+
+Places = Mapping[str, tuple[int, tuple[float, float, float]]]
+
+
+def write_figures(
+    motion: Motion,
+    folder: str | os.PathLike[str],
+    kinds: Sequence[str],
+    points: Places,
+    *,
+    circuit: int = 0,
+    figures: Sequence[str] = ("png",),
+) -> list[Path]:
+    """Writes figures of these kinds into a folder, all or none; returns their paths.
+
+    `kinds` of curves, joints, modes, configuration, point; `points` (link, at) by name, for the last.
+    """
+    return fill_folder(Path(folder), lambda staging: draw(motion, staging, kinds, points, circuit, figures))
+
+
+def draw(
+    motion: Motion, folder: Path, kinds: Sequence[str], points: Places, circuit: int, figures: Sequence[str]
+) -> None:
+    """Draws figures of these kinds into a folder, in each of the formats `figures`."""
+    from sevenbar import plot
+    from sevenbar.figure import chosen_circuit
+
+    def made() -> Iterator[tuple[str, Figure]]:
+        linkage = motion.linkage
+        if "curves" in kinds:
+            yield "motion", plot.curves(motion)
+        if "joints" in kinds:
+            yield "joints", plot.joints(motion)
+        if "configuration" in kinds:
+            yield "configuration", plot.configuration(motion, circuit)
+        if "point" in kinds:
+            for name, (link, at) in points.items():
+                yield f"path_{_file_name(name)}", plot.point_path(motion, (link, at), circuit, name=name)
+        if "modes" in kinds:
+            chosen = chosen_circuit(motion, circuit)
+            # a limit is no place to show modes at: there two are one
+            ends = chosen.input_range
+            value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
+            modes = linkage.assembly_modes(value, input=motion.input)
+            yield "modes", plot.modes_overview(linkage, modes, input=motion.input, output=motion.output)
+
+    for name, figure in made():
+        for ending in figures:
+            plot.save(figure, folder / f"{name}.{ending}")
+
+
+def _file_name(name: str) -> str:
+    """The name of a point as a part of a file's name."""
+    return re.sub(r"[^\w.-]+", "_", name).strip("_.") or "point"
+
+
+def write_csv(motion: Motion, path: Path) -> None:
+    """Writes every row of every circuit; a value that does not exist is an empty cell beside its status."""
+    columns = motion.columns()
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        cells = [["" if v != v else v for v in column.tolist()] for column in columns.values()]
+        writer.writerows(zip(*cells, strict=True))
