@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 import mpmath as mp
 import numpy as np
 
+from differences import central_differences
 from reference_loops import Loop
 
 #: Digits carried, and the step of the central differences.
@@ -102,7 +103,7 @@ class PreciseLoop:
         for k in (-2, -1, 0, 1, 2):
             t = k * STEP
             samples.append(measure(at(angle + t * (speed + t * (acceleration / 2 + t * jerk / 6)))))
-        return [_central_differences(values) for values in zip(*samples, strict=True)]
+        return [central_differences(values, STEP) for values in zip(*samples, strict=True)]
 
     def point(self, link: int, at: Sequence[float]) -> Callable[[list[mp.mpf]], list[mp.mpf]]:
         """Measures the place in the report frame of a point of a moving link, as it is written."""
@@ -148,12 +149,3 @@ def _times(frame: list[list[mp.mpf]], fixed: list[list[mp.mpf]]) -> list[list[mp
         ]
         for row in frame
     ]
-
-
-def _central_differences(values: Sequence[mp.mpf]) -> list[mp.mpf]:
-    """Value and three derivatives from five values a `STEP` apart."""
-    a, b, c, d, e = values
-    first = (8 * (d - b) - (e - a)) / (12 * STEP)
-    second = (16 * (b + d) - (a + e) - 30 * c) / (12 * STEP**2)
-    third = (e - a - 2 * (d - b)) / (2 * STEP**3)
-    return [c, first, second, third]

@@ -18,6 +18,8 @@ from dataclasses import dataclass
 import mpmath as mp
 import numpy as np
 
+from differences import central_differences
+
 #: Digits carried, and the step of the central differences.
 DIGITS = 80
 STEP = mp.mpf(10) ** -20
@@ -329,21 +331,12 @@ class PreciseRssr:
             angle = at + t * (d1 + t * (d2 / 2 + t * d3 / 6))
             other = follower if k == 0 else self.follower(angle, follower, driver)
             samples.append(measure(angle, other) if driver == "crank" else measure(other, angle))
-        return [_central_differences(values) for values in zip(*samples, strict=True)]
+        return [central_differences(values, STEP) for values in zip(*samples, strict=True)]
 
     def output(self, rates: Sequence[float], near: float, driver: str = "crank") -> list[mp.mpf]:
         """The other joint's angle with three derivatives by time."""
         pick = 1 if driver == "crank" else 0
         return self.along(rates, near, driver, lambda crank, rocker: [(crank, rocker)[pick]])[0]
-
-
-def _central_differences(values: Sequence[mp.mpf]) -> list[mp.mpf]:
-    """Value and three derivatives from five values a `STEP` apart."""
-    a, b, c, d, e = values
-    first = (8 * (d - b) - (e - a)) / (12 * STEP)
-    second = (16 * (b + d) - (a + e) - 30 * c) / (12 * STEP**2)
-    third = (e - a - 2 * (d - b)) / (2 * STEP**3)
-    return [c, first, second, third]
 
 
 def _turns_zyx(rotation: mp.matrix) -> list[mp.mpf]:

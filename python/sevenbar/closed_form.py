@@ -11,9 +11,7 @@ from sevenbar import _core
 from sevenbar.errors import RequestError
 from sevenbar.motion import (
     SPIN_UNDEFINED,
-    STATUSES,
     Circuit,
-    DeadCentre,
     Extremes,
     Floats,
     Law,
@@ -21,9 +19,7 @@ from sevenbar.motion import (
     Motion,
     Output,
     Trace,
-    driven_time,
-    sampled_extremes,
-    scaled_extremes,
+    circuit_from,
 )
 
 if TYPE_CHECKING:
@@ -75,7 +71,7 @@ class ClosedForm:
         """Every circuit over the whole range of one side."""
         linkage = self._linkage
         raw = self._core.motion(_side(column), samples, speed, None if law is None else law.table)
-        other = _other(column)
+        other = 7 - column
         return Motion(
             linkage=linkage,
             input=linkage.columns[column],
@@ -98,46 +94,26 @@ class ClosedForm:
     def _circuit(
         self, index: int, raw: Mapping[str, Any], columns: tuple[int, int], speed: float, law: Law | None
     ) -> Circuit:
-        q, dq, ddq, dddq = raw["joints"]
-        input_column, output_column = columns
-        inputs = q[:, input_column]
-        if law is None:
-            velocity = scaled_extremes(raw["velocity"], speed)
-            acceleration = scaled_extremes(raw["acceleration"], speed * speed)
-        else:
-            velocity = sampled_extremes(dq[:, output_column], inputs)
-            acceleration = sampled_extremes(ddq[:, output_column], inputs)
         (least, least_at), (greatest, greatest_at) = raw["transmission"]
-        change_point = raw["motion_type"] == "change-point"
-        ends = [0, len(self._linkage.columns) - 1]
-        rates = np.stack([q[:, ends], dq[:, ends], ddq[:, ends], dddq[:, ends]], axis=-1)
-        return Circuit(
+        own: dict[str, Any] = {}
+        if raw["motion_type"] == "change-point":
+            own["output_range"] = _followed_range(raw["joints"][0][:, columns[1]])
+        # (n, 2, 4): crank and rocker, each with three derivatives
+        rates = np.moveaxis(raw["joints"][:, :, [0, -1]], 0, -1)
+        return circuit_from(
+            raw,
+            linkage=self._linkage,
             index=index,
+            columns=columns,
+            speed=speed,
+            law=law,
+            size=self.size,
             motion_type=raw["motion_type"],
             closed=True,
-            turns=raw["turns"],
-            columns=self._linkage.columns,
-            q=q,
-            dq=dq,
-            ddq=ddq,
-            dddq=dddq,
-            time=driven_time(inputs, speed, law),
-            status=np.array(STATUSES)[raw["status"]],
-            branch=raw["branch"],
             mode=raw["mode"],
-            residual=raw["residual"] * self.size,
-            condition=raw["condition"],
-            dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
-            input_range=raw["input"],
-            output_range=_followed_range(q[:, output_column]) if change_point else raw["output"],
             transmission=Extremes(least, least_at, greatest, greatest_at),
-            velocity=velocity,
-            acceleration=acceleration,
-            input_column=input_column,
-            output_column=output_column,
-            size=self.size,
-            _frames=self._linkage.point_frames,
             _point=lambda link, at: self._trace(link, at, rates),
+            **own,
         )
 
     def _trace(self, link: int, at: Floats, rates: Floats) -> Trace:
@@ -154,10 +130,6 @@ class ClosedForm:
 
 def _side(column: int) -> Side:
     return "crank" if column == 0 else "rocker"
-
-
-def _other(column: int) -> int:
-    return 7 - column
 
 
 def _followed_range(angles: Floats) -> tuple[float, float] | None:

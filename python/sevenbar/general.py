@@ -14,15 +14,12 @@ from sevenbar.mobility import Mobility, redundant_constraints
 from sevenbar.motion import (
     STATUSES,
     Circuit,
-    DeadCentre,
     Floats,
     Law,
     Modes,
     Motion,
     Trace,
-    driven_time,
-    sampled_extremes,
-    scaled_extremes,
+    circuit_from,
 )
 
 if TYPE_CHECKING:
@@ -156,48 +153,26 @@ class GeneralLoop:
     def _circuit(
         self, index: int, raw: Mapping[str, Any], columns: tuple[int, int], speed: float, law: Law | None
     ) -> Circuit:
-        q, dq, ddq, dddq = raw["joints"]
-        input_column, output_column = columns
+        q = raw["joints"][0]
         status = np.array(STATUSES)[raw["status"]]
         # the pose of a row may be known where a ball's turns are not
-        undefined = (status == "ok") & np.isnan(q).any(axis=1)
-        status[undefined] = "turns-undefined"
-        inputs = q[:, input_column]
-        if law is None:
-            velocity = scaled_extremes(raw["velocity"], speed)
-            acceleration = scaled_extremes(raw["acceleration"], speed * speed)
-        else:
-            velocity = sampled_extremes(dq[:, output_column], inputs)
-            acceleration = sampled_extremes(ddq[:, output_column], inputs)
+        status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
         rows = raw["rows"]
         kinds = self._linkage.column_kinds
-        words = _word(kinds[input_column], raw["input"]), _word(kinds[output_column], raw["output"])
-        return Circuit(
+        words = _word(kinds[columns[0]], raw["input"]), _word(kinds[columns[1]], raw["output"])
+        return circuit_from(
+            raw,
+            linkage=self._linkage,
             index=index,
+            columns=columns,
+            speed=speed,
+            law=law,
+            size=self.size,
             motion_type="change-point" if raw["singular"] else _pair(*words),
             closed=raw["closed"],
-            turns=raw["turns"],
-            columns=self._linkage.columns,
-            q=q,
-            dq=dq,
-            ddq=ddq,
-            dddq=dddq,
-            time=driven_time(inputs, speed, law),
             status=status,
-            branch=raw["branch"],
             mode=np.full(len(q), index),
-            residual=raw["residual"] * self.size,
-            condition=raw["condition"],
-            dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
-            input_range=raw["input"],
-            output_range=raw["output"],
             transmission=None,
-            velocity=velocity,
-            acceleration=acceleration,
-            input_column=input_column,
-            output_column=output_column,
-            size=self.size,
-            _frames=self._linkage.point_frames,
             _point=lambda link, at: self._trace(rows, link, at, status),
         )
 

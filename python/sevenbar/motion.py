@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -359,6 +359,55 @@ def _circuit_columns(circuit: Circuit, linkage: Linkage, unit: str) -> dict[str,
                 columns[f"{point.name}_{letter}{name}_{suffix}"] = values[:, axis]
     columns[f"residual_{unit}"] = circuit.residual
     return columns
+
+
+def circuit_from(
+    raw: Mapping[str, Any],
+    *,
+    linkage: Linkage,
+    index: int,
+    columns: tuple[int, int],
+    speed: float,
+    law: Law | None,
+    size: float,
+    **own: Any,
+) -> Circuit:
+    """A circuit from the core's arrays; `columns`: input and output; `own`: what its solver adds."""
+    q, dq, ddq, dddq = raw["joints"]
+    input_column, output_column = columns
+    inputs = q[:, input_column]
+    if law is None:
+        velocity = scaled_extremes(raw["velocity"], speed)
+        acceleration = scaled_extremes(raw["acceleration"], speed * speed)
+    else:
+        velocity = sampled_extremes(dq[:, output_column], inputs)
+        acceleration = sampled_extremes(ddq[:, output_column], inputs)
+    common = {
+        "status": np.array(STATUSES)[raw["status"]],
+        "output_range": raw["output"],
+    }
+    return Circuit(
+        index=index,
+        turns=raw["turns"],
+        columns=linkage.columns,
+        q=q,
+        dq=dq,
+        ddq=ddq,
+        dddq=dddq,
+        time=driven_time(inputs, speed, law),
+        branch=raw["branch"],
+        residual=raw["residual"] * size,
+        condition=raw["condition"],
+        dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
+        input_range=raw["input"],
+        velocity=velocity,
+        acceleration=acceleration,
+        input_column=input_column,
+        output_column=output_column,
+        size=size,
+        _frames=linkage.point_frames,
+        **(common | own),
+    )
 
 
 def driven_time(inputs: Floats, speed: float, law: Law | None) -> Floats:

@@ -5,6 +5,7 @@
 
 pub mod error;
 pub mod loops;
+pub mod outcome;
 pub mod rigid;
 pub mod rssr;
 pub mod simd;

@@ -78,6 +78,23 @@ pub fn still<const N: usize>(a: Vec3) -> Vec3Taylor<N> {
     a.map(Taylor::constant)
 }
 
+/// Below this cosine of the middle turn the two others act about one line, and none is named.
+const TURNS_UNDEFINED: f64 = 1e-8;
+
+/// The turns about z, y and x, one after the other, that make up a rotation whose entries are asked for by row and column.
+pub fn turns_zyx<const N: usize>(entry: impl Fn(usize, usize) -> Taylor<N>) -> Option<[Taylor<N>; 3]> {
+    let (x, y) = (entry(0, 0), entry(1, 0));
+    let level = x * x + y * y;
+    if level.value() < TURNS_UNDEFINED * TURNS_UNDEFINED {
+        return None;
+    }
+    Some([
+        Taylor::atan2(y, x),
+        Taylor::atan2(-entry(2, 0), level.sqrt()),
+        Taylor::atan2(entry(2, 1), entry(2, 2)),
+    ])
+}
+
 /// A rigid motion `x -> rotation x + translation`; `rotation[i][j]` is row i, column j.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -88,6 +105,14 @@ pub struct Pose {
 }
 
 impl Pose {
+    /// The motion that leaves all where it is.
+    pub const STILL: Self = Self::turning([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+
+    /// A rotation about the origin.
+    pub const fn turning(rotation: [[f64; 3]; 3]) -> Self {
+        Self { rotation, translation: [0.0; 3] }
+    }
+
     /// From a homogeneous matrix, row by row; its last row is not read.
     pub fn from_rows(m: [[f64; 4]; 4]) -> Self {
         Self {

@@ -10,7 +10,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sevenbar_core::error::Error;
-use sevenbar_core::rssr::{self, BatchRates, Circuit, DeadCentreKind, Extent, Extreme, Input, Row};
+use sevenbar_core::outcome::DeadCentre;
+use sevenbar_core::rssr::{self, BatchRates, Circuit, Extent, Extreme, Input, Row};
 use sevenbar_core::taylor::Taylor;
 
 pyo3::create_exception!(
@@ -244,22 +245,19 @@ fn circuit_dict<'py>(py: Python<'py>, circuit: &Circuit, rows: &[Row]) -> PyResu
     result.set_item("input", extent(&circuit.input))?;
     result.set_item("output", extent(&circuit.output))?;
     result.set_item("turns", circuit.turns)?;
-    let dead_centres: Vec<_> = circuit
-        .dead_centres
-        .iter()
-        .map(|d| {
-            let kind = match d.kind {
-                DeadCentreKind::Input => "input",
-                DeadCentreKind::Output => "output",
-            };
-            (kind, d.input, d.output, d.branch, d.condition)
-        })
-        .collect();
-    result.set_item("dead_centres", dead_centres)?;
+    result.set_item("dead_centres", dead_centre_rows(&circuit.dead_centres))?;
     result.set_item("transmission", extremes(circuit.transmission))?;
     result.set_item("velocity", circuit.velocity.map(extremes))?;
     result.set_item("acceleration", circuit.acceleration.map(extremes))?;
     Ok(result)
+}
+
+/// Kind, input, output, pass and condition of each.
+fn dead_centre_rows(dead_centres: &[DeadCentre]) -> Vec<(&'static str, f64, f64, usize, f64)> {
+    dead_centres
+        .iter()
+        .map(|d| (d.kind.name(), d.input, d.output, d.branch, d.condition))
+        .collect()
 }
 
 fn extent(extent: &Extent) -> Option<(f64, f64)> {

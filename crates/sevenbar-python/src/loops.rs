@@ -1,9 +1,9 @@
 //! Any single loop, for Python.
 
-use crate::{CoreError, flat};
+use crate::{CoreError, dead_centre_rows, flat};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{
-    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyReadonlyArray3,
 };
 use pyo3::prelude::*;
@@ -192,20 +192,7 @@ impl Loop {
         result.set_item("turns", circuit.turns)?;
         result.set_item("input", circuit.input.map(|e| (e[0], e[1])))?;
         result.set_item("output", circuit.output.map(|e| (e[0], e[1])))?;
-        let dead_centres: Vec<_> = circuit
-            .dead_centres
-            .iter()
-            .map(|d| {
-                (
-                    if d.of_input { "input" } else { "output" },
-                    d.input,
-                    d.output,
-                    d.branch,
-                    d.condition,
-                )
-            })
-            .collect();
-        result.set_item("dead_centres", dead_centres)?;
+        result.set_item("dead_centres", dead_centre_rows(&circuit.dead_centres))?;
         let ends = |e: Option<[[f64; 2]; 2]>| e.map(|e| [(e[0][0], e[0][1]), (e[1][0], e[1][1])]);
         result.set_item("velocity", ends(circuit.extremes[0]))?;
         result.set_item("acceleration", ends(circuit.extremes[1]))?;
@@ -221,11 +208,5 @@ impl Rows {
     fn point<'py>(&self, py: Python<'py>, link: usize, at: [f64; 3]) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let out = py.detach(|| self.owner.point(&self.rows, link, at));
         PyArray1::from_vec(py, out).reshape([4, self.rows.len(), 3])
-    }
-
-    /// Frames of the links after each joint, (n, joints, 3, 4), in the report frame.
-    fn frames<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray4<f64>>> {
-        let out = py.detach(|| self.owner.link_frames(&self.rows));
-        PyArray1::from_vec(py, out).reshape([self.rows.len(), self.owner.joints(), 3, 4])
     }
 }

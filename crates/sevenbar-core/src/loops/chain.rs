@@ -28,6 +28,14 @@ pub(super) enum Joint {
     Ball(usize),
 }
 
+impl Joint {
+    /// How many columns it has.
+    #[inline(always)]
+    pub fn columns(&self) -> usize {
+        if matches!(self, Self::Ball(_)) { 3 } else { 1 }
+    }
+}
+
 /// `Z1 G1 Z2 .. Zn Gn = 1`, lengths in parts of the size.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
@@ -58,7 +66,7 @@ pub(super) struct Placed {
     pub closing_cosine: f64,
 }
 
-pub(super) const UNTURNED: Rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const UNTURNED: Rotation = Pose::STILL.rotation;
 
 impl Configuration {
     pub const ZERO: Self = Self { values: [0.0; COLUMNS], balls: [UNTURNED; BALLS] };
@@ -93,7 +101,7 @@ impl Chain {
         let mut columns = 0;
         for joint in &joints {
             first.push(columns);
-            columns += if matches!(joint, Joint::Ball(_)) { 3 } else { 1 };
+            columns += joint.columns();
         }
         Self { joints, first, links, columns, halves: Vec::new() }
     }
@@ -123,7 +131,7 @@ impl Chain {
             Joint::Slide => (0.0, value),
             Joint::Screw(advance) => (value, advance * value),
             Joint::Ball(b) => {
-                return Pose { rotation: at.balls[b], translation: [0.0; 3] };
+                return Pose::turning(at.balls[b]);
             }
         };
         let (s, c) = angle.sin_cos();
@@ -238,9 +246,15 @@ impl Chain {
         turn.max(gap)
     }
 
+    /// The joints' screws at a configuration, one for each column.
+    pub fn screws(&self, at: &Configuration) -> Vec<Vec<f64>> {
+        let screws = self.place(at).screws;
+        screws[..self.columns].iter().map(|s| s.to_vec()).collect()
+    }
+
     /// The frames after each joint, in the frame of the first joint.
     pub fn frames(&self, at: &Configuration) -> Vec<Pose> {
-        let mut frame = Pose { rotation: UNTURNED, translation: [0.0; 3] };
+        let mut frame = Pose::STILL;
         let mut frames = Vec::with_capacity(self.joints.len());
         for (joint, link) in self.links.iter().enumerate() {
             frame = frame.then(&self.motion_of(joint, at));

@@ -1,20 +1,27 @@
 //! A followed curve as rows over an input: passes between dead centres, rows on a grid of inputs, extremes.
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, squared_up};
-use super::curve::{Curve, End, Node, bordered, combined, dot};
+use super::curve::{Curve, End, Node, bordered, combined, dot, measure, reversed};
 use super::many;
 use super::rates::{ORDERS, Rates};
+use crate::outcome::RowStatus;
 use crate::simd::{Kernel, dispatch};
 use std::f64::consts::TAU;
 
 /// A rate of a column below this part of the curve's is zero.
 const AT_REST: f64 = 1e-13;
 
+/// A column whose part of the unit tangent is below this stands still.
+const STILL: f64 = 1e-9;
+
+/// The input at unit speed.
+const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
+
 /// A row nearer than this part of a grid step to a dead centre is that dead centre's.
 const SAME_ROW: f64 = 1e-9;
 
 /// A correction [rad, or parts of the size] after which the next is rounding.
-const SETTLED: f64 = 1e-7;
+pub(super) const SETTLED: f64 = 1e-7;
 
 /// Corrections of a row, and how far they may lead together [rad, or parts of the size].
 const MOST_CORRECTIONS: usize = 8;
@@ -25,17 +32,6 @@ const ROW_CLOSED: f64 = 1e-10;
 
 /// Places looked at within a step for a change of a column's direction.
 const LOOKS: usize = 6;
-
-/// What a row can hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowStatus {
-    /// Everything.
-    Ok = 0,
-    /// The pose; rates have no bound.
-    DeadCentre = 1,
-    /// The input has no pose on this pass.
-    NoSolution = 3,
-}
 
 /// A row of a circuit.
 #[derive(Clone, Copy, Debug)]
@@ -59,9 +55,9 @@ pub(super) struct Turning {
 /// A stretch of the curve on which the input only rises or only falls.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pass {
-    /// Place along the curve where it begins and ends: segment and length into it.
-    pub from: (usize, f64),
-    pub to: (usize, f64),
+    /// The nodes with which it begins and ends, and the inputs there.
+    pub from: usize,
+    pub to: usize,
     pub start: f64,
     pub end: f64,
 }
@@ -245,7 +241,7 @@ impl<'a> Passes<'a> {
             .nodes
             .iter()
             .fold(0.0, |m: f64, n| m.max(n.tangent[input].abs()));
-        if curve.nodes.len() < 2 || fastest < 1e-9 {
+        if curve.nodes.len() < 2 || fastest < STILL {
             return None;
         }
         let mut curve = curve.clone();
@@ -259,12 +255,12 @@ impl<'a> Passes<'a> {
                 curve.nodes[0].at.values[input],
                 curve.nodes[last].at.values[input],
             );
-            let pass = Pass { from: (0, 0.0), to: (last, 0.0), start, end };
+            let pass = Pass { from: 0, to: last, start, end };
             return Some(Self { chain, curve, input, passes: vec![pass], limits: Vec::new() });
         }
         // each turning becomes a node; a closed curve then begins at the lowest
         insert(chain, &mut curve, &turnings);
-        let is_turning = |n: &Node| n.tangent[input].abs() < 1e-9;
+        let is_turning = |n: &Node| n.tangent[input].abs() < STILL;
         if curve.end == End::Closed {
             let lowest = (0..curve.nodes.len() - 1)
                 .filter(|&k| is_turning(&curve.nodes[k]))
@@ -293,12 +289,7 @@ impl<'a> Passes<'a> {
         let value = |k: usize| curve.nodes[k].at.values[input];
         let passes = marks
             .windows(2)
-            .map(|m| Pass {
-                from: (m[0], 0.0),
-                to: (m[1], 0.0),
-                start: value(m[0]),
-                end: value(m[1]),
-            })
+            .map(|m| Pass { from: m[0], to: m[1], start: value(m[0]), end: value(m[1]) })
             .collect();
         let limits = marks.iter().map(|&k| curve.nodes[k]).filter(is_turning).collect();
         Some(Self { chain, curve, input, passes, limits })
@@ -319,13 +310,13 @@ impl<'a> Passes<'a> {
     #[inline(always)]
     fn rough(&self, pass: usize, value: f64) -> (usize, f64, Configuration) {
         let p = &self.passes[pass];
-        let nodes = &self.curve.nodes[p.from.0..=p.to.0];
+        let nodes = &self.curve.nodes[p.from..=p.to];
         let rising = p.end > p.start;
         let past = nodes.partition_point(|n| {
             let v = n.at.values[self.input];
             if rising { v <= value } else { v >= value }
         });
-        let segment = p.from.0 + past.saturating_sub(1).min(nodes.len() - 2);
+        let segment = p.from + past.saturating_sub(1).min(nodes.len() - 2);
         let a = &self.curve.nodes[segment];
         let cubic = self.curve.cubic(self.chain, segment);
         let (mut low, mut high) = (0.0, a.step);
@@ -388,22 +379,22 @@ impl<'a> Passes<'a> {
         !self.limits.is_empty()
     }
 
-    /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres.
-    pub fn rows(&self, origin: f64, step: f64, rates: &[f64; ORDERS]) -> Vec<Row> {
+    /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres; the input has unit speed.
+    pub fn rows(&self, origin: f64, step: f64) -> Vec<Row> {
         let mut rows = Vec::new();
-        dispatch(OnGrid { passes: self, grid: (origin, step), rates, rows: &mut rows });
+        dispatch(OnGrid { passes: self, grid: (origin, step), rows: &mut rows });
         rows
     }
 
     #[inline(always)]
-    fn rows_on_grid(&self, (origin, step): (f64, f64), rates: &[f64; ORDERS], rows: &mut Vec<Row>) {
+    fn rows_on_grid(&self, (origin, step): (f64, f64), rows: &mut Vec<Row>) {
         let closed = self.curve.end == End::Closed;
         let slack = SAME_ROW * step;
         for (n, pass) in self.passes.iter().enumerate() {
-            let starts_at_limit = self.curve.nodes[pass.from.0].tangent[self.input].abs() < 1e-9;
-            let ends_at_limit = self.curve.nodes[pass.to.0].tangent[self.input].abs() < 1e-9;
+            let at_limit = |node: usize| self.curve.nodes[node].tangent[self.input].abs() < STILL;
+            let (starts_at_limit, ends_at_limit) = (at_limit(pass.from), at_limit(pass.to));
             if starts_at_limit {
-                rows.push(self.limit_row(n, &self.curve.nodes[pass.from.0]));
+                rows.push(self.limit_row(n, &self.curve.nodes[pass.from]));
             }
             let index = |v: f64| (v - origin) / step;
             let (low, high) = (pass.start.min(pass.end), pass.start.max(pass.end));
@@ -426,9 +417,9 @@ impl<'a> Passes<'a> {
                 };
                 origin + step * k as f64
             });
-            self.rows_at(n, values, rates, rows);
+            self.rows_at(n, values, rows);
             if ends_at_limit && !closed && n + 1 == self.passes.len() {
-                rows.push(self.limit_row(n, &self.curve.nodes[pass.to.0]));
+                rows.push(self.limit_row(n, &self.curve.nodes[pass.to]));
             }
         }
     }
@@ -464,15 +455,9 @@ impl<'a> Passes<'a> {
 impl Passes<'_> {
     /// Rows of a pass at inputs in it, side by side where the chain suits.
     #[inline(always)]
-    fn rows_at(
-        &self,
-        pass: usize,
-        values: impl Iterator<Item = f64>,
-        rates: &[f64; ORDERS],
-        rows: &mut Vec<Row>,
-    ) {
-        let single = |value: f64| self.row(pass, value, rates).unwrap_or(missing(pass));
-        if !many::suits(self.chain) || *rates != [1.0, 0.0, 0.0] {
+    fn rows_at(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut Vec<Row>) {
+        let single = |value: f64| self.row(pass, value, &UNIT).unwrap_or(missing(pass));
+        if !many::suits(self.chain) {
             rows.extend(values.map(single));
             return;
         }
@@ -495,14 +480,13 @@ impl Passes<'_> {
 struct OnGrid<'a, 'b> {
     passes: &'b Passes<'a>,
     grid: (f64, f64),
-    rates: &'b [f64; ORDERS],
     rows: &'b mut Vec<Row>,
 }
 
 impl Kernel for OnGrid<'_, '_> {
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        self.passes.rows_on_grid(self.grid, self.rates, self.rows);
+        self.passes.rows_on_grid(self.grid, self.rows);
     }
 }
 
@@ -516,24 +500,6 @@ fn missing(pass: usize) -> Row {
         pass,
         residual: f64::NAN,
         condition: f64::NAN,
-    }
-}
-
-/// The curve walked the other way.
-pub(super) fn reversed(chain: &Chain, curve: &Curve) -> Curve {
-    let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
-    for node in &mut nodes {
-        node.tangent = node.tangent.map(|t| -t);
-    }
-    measure(chain, &mut nodes);
-    Curve { nodes, end: curve.end }
-}
-
-/// Steps between nodes, measured along the tangent of the first of each two.
-fn measure(chain: &Chain, nodes: &mut [Node]) {
-    for k in 1..nodes.len() {
-        let by = chain.difference(&nodes[k - 1].at, &nodes[k].at);
-        nodes[k - 1].step = dot(&by, &nodes[k - 1].tangent);
     }
 }
 

@@ -10,7 +10,8 @@
 //! that the others close as well is looked at in every node.
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, Twist, squared_up};
-use super::dense::{Factored, ROWS};
+use super::dense::{Factored, ROWS, singular_values};
+use crate::rigid::cross;
 use crate::simd::{Kernel, dispatch};
 
 /// Longest step [rad, or parts of the size].
@@ -113,17 +114,11 @@ pub(super) fn bordered(
 /// How the closure bends: the second derivative by columns `i <= j`, where `same_ball` tells columns of one ball.
 #[inline(always)]
 fn second_derivative(a: &Twist, b: &Twist, same_ball: bool) -> Twist {
-    let cross = |u: &Twist, i: usize, v: &Twist, j: usize| {
-        [
-            u[i + 1] * v[j + 2] - u[i + 2] * v[j + 1],
-            u[i + 2] * v[j] - u[i] * v[j + 2],
-            u[i] * v[j + 1] - u[i + 1] * v[j],
-        ]
-    };
-    let shift = cross(a, 0, b, 3);
+    let part = |t: &Twist, i: usize| [t[i], t[i + 1], t[i + 2]];
+    let shift = cross(part(a, 0), part(b, 3));
     if same_ball {
         // the turn of a ball is one rotation, in which its columns are alike
-        let other = cross(b, 0, a, 3);
+        let other = cross(part(b, 0), part(a, 3));
         return [
             0.0,
             0.0,
@@ -133,7 +128,7 @@ fn second_derivative(a: &Twist, b: &Twist, same_ball: bool) -> Twist {
             0.5 * (shift[2] + other[2]),
         ];
     }
-    let turn = cross(a, 0, b, 0);
+    let turn = cross(part(a, 0), part(b, 0));
     [
         0.5 * turn[0],
         0.5 * turn[1],
@@ -262,9 +257,7 @@ impl Chain {
 
     /// Any direction in which a closed configuration can move: the null vector of its screws.
     pub fn direction(&self, at: &Configuration) -> Columns {
-        let placed = self.place(at);
-        let columns: Vec<Vec<f64>> = (0..self.columns).map(|c| placed.screws[c].to_vec()).collect();
-        let (_, vectors) = super::dense::singular_values(&columns);
+        let (_, vectors) = singular_values(&self.screws(at));
         let mut out = [0.0; COLUMNS];
         if let Some(last) = vectors.last() {
             out[..last.len()].copy_from_slice(last);
@@ -285,13 +278,7 @@ impl Chain {
         let mut back = first;
         back.tangent = back.tangent.map(|t| -t);
         let backward = self.walk(back);
-        let mut nodes: Vec<Node> = backward.nodes;
-        nodes.reverse();
-        let steps: Vec<f64> = nodes.iter().skip(1).map(|n| n.step).collect();
-        for (node, step) in nodes.iter_mut().zip(steps.iter().chain([&0.0])) {
-            node.tangent = node.tangent.map(|t| -t);
-            node.step = *step;
-        }
+        let mut nodes = reversed(self, &backward).nodes;
         nodes.pop();
         nodes.extend(forward.nodes);
         Curve { nodes, end: forward.end }
@@ -353,22 +340,38 @@ impl Chain {
         if length(&ahead) > 2.0 * span + 1e-3 {
             return None;
         }
-        let mut here = self.ahead(from, along)?;
+        let here = self.ahead(from, along)?;
         let left = self.difference(&here.at, &first.at);
         if left.iter().any(|d| d.abs() > RETURNED) {
             return None;
         }
         // the start itself, with the turns made on the way
-        let values = here.at.values;
-        here = *first;
+        let mut end = *first;
         for c in 0..self.columns {
             if self.is_turn(c) {
                 let turn = std::f64::consts::TAU;
-                here.at.values[c] += turn * ((values[c] - first.at.values[c]) / turn).round();
+                end.at.values[c] += turn * ((here.at.values[c] - first.at.values[c]) / turn).round();
             }
         }
-        here.step = 0.0;
-        Some((along, here))
+        Some((along, end))
+    }
+}
+
+/// The curve walked the other way.
+pub(super) fn reversed(chain: &Chain, curve: &Curve) -> Curve {
+    let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
+    for node in &mut nodes {
+        node.tangent = node.tangent.map(|t| -t);
+    }
+    measure(chain, &mut nodes);
+    Curve { nodes, end: curve.end }
+}
+
+/// Steps between nodes, measured along the tangent of the first of each two.
+pub(super) fn measure(chain: &Chain, nodes: &mut [Node]) {
+    for k in 1..nodes.len() {
+        let by = chain.difference(&nodes[k - 1].at, &nodes[k].at);
+        nodes[k - 1].step = dot(&by, &nodes[k - 1].tangent);
     }
 }
 

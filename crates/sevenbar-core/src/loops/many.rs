@@ -2,8 +2,9 @@
 //! for a single row, in vector lanes. What does not settle at once is left to the single row.
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint};
-use super::circuits::{Row, RowStatus};
+use super::circuits::{Row, SETTLED};
 use super::rates::{ORDERS, Rates};
+use crate::outcome::RowStatus;
 use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
 
 /// Passive columns.
@@ -11,9 +12,6 @@ const PASSIVE: usize = COLUMNS - 1;
 
 /// A first correction [rad, or parts of the size] up to which the series for a small turn is exact to rounding.
 const SMALL_TURN: f64 = 1e-3;
-
-/// A correction after which the next is rounding.
-const SETTLED: f64 = 1e-7;
 
 /// The closure error that a row may keep.
 const CLOSED: f64 = 1e-12;

@@ -19,9 +19,8 @@ mod starts;
 #[cfg(test)]
 mod tests;
 
-pub use circuits::RowStatus;
 pub use modes::Completeness;
-pub use motion::{Circuit, DeadCentre, Found, Motion};
+pub use motion::{Circuit, Found, Motion};
 pub use reduce::{Idle, Kind};
 pub use rows::Rows;
 
@@ -94,11 +93,6 @@ impl Loop {
         self.columns
     }
 
-    /// How many joints.
-    pub fn joints(&self) -> usize {
-        self.first.len()
-    }
-
     /// Freedoms that move one link only.
     pub fn idle(&self) -> &[Idle] {
         &self.reduced.idle
@@ -109,9 +103,14 @@ impl Loop {
         self.reduced.freedoms
     }
 
+    /// The joint of a column.
+    fn joint_of(&self, column: usize) -> usize {
+        self.first.partition_point(|&f| f <= column).saturating_sub(1)
+    }
+
     /// The chain's column of a column of the description; `None` for a ball's turn or a held joint.
     fn chain_column(&self, column: usize) -> Option<usize> {
-        let joint = self.first.iter().rposition(|&f| f <= column)?;
+        let joint = self.joint_of(column);
         let chain = self.reduced.chain.as_ref()?;
         match (self.reduced.parts[joint].source, self.reduced.parts[joint].kind) {
             (Source::Joint(_), Kind::Ball) => None,
@@ -122,8 +121,7 @@ impl Loop {
 
     /// Whether a column is a length.
     fn is_slide(&self, column: usize) -> bool {
-        let joint = self.first.iter().rposition(|&f| f <= column).unwrap_or(0);
-        self.reduced.parts[joint].kind == Kind::Slide
+        self.reduced.parts[self.joint_of(column)].kind == Kind::Slide
     }
 
     /// A value of a column as the chain has it.

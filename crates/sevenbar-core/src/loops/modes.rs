@@ -5,9 +5,12 @@
 //! any real input only the input moves. Chains with fewer than six passive freedoms close although they have too few; joints
 //! about axes in general position are added, and the solutions kept in which these stay at zero.
 
-use super::chain::{BALLS, COLUMNS, Chain, Columns, Configuration, Joint, product, short_way, squared_up};
+use super::chain::{
+    BALLS, COLUMNS, Chain, Columns, Configuration, Joint, Rotation, product, short_way, squared_up,
+};
 use super::dense::{Factored, ROWS};
 use super::paths::{BRISK, CAREFUL, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::reduce::Z_TO_X;
 use super::starts::{Frame, Random, SAME_GENERAL, STARTS, distinct, general_count, start};
 use crate::rigid::Pose;
 use num_complex::Complex64;
@@ -85,19 +88,8 @@ struct Generic {
     solutions: Vec<Solution>,
 }
 
-fn about_y() -> Pose {
-    Pose {
-        rotation: [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]],
-        translation: [0.0; 3],
-    }
-}
-
-fn about_x() -> Pose {
-    Pose {
-        rotation: [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]],
-        translation: [0.0; 3],
-    }
-}
+/// Takes z to y, and y to minus z.
+const Z_TO_Y: Rotation = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
 
 impl<'a> ModeFinder<'a> {
     pub fn new(chain: &'a Chain, input: usize) -> Self {
@@ -119,7 +111,7 @@ impl<'a> ModeFinder<'a> {
             let joint = (input_joint + step) % count;
             match chain.joints[joint] {
                 Joint::Ball(b) => {
-                    let (y, x) = (about_y(), about_x());
+                    let (y, x) = (Pose::turning(Z_TO_Y), Pose::turning(Z_TO_X));
                     before.push(lead);
                     before.push(y);
                     before.push(y.inverse().then(&x));

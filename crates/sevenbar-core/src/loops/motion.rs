@@ -2,21 +2,22 @@
 
 use super::Loop;
 use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
-use super::circuits::{Passes, Row, RowStatus};
-use super::curve::{Curve, End, combined, dot};
+use super::circuits::{Passes, Row};
+use super::curve::{Curve, End, Node, combined, dot};
 use super::dense::singular_values;
 use super::modes::{CLOSED, Completeness, ModeFinder};
 use super::rows::Rows;
+use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
 use std::f64::consts::TAU;
 
 /// Values of a joint at which the modes are found, all of which must lie on the circuits.
 const SEEDS: usize = 24;
 
-/// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
-const SEED_JOINTS: usize = 2;
-
 /// The same where modes are searched for.
 const SEARCHED_SEEDS: usize = 4;
+
+/// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
+const SEED_JOINTS: usize = 2;
 
 /// Singular values below this part of the greatest are zero.
 const NO_RANK: f64 = 1e-8;
@@ -33,21 +34,6 @@ pub struct Found {
     pub redundant: Vec<[f64; 6]>,
     /// Freedoms of the motion as found.
     pub finite: usize,
-}
-
-/// A change of direction of the input or the output.
-#[derive(Clone, Copy, Debug)]
-pub struct DeadCentre {
-    /// Whether it is the input that stands still.
-    pub of_input: bool,
-    /// Both joints' values.
-    pub input: f64,
-    /// The output's.
-    pub output: f64,
-    /// The pass it lies on.
-    pub branch: usize,
-    /// Norm of the inverse of the bordered Jacobian there.
-    pub condition: f64,
 }
 
 /// One connected motion over an input.
@@ -176,8 +162,7 @@ impl Loop {
         let closed = passes.curve.end == End::Closed;
         let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
         let rocks = passes.rocks() || !turning(a);
-        let unit = [1.0, 0.0, 0.0];
-        let mut rows = passes.rows(grid.0, grid.1, &unit);
+        let mut rows = passes.rows(grid.0, grid.1);
         if !rocks {
             begin_at_zero(chain, &mut rows, a, &gained, grid.1);
         }
@@ -188,7 +173,7 @@ impl Loop {
             let from = if rows.len() >= LEAST_ROWS {
                 &rows
             } else {
-                dense = passes.rows(0.0, TAU / 360.0, &unit);
+                dense = passes.rows(0.0, TAU / 360.0);
                 &dense
             };
             [1, 2].map(|order| output_extremes(passes, from, b, order, &gained))
@@ -217,7 +202,7 @@ impl Loop {
             }
             let (input, output) = place(&limit.at);
             dead_centres.push(DeadCentre {
-                of_input: true,
+                kind: DeadCentreKind::Input,
                 input,
                 output,
                 branch: n.min(passes.passes.len() - 1),
@@ -227,41 +212,34 @@ impl Loop {
         let turnings = passes.curve.turnings(chain, b);
         for t in &turnings {
             let (input, output) = place(&t.node.at);
-            let branch = passes.passes.iter().position(|p| t.segment < p.to.0).unwrap_or(0);
+            let branch = passes.passes.iter().position(|p| t.segment < p.to).unwrap_or(0);
             dead_centres.push(DeadCentre {
-                of_input: false,
+                kind: DeadCentreKind::Output,
                 input,
                 output,
                 branch,
                 condition: t.node.inverse_norm,
             });
         }
-        let range = |c: usize, column: usize, turnings: &mut dyn Iterator<Item = f64>| {
-            let ends = turnings
-                .chain([first.at.values[c], last.at.values[c]])
-                .map(|v| outward(c, column, v))
+        let range = |c: usize, column: usize, nodes: &mut dyn Iterator<Item = &Node>| {
+            nodes
+                .map(|n| outward(c, column, n.at.values[c]))
                 .fold([f64::INFINITY, f64::NEG_INFINITY], |m, v| {
                     [m[0].min(v), m[1].max(v)]
-                });
-            Some(ends)
+                })
         };
-        let input_range = if rocks {
-            range(a, columns.0, &mut passes.limits.iter().map(|n| n.at.values[a]))
+        let ends = [first, last];
+        // a closed circuit has its extremes where it turns back, an open one perhaps at its ends
+        let open_ends = if closed && !turnings.is_empty() {
+            &ends[..0]
         } else {
-            None
+            &ends[..]
         };
-        let output_range = if turning(b) {
-            None
-        } else if closed && !turnings.is_empty() {
-            let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-            for t in &turnings {
-                let v = outward(b, columns.1, t.node.at.values[b]);
-                ends = [ends[0].min(v), ends[1].max(v)];
-            }
-            Some(ends)
-        } else {
-            range(b, columns.1, &mut turnings.iter().map(|t| t.node.at.values[b]))
-        };
+        let input_range = rocks.then(|| range(a, columns.0, &mut passes.limits.iter().chain(ends)));
+        let output_range = (!turning(b)).then(|| {
+            let turned = turnings.iter().map(|t| &t.node);
+            range(b, columns.1, &mut turned.chain(open_ends.iter().copied()))
+        });
         if let Some(law) = law {
             let inner_law: Vec<[f64; 4]> = law
                 .iter()
@@ -357,8 +335,7 @@ impl Curves {
         if self.curves.iter().any(|c| lies_on(chain, c, mode)) {
             return;
         }
-        let placed = chain.place(mode);
-        let columns: Vec<Vec<f64>> = (0..chain.columns).map(|c| placed.screws[c].to_vec()).collect();
+        let columns = chain.screws(mode);
         let (values, _) = singular_values(&columns);
         let rank = values
             .iter()

@@ -22,7 +22,7 @@ impl Chain {
         // the screws' coefficients of this order, from the twists and screws of lower ones
         let mut twists = [[0.0; 6]; ORDERS];
         for (joint, &first) in self.joints.iter().zip(&self.first) {
-            let width = if matches!(joint, Joint::Ball(_)) { 3 } else { 1 };
+            let width = joint.columns();
             for c in first..first + width {
                 let mut sum = [0.0; 6];
                 for a in 0..order {
@@ -167,22 +167,7 @@ pub(super) fn point_rates(place: Vec3, twist: &[Twist; ORDERS]) -> [Vec3; 4] {
     ]
 }
 
-/// Turns about z, y and x that make up a rotation; `None` where the middle one is a quarter turn and the others act about one
-/// line.
-pub(super) fn turns(r: &[[Taylor<4>; 3]; 3]) -> Option<[Taylor<4>; 3]> {
-    const LEVEL: f64 = 1e-8;
-    let level = r[0][0] * r[0][0] + r[1][0] * r[1][0];
-    if level.value() < LEVEL * LEVEL {
-        return None;
-    }
-    Some([
-        Taylor::atan2(r[1][0], r[0][0]),
-        Taylor::atan2(-r[2][0], level.sqrt()),
-        Taylor::atan2(r[2][1], r[2][2]),
-    ])
-}
-
-/// `a b` of moving and fixed rotations.
+/// `a b c` of a fixed, a moving and a fixed rotation.
 pub(super) fn turned_series(a: &Rotation, b: &[[Taylor<4>; 3]; 3], c: &Rotation) -> [[Taylor<4>; 3]; 3] {
     let sum = |f: &dyn Fn(usize) -> Taylor<4>| f(0) + f(1) + f(2);
     let left: [[Taylor<4>; 3]; 3] =

@@ -1,6 +1,6 @@
 //! From the joints of a description to the chain that is followed: idle freedoms held, balls made one joint.
 
-use super::chain::{BALLS, COLUMNS, Chain, Joint, Rotation, UNTURNED, transposed};
+use super::chain::{BALLS, COLUMNS, Chain, Joint, Rotation, transposed};
 use super::dense::singular_values;
 use super::starts::Random;
 use crate::rigid::{Pose, Vec3, add, cross, dot, most_perpendicular_axis, norm, scale, sub, unit};
@@ -21,7 +21,17 @@ pub enum Kind {
 impl Kind {
     /// How many columns of joint values it has.
     pub fn columns(self) -> usize {
-        if self == Self::Ball { 3 } else { 1 }
+        self.joint(0).columns()
+    }
+
+    /// The chain's joint; a ball is the one of this number.
+    fn joint(self, ball: usize) -> Joint {
+        match self {
+            Self::Turn => Joint::Turn,
+            Self::Slide => Joint::Slide,
+            Self::Screw(advance) => Joint::Screw(advance),
+            Self::Ball => Joint::Ball(ball),
+        }
     }
 }
 
@@ -72,14 +82,6 @@ pub(super) struct Reduced {
     pub base: Pose,
 }
 
-fn still() -> Pose {
-    Pose { rotation: UNTURNED, translation: [0.0; 3] }
-}
-
-fn rotated(rotation: Rotation) -> Pose {
-    Pose { rotation, translation: [0.0; 3] }
-}
-
 /// Takes z to x, and x to minus z.
 pub(super) const Z_TO_X: Rotation = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
 
@@ -120,8 +122,8 @@ pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose])
     let mut joints = Vec::new();
     let mut transforms: Vec<Pose> = Vec::new();
     let mut parts = Vec::with_capacity(count);
-    let mut lead = still();
-    let mut pending = still();
+    let mut lead = Pose::STILL;
+    let mut pending = Pose::STILL;
     let mut balls = 0;
     let mut halves = Vec::new();
     let push = |joint: Joint,
@@ -135,7 +137,7 @@ pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose])
             transforms.push(*pending);
         }
         joints.push(joint);
-        *pending = still();
+        *pending = Pose::STILL;
     };
     for i in 0..count {
         let source = if idle.contains(&Idle::BetweenBalls(i)) {
@@ -146,25 +148,20 @@ pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose])
                 most_perpendicular_axis(links[i].translation)
             };
             let frame = spin_frame(axis, links[i].translation);
-            pending = pending.then(&rotated(frame));
+            pending = pending.then(&Pose::turning(frame));
             push(Joint::Turn, &mut pending, &mut lead, &mut joints, &mut transforms);
-            pending = rotated(Z_TO_X);
+            pending = Pose::turning(Z_TO_X);
             push(Joint::Turn, &mut pending, &mut lead, &mut joints, &mut transforms);
-            pending = rotated(Z_TO_X).inverse().then(&rotated(frame).inverse());
+            pending = Pose::turning(Z_TO_X)
+                .inverse()
+                .then(&Pose::turning(frame).inverse());
             halves.push((joints.len() - 1, spin_middle(axis, links[i].translation, &frame)));
             Source::Universal(joints.len() - 2, frame)
         } else if held(i) {
             Source::Held
         } else {
-            let joint = match kinds[i] {
-                Kind::Turn => Joint::Turn,
-                Kind::Slide => Joint::Slide,
-                Kind::Screw(advance) => Joint::Screw(advance),
-                Kind::Ball => {
-                    balls += 1;
-                    Joint::Ball(balls - 1)
-                }
-            };
+            let joint = kinds[i].joint(balls);
+            balls += usize::from(kinds[i] == Kind::Ball);
             push(joint, &mut pending, &mut lead, &mut joints, &mut transforms);
             Source::Joint(joints.len() - 1)
         };
@@ -179,10 +176,7 @@ pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose])
             part.link.1 = base.then(&part.link.1);
         }
     }
-    let freedoms = joints
-        .iter()
-        .map(|j| if matches!(j, Joint::Ball(_)) { 3 } else { 1 })
-        .sum();
+    let freedoms = joints.iter().map(Joint::columns).sum();
     transforms.push(pending.then(&ground.inverse()).then(base).then(&lead));
     let fits = freedoms <= COLUMNS && balls <= BALLS && !joints.is_empty();
     Reduced {
@@ -236,14 +230,9 @@ fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
             [first, second]
                 .iter()
                 .enumerate()
-                .map(|(b, k)| match k {
-                    Kind::Turn => Joint::Turn,
-                    Kind::Slide => Joint::Slide,
-                    Kind::Screw(a) => Joint::Screw(*a),
-                    Kind::Ball => Joint::Ball(b),
-                })
+                .map(|(b, kind)| kind.joint(b))
                 .collect(),
-            vec![*link, still()],
+            vec![*link, Pose::STILL],
         );
         let mut at = super::chain::Configuration::ZERO;
         for value in &mut at.values {
@@ -252,9 +241,7 @@ fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
         for ball in &mut at.balls {
             *ball = super::modes::ball_rotation(&std::array::from_fn(|_| 3.0 * random.uniform()));
         }
-        let placed = chain.place(&at);
-        let columns: Vec<Vec<f64>> = (0..chain.columns).map(|c| placed.screws[c].to_vec()).collect();
-        let (values, _) = singular_values(&columns);
+        let (values, _) = singular_values(&chain.screws(&at));
         values[values.len() - 1] < 1e-9 * values[0]
     })
 }

@@ -2,10 +2,11 @@
 
 use super::Loop;
 use super::chain::{Configuration, short_way, transposed};
-use super::circuits::{Row, RowStatus};
-use super::rates::{ORDERS, point_rates, product_series, turned_series, turns};
+use super::circuits::Row;
+use super::rates::{ORDERS, point_rates, product_series, turned_series};
 use super::reduce::{Kind, Source, Z_TO_X};
-use crate::rigid::{Vec3, scale};
+use crate::outcome::RowStatus;
+use crate::rigid::{Vec3, scale, turns_zyx};
 use crate::taylor::Taylor;
 
 /// The rows of one circuit, kept as the chain has them, so that any point of any link can be asked for later.
@@ -81,7 +82,7 @@ impl Loop {
     }
 
     fn wrapped(&self, column: usize, angle: f64) -> f64 {
-        let joint = self.first.iter().rposition(|&f| f <= column).unwrap_or(0);
+        let joint = self.joint_of(column);
         if matches!(self.reduced.parts[joint].kind, Kind::Screw(_)) {
             angle
         } else {
@@ -105,7 +106,7 @@ impl Loop {
                 (Source::Held, _) => {}
                 (Source::Joint(joint), Kind::Ball) => {
                     let series = chain.joint_series(joint, at, rates);
-                    write_turns(&mut out[first..first + 3], turns(&series));
+                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
                 }
                 (Source::Joint(joint), kind) => {
                     let c = chain.first[joint];
@@ -122,7 +123,7 @@ impl Loop {
                     let b = chain.joint_series(joint + 1, at, rates);
                     let b = turned_series(&Z_TO_X, &b, &transposed(&Z_TO_X));
                     let series = turned_series(&frame, &product_series(&a, &b), &transposed(&frame));
-                    write_turns(&mut out[first..first + 3], turns(&series));
+                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
                 }
             }
         }
@@ -158,7 +159,7 @@ impl Loop {
     }
 
     fn is_ball_turn(&self, column: usize) -> bool {
-        let joint = self.first.iter().rposition(|&f| f <= column).unwrap_or(0);
+        let joint = self.joint_of(column);
         self.reduced.parts[joint].kind == Kind::Ball
     }
 
@@ -205,33 +206,6 @@ impl Loop {
         let place = frame.carry(pose.carry(at));
         let placed = chain.place(&row.at);
         Some((place, chain.link_twist(&placed, &rows.rates(row), joint)))
-    }
-
-    /// Frames of all links, `rows x joints x 3 x 4`, in the report frame, lengths in its unit; NaN where there is no pose.
-    pub fn link_frames(&self, rows: &Rows) -> Vec<f64> {
-        let joints = self.reduced.parts.len();
-        let mut out = vec![f64::NAN; rows.len() * joints * 12];
-        let Some(chain) = &self.reduced.chain else {
-            return out;
-        };
-        for (n, row) in rows.rows.iter().enumerate() {
-            if row.status == RowStatus::NoSolution {
-                continue;
-            }
-            let frames = chain.frames(&row.at);
-            for (i, part) in self.reduced.parts.iter().enumerate() {
-                let frame = match part.link {
-                    (None, pose) => pose,
-                    (Some(joint), pose) => self.reduced.base.then(&frames[joint]).then(&pose),
-                };
-                for r in 0..3 {
-                    let place = ((n * joints + i) * 3 + r) * 4;
-                    out[place..place + 3].copy_from_slice(&frame.rotation[r]);
-                    out[place + 3] = frame.translation[r] * self.size;
-                }
-            }
-        }
-        out
     }
 }
 

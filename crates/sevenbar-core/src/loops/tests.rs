@@ -1,6 +1,6 @@
 //! The numerical work on loops with known answers.
 
-use super::chain::{Chain, Joint, UNTURNED};
+use super::chain::{Chain, Joint};
 use super::curve::End;
 use super::modes::{ModeFinder, random_pose};
 use super::starts::Random;
@@ -56,8 +56,7 @@ fn general_loops_have_sixteen_solutions_and_an_even_number_of_real_ones() {
     let mut random = Random(77);
     for _ in 0..40 {
         let mut links: Vec<Pose> = (0..6).map(|_| random_pose(&mut random)).collect();
-        let still = Pose { rotation: UNTURNED, translation: [0.0; 3] };
-        let all = links.iter().fold(still, |a, b| a.then(b));
+        let all = links.iter().fold(Pose::STILL, |a, b| a.then(b));
         links.push(all.inverse());
         let chain = Chain::new(vec![Joint::Turn; 7], links);
         let finder = ModeFinder::new(&chain, 0);
@@ -84,7 +83,7 @@ fn rows_side_by_side_are_the_rows_solved_singly() {
     for mode in ModeFinder::new(&chain, 0).at(0.3) {
         let curve = chain.follow(&mode);
         let passes = super::circuits::Passes::new(&chain, &curve, 0).unwrap();
-        let rows = passes.rows(0.0, 0.01, &[1.0, 0.0, 0.0]);
+        let rows = passes.rows(0.0, 0.01);
         let rough: Vec<_> = rows.iter().map(|r| r.at.values).collect();
         let together = super::many::solved(&chain, 0, &rough);
         let settled = together.iter().flatten().count();

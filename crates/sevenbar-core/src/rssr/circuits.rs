@@ -5,27 +5,12 @@ use super::frames::JOINT_COLUMNS;
 use super::motion::{Circuit, branch_at};
 use super::pair::Pair;
 use super::{Input, Motion, MotionType, Rssr};
+use crate::outcome::RowStatus;
 use crate::taylor::Taylor;
 use std::f64::consts::TAU;
 
 /// A grid input nearer to a limit than this part of a step is the limit's own row.
 const SAME_ROW: f64 = 1e-6;
-
-/// What a row holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum RowStatus {
-    /// Everything.
-    Ok = 0,
-    /// The pose; no rates, the input stands at a dead centre.
-    DeadCentre = 1,
-    /// The pose; no rates, two branches cross here.
-    ChangePoint = 2,
-    /// Nothing: the input is beyond a limit.
-    NoSolution = 3,
-    /// All but the turns of a ball, which this pose does not determine.
-    TurnsUndefined = 4,
-}
 
 /// One sample of a circuit.
 #[derive(Clone, Copy, Debug)]

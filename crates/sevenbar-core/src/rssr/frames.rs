@@ -7,7 +7,7 @@ use super::{Input, Rssr};
 use crate::error::Error;
 use crate::rigid::{
     Pose, Vec3, Vec3Taylor, cross, cross_taylor, dot, dot_taylor, most_perpendicular_axis, norm, scale,
-    scale_taylor, still, sub, unit,
+    scale_taylor, still, sub, turns_zyx, unit,
 };
 use crate::taylor::Taylor;
 
@@ -71,18 +71,7 @@ impl<const N: usize> Frame<N> {
 
     /// The turns about z, y and x, one after the other, that lead from this frame to another.
     fn turns_to(&self, other: &Self) -> Option<[Taylor<N>; 3]> {
-        let entry = |i: usize, j: usize| dot_taylor(self.columns[i], other.columns[j]);
-        let (x, y, lift) = (entry(0, 0), entry(1, 0), -entry(2, 0));
-        let level = x * x + y * y;
-        // with the middle turn at +-90 degrees the two others act about one line
-        if level.value() < SPIN_UNDEFINED_SINE * SPIN_UNDEFINED_SINE {
-            return None;
-        }
-        Some([
-            Taylor::atan2(y, x),
-            Taylor::atan2(lift, level.sqrt()),
-            Taylor::atan2(entry(2, 1), entry(2, 2)),
-        ])
+        turns_zyx(|i, j| dot_taylor(self.columns[i], other.columns[j]))
     }
 }
 

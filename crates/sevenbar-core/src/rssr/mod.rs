@@ -15,10 +15,10 @@ mod pair;
 mod rates;
 
 pub use batch::{BatchRates, MAX_ORDER};
-pub use circuits::{Row, RowStatus};
+pub use circuits::Row;
 pub use domain::Extent;
 pub use extremes::Extreme;
-pub use motion::{Circuit, DeadCentre, DeadCentreKind, Motion, MotionType};
+pub use motion::{Circuit, Motion, MotionType};
 pub use pair::{Pair, Reach};
 
 use crate::error::Error;

@@ -4,6 +4,7 @@ use super::domain::{Domain, Extent, turn_between};
 use super::extremes::{Extreme, rate_extremes, transmission_extremes};
 use super::pair::Pair;
 use super::{Input, Rssr};
+use crate::outcome::{DeadCentre, DeadCentreKind};
 use std::f64::consts::TAU;
 
 /// What input and output can do.
@@ -35,30 +36,6 @@ impl MotionType {
             Self::CannotAssemble => "cannot-assemble",
         }
     }
-}
-
-/// Which joint stands still at a dead centre.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DeadCentreKind {
-    /// The input can go no further; rates per input grow without bound.
-    Input,
-    /// The output turns back.
-    Output,
-}
-
-/// A dead centre of a circuit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DeadCentre {
-    /// Whose it is.
-    pub kind: DeadCentreKind,
-    /// The input angle.
-    pub input: f64,
-    /// The output angle.
-    pub output: f64,
-    /// The pass between input dead centres on which it lies; for one of the input the pass that starts there.
-    pub branch: usize,
-    /// How much a relative change of the squared dimensions is magnified in its place.
-    pub condition: f64,
 }
 
 /// One connected motion.
