@@ -4,6 +4,7 @@
 //! the error stays below 1e-15.
 
 use crate::simd::multiply_add;
+use crate::vectors::Number;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// Angles up to this size [rad] are reduced by three-part subtraction of quarter turns.
@@ -13,7 +14,7 @@ pub(crate) const LARGEST_ANGLE: f64 = 1.0e6;
 const QUARTER: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
 
 /// Adding this rounds to an integer, which then stands in the lowest bits.
-const ROUNDER: f64 = 6_755_399_441_055_744.0;
+pub(crate) const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 const SINE: [f64; 6] = [
     -0.16666666666666632,
@@ -82,6 +83,41 @@ pub(crate) fn sin_cos<const FUSED: bool>(angle: f64) -> (f64, f64) {
     )
 }
 
+/// The same for numbers side by side, whose bits are out of reach: quarter turns are told apart by arithmetic.
+#[inline(always)]
+pub(crate) fn sin_cos_side_by_side<N: Number>(angle: N) -> (N, N) {
+    let (rounder, half, one) = (N::splat(ROUNDER), N::splat(0.5), N::splat(1.0));
+    let count = rounder.plus_product(angle, N::splat(std::f64::consts::FRAC_2_PI)) - rounder;
+    let mut r = angle;
+    for part in QUARTER {
+        r = r.minus_product(count, N::splat(part));
+    }
+    let w = r * r;
+    let (mut s, mut c) = (N::splat(SINE[5]), N::splat(COSINE[5]));
+    for k in (0..5).rev() {
+        s = N::splat(SINE[k]).plus_product(s, w);
+        c = N::splat(COSINE[k]).plus_product(c, w);
+    }
+    let s = r.plus_product(r * w, s);
+    let c = one + (w * w * c).minus_product(half, w);
+    // whole multiples of two and of four quarter turns taken off
+    let two = count.minus_product(N::splat(2.0), rounder.plus_product(count, half) - rounder);
+    let four = count.minus_product(
+        N::splat(4.0),
+        rounder.plus_product(count, N::splat(0.25)) - rounder,
+    );
+    let odd = two * two;
+    let (sine, cosine) = (odd.if_greater(half, c, s), odd.if_greater(half, s, c));
+    (sine * sign_of_quarter(-four), cosine * sign_of_quarter(four))
+}
+
+/// The sign of the cosine after so many quarter turns, -2 to 2, its turn into a sine seen to.
+#[inline(always)]
+fn sign_of_quarter<N: Number>(count: N) -> N {
+    let (one, half) = (N::splat(1.0), N::splat(0.5));
+    count.if_greater(half, -one, (-count).if_greater(N::splat(1.5), -one, one))
+}
+
 /// The angle of the vector `(x, y)` in [-pi, pi]; 0 for the zero vector.
 #[inline(always)]
 pub(crate) fn atan2<const FUSED: bool>(y: f64, x: f64) -> f64 {
@@ -108,7 +144,7 @@ mod tests {
     fn sine_and_cosine_agree_with_the_standard_library() {
         for k in -200_000..200_000 {
             let x = f64::from(k) * 0.0137 + 1e-9 * f64::from(k) * f64::from(k);
-            for (s, c) in [sin_cos::<true>(x), sin_cos::<false>(x)] {
+            for (s, c) in [sin_cos::<true>(x), sin_cos::<false>(x), sin_cos_side_by_side(x)] {
                 assert!((s - x.sin()).abs() < 4e-16 && (c - x.cos()).abs() < 4e-16, "{x}");
             }
         }

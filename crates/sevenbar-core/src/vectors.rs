@@ -5,13 +5,16 @@
 
 #![allow(unsafe_code)]
 
+use crate::vector_math::sin_cos_side_by_side;
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{
     __m256d, __m512d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_div_pd,
-    _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_storeu_pd,
-    _mm256_sub_pd, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_fmadd_pd, _mm512_fnmadd_pd,
-    _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_storeu_pd, _mm512_sub_pd,
+    _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_sqrt_pd,
+    _mm256_storeu_pd, _mm256_sub_pd, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_fmadd_pd,
+    _mm512_fnmadd_pd, _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_sqrt_pd,
+    _mm512_storeu_pd, _mm512_sub_pd,
 };
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// How many numbers stand side by side.
 pub(crate) const LANES: usize = 8;
@@ -19,28 +22,43 @@ pub(crate) const LANES: usize = 8;
 /// One number for each lane.
 pub(crate) type Reals = [f64; LANES];
 
-/// Eight numbers on which one instruction works (or a few, on lesser machines).
-pub(crate) trait Vector: Copy {
+/// A number, or several side by side: what the formulas of a loop are written in, once for both.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
     /// The same number in each lane.
     fn splat(x: f64) -> Self;
-    /// A number for each lane.
-    fn load(x: &Reals) -> Self;
-    /// The numbers of the lanes.
-    fn store(self) -> Reals;
-    /// `self + b`
-    fn add(self, b: Self) -> Self;
-    /// `self - b`
-    fn sub(self, b: Self) -> Self;
-    /// `self b`
-    fn mul(self, b: Self) -> Self;
-    /// `self / b`
-    fn div(self, b: Self) -> Self;
     /// `self + a b`
     fn plus_product(self, a: Self, b: Self) -> Self;
     /// `self - a b`
     fn minus_product(self, a: Self, b: Self) -> Self;
-    /// `yes` in the lanes where `self > b`, `no` in the others.
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// `yes` in the lanes where `self > b`, `no` in the others, and where either is not a number.
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self;
+    /// Sine and cosine of an angle [rad].
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        sin_cos_side_by_side(self)
+    }
+    /// The lesser of two.
+    #[inline(always)]
+    fn lesser(self, b: Self) -> Self {
+        self.if_greater(b, b, self)
+    }
+    /// The size of a number.
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.if_greater(Self::splat(0.0), self, -self)
+    }
+}
+
+/// Eight numbers on which one instruction works (or a few, on lesser machines).
+pub(crate) trait Vector: Number {
+    /// A number for each lane.
+    fn load(x: &Reals) -> Self;
+    /// The numbers of the lanes.
+    fn store(self) -> Reals;
 }
 
 /// Code to be compiled once for each vector unit. Implementations are `#[inline(always)]`.
@@ -49,46 +67,129 @@ pub(crate) trait LaneKernel {
     fn run<V: Vector>(self);
 }
 
-impl Vector for Reals {
+impl Number for f64 {
     #[inline(always)]
     fn splat(x: f64) -> Self {
-        [x; LANES]
-    }
-    #[inline(always)]
-    fn load(x: &Reals) -> Self {
-        *x
-    }
-    #[inline(always)]
-    fn store(self) -> Reals {
-        self
-    }
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        std::array::from_fn(|k| self[k] + b[k])
-    }
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        std::array::from_fn(|k| self[k] - b[k])
-    }
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        std::array::from_fn(|k| self[k] * b[k])
-    }
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        std::array::from_fn(|k| self[k] / b[k])
+        x
     }
     #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
-        std::array::from_fn(|k| self[k] + a[k] * b[k])
+        self + a * b
     }
     #[inline(always)]
     fn minus_product(self, a: Self, b: Self) -> Self {
-        std::array::from_fn(|k| self[k] - a[k] * b[k])
+        self - a * b
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
     }
     #[inline(always)]
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
-        std::array::from_fn(|k| if self[k] > b[k] { yes[k] } else { no[k] })
+        if self > b { yes } else { no }
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+}
+
+/// Operators of a type by four expressions of two names. Closures would not be compiled for the vector unit.
+macro_rules! operators {
+    ($kind:ident, $a:ident, $b:ident, $add:expr, $sub:expr, $mul:expr, $div:expr) => {
+        impl Add for $kind {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, b: Self) -> Self {
+                let $a = self;
+                let $b = b;
+                $add
+            }
+        }
+        impl Sub for $kind {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, b: Self) -> Self {
+                let $a = self;
+                let $b = b;
+                $sub
+            }
+        }
+        impl Mul for $kind {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, b: Self) -> Self {
+                let $a = self;
+                let $b = b;
+                $mul
+            }
+        }
+        impl Div for $kind {
+            type Output = Self;
+            #[inline(always)]
+            fn div(self, b: Self) -> Self {
+                let $a = self;
+                let $b = b;
+                $div
+            }
+        }
+        impl Neg for $kind {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self::splat(0.0) - self
+            }
+        }
+    };
+}
+
+/// Eight numbers as the compiler sees fit.
+#[derive(Clone, Copy)]
+struct Plain(Reals);
+
+operators!(
+    Plain,
+    a,
+    b,
+    Self(std::array::from_fn(|k| a.0[k] + b.0[k])),
+    Self(std::array::from_fn(|k| a.0[k] - b.0[k])),
+    Self(std::array::from_fn(|k| a.0[k] * b.0[k])),
+    Self(std::array::from_fn(|k| a.0[k] / b.0[k]))
+);
+
+impl Number for Plain {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        Self([x; LANES])
+    }
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self + a * b
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        self - a * b
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+    #[inline(always)]
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        Self(std::array::from_fn(|k| {
+            if self.0[k] > b.0[k] { yes.0[k] } else { no.0[k] }
+        }))
+    }
+}
+
+impl Vector for Plain {
+    #[inline(always)]
+    fn load(x: &Reals) -> Self {
+        Self(*x)
+    }
+    #[inline(always)]
+    fn store(self) -> Reals {
+        self.0
     }
 }
 
@@ -102,38 +203,23 @@ struct Wide(__m512d);
 #[derive(Clone, Copy)]
 struct Middle([__m256d; 2]);
 
-// SAFETY of all blocks in the two implementations: the types are private and only [`dispatch`] names them, after it saw the unit
+// SAFETY of all blocks below: the types are private and only [`dispatch`] names them, after it saw the unit
 #[cfg(target_arch = "x86_64")]
-impl Vector for Wide {
+operators!(
+    Wide,
+    a,
+    b,
+    Self(unsafe { _mm512_add_pd(a.0, b.0) }),
+    Self(unsafe { _mm512_sub_pd(a.0, b.0) }),
+    Self(unsafe { _mm512_mul_pd(a.0, b.0) }),
+    Self(unsafe { _mm512_div_pd(a.0, b.0) })
+);
+
+#[cfg(target_arch = "x86_64")]
+impl Number for Wide {
     #[inline(always)]
     fn splat(x: f64) -> Self {
         Self(unsafe { _mm512_set1_pd(x) })
-    }
-    #[inline(always)]
-    fn load(x: &Reals) -> Self {
-        Self(unsafe { _mm512_loadu_pd(x.as_ptr()) })
-    }
-    #[inline(always)]
-    fn store(self) -> Reals {
-        let mut x = [0.0; LANES];
-        unsafe { _mm512_storeu_pd(x.as_mut_ptr(), self.0) };
-        x
-    }
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self(unsafe { _mm512_add_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self(unsafe { _mm512_sub_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self(unsafe { _mm512_mul_pd(self.0, b.0) })
-    }
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        Self(unsafe { _mm512_div_pd(self.0, b.0) })
     }
     #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
@@ -144,53 +230,45 @@ impl Vector for Wide {
         Self(unsafe { _mm512_fnmadd_pd(a.0, b.0, self.0) })
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(unsafe { _mm512_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
         Self(unsafe { _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, b.0), no.0, yes.0) })
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-impl Middle {
-    #[inline(always)]
-    fn both(self, b: Self, f: impl Fn(__m256d, __m256d) -> __m256d) -> Self {
-        Self([f(self.0[0], b.0[0]), f(self.0[1], b.0[1])])
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Vector for Middle {
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        Self([unsafe { _mm256_set1_pd(x) }; 2])
-    }
+impl Vector for Wide {
     #[inline(always)]
     fn load(x: &Reals) -> Self {
-        Self(unsafe { [_mm256_loadu_pd(x.as_ptr()), _mm256_loadu_pd(x.as_ptr().add(4))] })
+        Self(unsafe { _mm512_loadu_pd(x.as_ptr()) })
     }
     #[inline(always)]
     fn store(self) -> Reals {
         let mut x = [0.0; LANES];
-        unsafe {
-            _mm256_storeu_pd(x.as_mut_ptr(), self.0[0]);
-            _mm256_storeu_pd(x.as_mut_ptr().add(4), self.0[1]);
-        }
+        unsafe { _mm512_storeu_pd(x.as_mut_ptr(), self.0) };
         x
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+operators!(
+    Middle,
+    a,
+    b,
+    Self(unsafe { [_mm256_add_pd(a.0[0], b.0[0]), _mm256_add_pd(a.0[1], b.0[1])] }),
+    Self(unsafe { [_mm256_sub_pd(a.0[0], b.0[0]), _mm256_sub_pd(a.0[1], b.0[1])] }),
+    Self(unsafe { [_mm256_mul_pd(a.0[0], b.0[0]), _mm256_mul_pd(a.0[1], b.0[1])] }),
+    Self(unsafe { [_mm256_div_pd(a.0[0], b.0[0]), _mm256_div_pd(a.0[1], b.0[1])] })
+);
+
+#[cfg(target_arch = "x86_64")]
+impl Number for Middle {
     #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        self.both(b, |x, y| unsafe { _mm256_add_pd(x, y) })
-    }
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        self.both(b, |x, y| unsafe { _mm256_sub_pd(x, y) })
-    }
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        self.both(b, |x, y| unsafe { _mm256_mul_pd(x, y) })
-    }
-    #[inline(always)]
-    fn div(self, b: Self) -> Self {
-        self.both(b, |x, y| unsafe { _mm256_div_pd(x, y) })
+    fn splat(x: f64) -> Self {
+        Self([unsafe { _mm256_set1_pd(x) }; 2])
     }
     #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
@@ -211,11 +289,34 @@ impl Vector for Middle {
         })
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(unsafe { [_mm256_sqrt_pd(self.0[0]), _mm256_sqrt_pd(self.0[1])] })
+    }
+    #[inline(always)]
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
-        let half = |k: usize| unsafe {
-            _mm256_blendv_pd(no.0[k], yes.0[k], _mm256_cmp_pd::<_CMP_GT_OQ>(self.0[k], b.0[k]))
-        };
-        Self([half(0), half(1)])
+        Self(unsafe {
+            [
+                _mm256_blendv_pd(no.0[0], yes.0[0], _mm256_cmp_pd::<_CMP_GT_OQ>(self.0[0], b.0[0])),
+                _mm256_blendv_pd(no.0[1], yes.0[1], _mm256_cmp_pd::<_CMP_GT_OQ>(self.0[1], b.0[1])),
+            ]
+        })
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Vector for Middle {
+    #[inline(always)]
+    fn load(x: &Reals) -> Self {
+        Self(unsafe { [_mm256_loadu_pd(x.as_ptr()), _mm256_loadu_pd(x.as_ptr().add(4))] })
+    }
+    #[inline(always)]
+    fn store(self) -> Reals {
+        let mut x = [0.0; LANES];
+        unsafe {
+            _mm256_storeu_pd(x.as_mut_ptr(), self.0[0]);
+            _mm256_storeu_pd(x.as_mut_ptr().add(4), self.0[1]);
+        }
+        x
     }
 }
 
@@ -235,12 +336,12 @@ pub(crate) fn dispatch<K: LaneKernel>(kernel: K) {
         "avx512" => unsafe { wide(kernel) },
         // SAFETY: as above
         "avx2" => unsafe { middle(kernel) },
-        _ => kernel.run::<Reals>(),
+        _ => kernel.run::<Plain>(),
     }
 }
 
 /// Runs a kernel as the compiler vectorises it.
 #[cfg(not(target_arch = "x86_64"))]
 pub(crate) fn dispatch<K: LaneKernel>(kernel: K) {
-    kernel.run::<Reals>();
+    kernel.run::<Plain>();
 }

@@ -1,6 +1,8 @@
 //! The closed chain as it is followed: at most seven freedoms, a closure error, and the joints' screws.
 
-use crate::rigid::{Pose, Vec3, add, cross, dot, norm, scale};
+use crate::rigid::{Pose, Vec3, dot, norm, scale};
+use crate::vector_math::ROUNDER;
+use crate::vectors::Number;
 
 /// Most one-freedom columns of a chain with one freedom left: rank six and one.
 pub(super) const COLUMNS: usize = 7;
@@ -9,13 +11,13 @@ pub(super) const COLUMNS: usize = 7;
 pub(super) const BALLS: usize = 2;
 
 /// A rotation, row by row.
-pub(super) type Rotation = [[f64; 3]; 3];
+pub(super) type Rotation<N = f64> = [[N; 3]; 3];
 
 /// A value for each column.
-pub(super) type Columns = [f64; COLUMNS];
+pub(super) type Columns<N = f64> = [N; COLUMNS];
 
 /// An angular part and a linear part, or a twist and what it does to the origin.
-pub(super) type Twist = [f64; 6];
+pub(super) type Twist<N = f64> = [N; 6];
 
 /// A joint of the chain; a ball has three columns, the others one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +47,8 @@ pub(super) struct Chain {
     /// G after each joint; the last closes the loop.
     pub links: Vec<Pose>,
     pub columns: usize,
+    /// The sum of the links' lengths.
+    pub around: f64,
     /// Columns of turns that must stay within a quarter turn of an angle [rad]: the others are the same pose with a link that
     /// spins idly turned over.
     pub halves: Vec<(usize, f64)>,
@@ -52,18 +56,18 @@ pub(super) struct Chain {
 
 /// Where the joints stand: a value for each column but a ball's, a rotation for each ball.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Configuration {
-    pub values: Columns,
-    pub balls: [Rotation; BALLS],
+pub(super) struct Configuration<N = f64> {
+    pub values: Columns<N>,
+    pub balls: [Rotation<N>; BALLS],
 }
 
 /// The chain evaluated: each column's screw in the frame of the first joint, and how far it is from closing.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Placed {
-    pub screws: [Twist; COLUMNS],
-    pub error: Twist,
+pub(super) struct Placed<N = f64> {
+    pub screws: [Twist<N>; COLUMNS],
+    pub error: Twist<N>,
     /// Cosine of the angle by which the loop fails to close.
-    pub closing_cosine: f64,
+    pub closing_cosine: N,
 }
 
 const UNTURNED: Rotation = Pose::STILL.rotation;
@@ -72,27 +76,54 @@ impl Configuration {
     pub const ZERO: Self = Self { values: [0.0; COLUMNS], balls: [UNTURNED; BALLS] };
 }
 
+/// `a x b`
+#[inline(always)]
+pub(super) fn cross<N: Number>(a: &[N], b: &[N]) -> [N; 3] {
+    [
+        (a[1] * b[2]).minus_product(a[2], b[1]),
+        (a[2] * b[0]).minus_product(a[0], b[2]),
+        (a[0] * b[1]).minus_product(a[1], b[0]),
+    ]
+}
+
 /// The screw with this axis through a point, and the advance for each radian.
 #[inline(always)]
-fn screw(axis: Vec3, point: Vec3, advance: f64) -> Twist {
-    let moment = add(cross(point, axis), scale(axis, advance));
-    [axis[0], axis[1], axis[2], moment[0], moment[1], moment[2]]
+fn screw<N: Number>(axis: &[N; 3], point: &[N; 3], advance: f64) -> Twist<N> {
+    let moment = cross(point, axis);
+    let mut out = [axis[0], axis[1], axis[2], moment[0], moment[1], moment[2]];
+    if advance != 0.0 {
+        for k in 0..3 {
+            out[k + 3] = out[k + 3].plus_product(axis[k], N::splat(advance));
+        }
+    }
+    out
 }
 
 /// `[a, b]`: how the screw `b` changes while its body moves with the twist `a`.
 #[inline(always)]
-pub(super) fn bracket(a: &Twist, b: &Twist) -> Twist {
-    let angular = cross([a[0], a[1], a[2]], [b[0], b[1], b[2]]);
-    let first = cross([a[0], a[1], a[2]], [b[3], b[4], b[5]]);
-    let second = cross([a[3], a[4], a[5]], [b[0], b[1], b[2]]);
+pub(super) fn bracket<N: Number>(a: &Twist<N>, b: &Twist<N>) -> Twist<N> {
+    let turn = cross(&a[..3], &b[..3]);
+    let (first, second) = (cross(&a[..3], &b[3..]), cross(&a[3..], &b[..3]));
     [
-        angular[0],
-        angular[1],
-        angular[2],
+        turn[0],
+        turn[1],
+        turn[2],
         first[0] + second[0],
         first[1] + second[1],
         first[2] + second[2],
     ]
+}
+
+/// The twist of rates by the screws.
+#[inline(always)]
+pub(super) fn twist_of<N: Number>(screws: &[Twist<N>; COLUMNS], rates: &Columns<N>) -> Twist<N> {
+    let mut sum = [N::splat(0.0); 6];
+    for c in 0..COLUMNS {
+        for k in 0..6 {
+            sum[k] = sum[k].plus_product(screws[c][k], rates[c]);
+        }
+    }
+    sum
 }
 
 impl Chain {
@@ -103,7 +134,13 @@ impl Chain {
             first.push(columns);
             columns += joint.columns();
         }
-        Self { joints, first, links, columns, halves: Vec::new() }
+        let around = links.iter().map(|l| norm(l.translation)).sum();
+        Self { joints, first, links, columns, around, halves: Vec::new() }
+    }
+
+    /// How many joints are balls.
+    pub fn ball_count(&self) -> usize {
+        self.joints.iter().filter(|j| matches!(j, Joint::Ball(_))).count()
     }
 
     /// The joint of each column.
@@ -142,74 +179,78 @@ impl Chain {
     }
 
     #[inline(always)]
-    pub fn place(&self, at: &Configuration) -> Placed {
-        let mut screws = [[0.0; 6]; COLUMNS];
-        let (mut x, mut y, mut z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        let mut p: Vec3 = [0.0; 3];
+    pub fn place<N: Number>(&self, at: &Configuration<N>) -> Placed<N> {
+        let (zero, one, half) = (N::splat(0.0), N::splat(1.0), N::splat(0.5));
+        let mut screws = [[zero; 6]; COLUMNS];
+        let mut axes = [[one, zero, zero], [zero, one, zero], [zero, zero, one]];
+        let mut p = [zero; 3];
         for ((joint, link), &column) in self.joints.iter().zip(&self.links).zip(&self.first) {
             let value = at.values[column];
-            let mut turn = None;
-            match *joint {
-                Joint::Turn => {
-                    screws[column] = screw(z, p, 0.0);
-                    turn = Some(value);
-                }
-                Joint::Slide => {
-                    screws[column] = [0.0, 0.0, 0.0, z[0], z[1], z[2]];
-                    p = add(p, scale(z, value));
-                }
-                Joint::Screw(advance) => {
-                    screws[column] = screw(z, p, advance);
-                    p = add(p, scale(z, advance * value));
-                    turn = Some(value);
-                }
+            let z = axes[2];
+            let advance = match *joint {
+                Joint::Turn => 0.0,
+                Joint::Slide => 1.0,
+                Joint::Screw(advance) => advance,
                 Joint::Ball(b) => {
-                    screws[column] = screw(x, p, 0.0);
-                    screws[column + 1] = screw(y, p, 0.0);
-                    screws[column + 2] = screw(z, p, 0.0);
-                    [x, y, z] = turned(&[x, y, z], &at.balls[b]);
+                    for k in 0..3 {
+                        screws[column + k] = screw(&axes[k], &p, 0.0);
+                    }
+                    axes = turned(&axes, &at.balls[b]);
+                    0.0
                 }
+            };
+            match *joint {
+                Joint::Turn | Joint::Screw(_) => {
+                    screws[column] = screw(&z, &p, advance);
+                    let (s, c) = value.sin_cos();
+                    for k in 0..3 {
+                        let (x, y) = (axes[0][k], axes[1][k]);
+                        axes[0][k] = (x * c).plus_product(y, s);
+                        axes[1][k] = (y * c).minus_product(x, s);
+                    }
+                }
+                Joint::Slide => screws[column] = [zero, zero, zero, z[0], z[1], z[2]],
+                Joint::Ball(_) => {}
             }
-            if let Some(angle) = turn {
-                let (s, c) = angle.sin_cos();
-                let (x0, y0) = (x, y);
+            if advance != 0.0 {
+                let slide = value * N::splat(advance);
                 for k in 0..3 {
-                    x[k] = x0[k] * c + y0[k] * s;
-                    y[k] = y0[k] * c - x0[k] * s;
+                    p[k] = p[k].plus_product(z[k], slide);
                 }
             }
-            let t = link.translation;
-            for k in 0..3 {
-                p[k] += x[k] * t[0] + y[k] * t[1] + z[k] * t[2];
+            for j in 0..3 {
+                let t = N::splat(link.translation[j]);
+                for k in 0..3 {
+                    p[k] = p[k].plus_product(axes[j][k], t);
+                }
             }
-            [x, y, z] = turned(&[x, y, z], &link.rotation);
+            axes = turned(&axes, &splatted(&link.rotation));
         }
+        let [x, y, z] = axes;
         Placed {
             screws,
             error: [
-                0.5 * (y[2] - z[1]),
-                0.5 * (z[0] - x[2]),
-                0.5 * (x[1] - y[0]),
+                half * (y[2] - z[1]),
+                half * (z[0] - x[2]),
+                half * (x[1] - y[0]),
                 p[0],
                 p[1],
                 p[2],
             ],
-            closing_cosine: 0.5 * (x[0] + y[1] + z[2] - 1.0),
+            closing_cosine: half * (x[0] + y[1] + z[2] - one),
         }
     }
 
     /// The configuration after a move of every column; a ball turns about the axes of the frame before it.
     #[inline(always)]
-    pub fn moved(&self, at: &Configuration, by: &Columns) -> Configuration {
+    pub fn moved<N: Number>(&self, at: &Configuration<N>, by: &Columns<N>) -> Configuration<N> {
         let mut out = *at;
         for (joint, &column) in self.joints.iter().zip(&self.first) {
             if let Joint::Ball(b) = *joint {
-                out.balls[b] = product(
-                    &rotation([by[column], by[column + 1], by[column + 2]]),
-                    &at.balls[b],
-                );
+                let turn = rotation([by[column], by[column + 1], by[column + 2]]);
+                out.balls[b] = product(&turn, &at.balls[b]);
             } else {
-                out.values[column] += by[column];
+                out.values[column] = out.values[column] + by[column];
             }
         }
         out
@@ -236,14 +277,12 @@ impl Chain {
 
     /// How far the loop is from closing: the greater of the angle [rad] and the gap in parts of the size.
     #[inline(always)]
-    pub fn residual(&self, placed: &Placed) -> f64 {
+    pub fn residual<N: Number>(&self, placed: &Placed<N>) -> N {
         let e = &placed.error;
-        let length = |x: f64, y: f64, z: f64| (x * x + y * y + z * z).sqrt();
-        let (turn, gap) = (length(e[0], e[1], e[2]), length(e[3], e[4], e[5]));
-        if placed.closing_cosine < 0.0 {
-            return f64::max(1.0, gap);
-        }
-        turn.max(gap)
+        let (turn, gap) = (dot3(&e[..3], &e[..3]).sqrt(), dot3(&e[3..], &e[3..]).sqrt());
+        // turned right round the antisymmetric part is small again
+        let turn = N::splat(0.0).if_greater(placed.closing_cosine, turn + N::splat(1.0), turn);
+        turn.if_greater(gap, turn, gap)
     }
 
     /// The joints' screws at a configuration, one for each column.
@@ -269,7 +308,9 @@ impl Chain {
 #[inline(always)]
 pub(super) fn short_way(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
-    let short = angle - turn * (angle / turn).round_ties_even();
+    // rounds without a call
+    let turns = (angle / turn + ROUNDER) - ROUNDER;
+    let short = angle - turn * turns;
     if short <= -std::f64::consts::PI {
         short + turn
     } else {
@@ -279,18 +320,45 @@ pub(super) fn short_way(angle: f64) -> f64 {
 
 /// The images of the axes after a rotation that acts before them.
 #[inline(always)]
-fn turned(axes: &[Vec3; 3], by: &Rotation) -> [Vec3; 3] {
-    let mut out = [[0.0; 3]; 3];
-    for (j, image) in out.iter_mut().enumerate() {
+fn turned<N: Number>(axes: &[[N; 3]; 3], by: &Rotation<N>) -> [[N; 3]; 3] {
+    let mut out = [[N::splat(0.0); 3]; 3];
+    for j in 0..3 {
         for k in 0..3 {
-            image[k] = axes[0][k] * by[0][j] + axes[1][k] * by[1][j] + axes[2][k] * by[2][j];
+            out[j][k] = (axes[0][k] * by[0][j])
+                .plus_product(axes[1][k], by[1][j])
+                .plus_product(axes[2][k], by[2][j]);
         }
     }
     out
 }
 
-pub(super) fn product(a: &Rotation, b: &Rotation) -> Rotation {
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+#[inline(always)]
+fn splatted<N: Number>(r: &Rotation) -> Rotation<N> {
+    let mut out = [[N::splat(0.0); 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            out[i][j] = N::splat(r[i][j]);
+        }
+    }
+    out
+}
+
+#[inline(always)]
+fn dot3<N: Number>(a: &[N], b: &[N]) -> N {
+    (a[0] * b[0]).plus_product(a[1], b[1]).plus_product(a[2], b[2])
+}
+
+#[inline(always)]
+pub(super) fn product<N: Number>(a: &Rotation<N>, b: &Rotation<N>) -> Rotation<N> {
+    let mut out = [[N::splat(0.0); 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            out[i][j] = (a[i][0] * b[0][j])
+                .plus_product(a[i][1], b[1][j])
+                .plus_product(a[i][2], b[2][j]);
+        }
+    }
+    out
 }
 
 pub(super) fn transposed(a: &Rotation) -> Rotation {
@@ -298,26 +366,28 @@ pub(super) fn transposed(a: &Rotation) -> Rotation {
 }
 
 /// The turn about a vector by its length, by the unit quaternion.
-pub(super) fn rotation(v: Vec3) -> Rotation {
-    let angle = norm(v);
-    let (s, w) = (0.5 * angle).sin_cos();
-    let factor = if angle > 1e-8 { s / angle } else { 0.5 };
-    let [x, y, z] = scale(v, factor);
+#[inline(always)]
+pub(super) fn rotation<N: Number>(v: [N; 3]) -> Rotation<N> {
+    let (one, two, half) = (N::splat(1.0), N::splat(2.0), N::splat(0.5));
+    let angle = dot3(&v, &v).sqrt();
+    let (s, w) = (half * angle).sin_cos();
+    let factor = angle.if_greater(N::splat(1e-8), s / angle, half);
+    let [x, y, z] = [v[0] * factor, v[1] * factor, v[2] * factor];
     [
         [
-            1.0 - 2.0 * (y * y + z * z),
-            2.0 * (x * y - w * z),
-            2.0 * (x * z + w * y),
+            one - two * (y * y + z * z),
+            two * (x * y - w * z),
+            two * (x * z + w * y),
         ],
         [
-            2.0 * (x * y + w * z),
-            1.0 - 2.0 * (x * x + z * z),
-            2.0 * (y * z - w * x),
+            two * (x * y + w * z),
+            one - two * (x * x + z * z),
+            two * (y * z - w * x),
         ],
         [
-            2.0 * (x * z - w * y),
-            2.0 * (y * z + w * x),
-            1.0 - 2.0 * (x * x + y * y),
+            two * (x * z - w * y),
+            two * (y * z + w * x),
+            one - two * (x * x + y * y),
         ],
     ]
 }
@@ -350,10 +420,23 @@ pub(super) fn rotation_vector(r: &Rotation) -> Vec3 {
 }
 
 /// A rotation freed from the rounding of many products.
-pub(super) fn squared_up(r: &Rotation) -> Rotation {
-    let [x, y, _] = transposed(r);
-    let x = scale(x, 1.0 / norm(x));
-    let y = add(y, scale(x, -dot(x, y)));
-    let y = scale(y, 1.0 / norm(y));
-    transposed(&[x, y, cross(x, y)])
+#[inline(always)]
+pub(super) fn squared_up<N: Number>(r: &Rotation<N>) -> Rotation<N> {
+    let one = N::splat(1.0);
+    let mut x = [r[0][0], r[1][0], r[2][0]];
+    let mut y = [r[0][1], r[1][1], r[2][1]];
+    let length = one / dot3(&x, &x).sqrt();
+    for x in &mut x {
+        *x = *x * length;
+    }
+    let along = dot3(&x, &y);
+    for k in 0..3 {
+        y[k] = y[k].minus_product(x[k], along);
+    }
+    let length = one / dot3(&y, &y).sqrt();
+    for y in &mut y {
+        *y = *y * length;
+    }
+    let z = cross(&x, &y);
+    [[x[0], y[0], z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]]
 }

@@ -1,11 +1,12 @@
 //! A followed curve as rows over an input: passes between dead centres, rows on a grid of inputs, extremes.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, squared_up};
-use super::curve::{Curve, End, Node, bordered, combined, dot, measure, reversed};
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Placed, squared_up};
+use super::curve::{Curve, End, Node, bordered_inverse, combined, dot, length, measure};
+use super::dense::Inverse;
 use super::many;
 use super::rates::{ORDERS, Rates};
 use crate::outcome::RowStatus;
-use crate::simd::{Kernel, dispatch};
+use crate::vectors::Number;
 use std::f64::consts::TAU;
 
 /// A rate of a column below this part of the curve's is zero.
@@ -15,13 +16,13 @@ const AT_REST: f64 = 1e-13;
 const STILL: f64 = 1e-9;
 
 /// The input at unit speed.
-const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
+pub(super) const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
 
 /// A row nearer than this part of a grid step to a dead centre is that dead centre's.
 const SAME_ROW: f64 = 1e-9;
 
 /// A correction [rad, or parts of the size] after which the next is rounding.
-pub(super) const SETTLED: f64 = 1e-7;
+const SETTLED: f64 = 1e-7;
 
 /// Corrections of a row, and how far they may lead together [rad, or parts of the size].
 const MOST_CORRECTIONS: usize = 8;
@@ -44,6 +45,15 @@ pub(super) struct Row {
     pub condition: f64,
 }
 
+/// A place near a node of the curve: so far along its tangent.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rough {
+    node: usize,
+    along: f64,
+    /// Radius about the place within which the curve is alone.
+    pub tube: f64,
+}
+
 /// A place where a column changes direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Turning {
@@ -64,7 +74,7 @@ pub(super) struct Pass {
 
 /// A curve made ready for an input: cut open at a good place, walked so that the input rises first.
 pub(super) struct Passes<'a> {
-    chain: &'a Chain,
+    pub chain: &'a Chain,
     pub curve: Curve,
     pub input: usize,
     pub passes: Vec<Pass>,
@@ -78,14 +88,14 @@ impl Curve {
         let mut found = Vec::new();
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
-            let cubic = self.cubic(chain, segment);
-            let mut before = (0.0, a.tangent[column]);
+            let mut before = (0.0, a.rates[0][column]);
             for look in 1..=LOOKS {
                 let s = a.step * look as f64 / LOOKS as f64;
-                let rate = if look == LOOKS {
-                    b.tangent[column]
+                // by the nearer end
+                let rate = if 2 * look < LOOKS {
+                    a.rate(column, s)
                 } else {
-                    cubic.rate(column, s)
+                    b.rate(column, s - a.step)
                 };
                 if before.1 * rate < 0.0
                     && let Some(node) = turning_between(chain, a, column, before, (s, rate))
@@ -98,50 +108,6 @@ impl Curve {
             }
         }
         found
-    }
-
-    /// The cubic through both ends of a segment.
-    #[inline(always)]
-    fn cubic(&self, chain: &Chain, segment: usize) -> Cubic {
-        let (a, b) = (&self.nodes[segment], &self.nodes[segment + 1]);
-        // lengths are measured along the tangent of the segment's start
-        let pace = 1.0 / dot(&a.tangent, &b.tangent);
-        Cubic {
-            length: a.step,
-            whole: chain.difference(&a.at, &b.at),
-            start: a.tangent,
-            end: b.tangent.map(|t| t * pace),
-        }
-    }
-}
-
-/// A segment of a curve between two nodes, as a move from the first: values and rates at both ends.
-struct Cubic {
-    length: f64,
-    whole: Columns,
-    start: Columns,
-    end: Columns,
-}
-
-impl Cubic {
-    #[inline(always)]
-    fn column(&self, k: usize, s: f64) -> f64 {
-        let (h, x) = (self.length, s / self.length);
-        self.whole[k] * x * x * (3.0 - 2.0 * x)
-            + h * x * (1.0 - x) * (self.start[k] * (1.0 - x) - self.end[k] * x)
-    }
-
-    #[inline(always)]
-    fn rate(&self, k: usize, s: f64) -> f64 {
-        let x = s / self.length;
-        self.whole[k] / self.length * 6.0 * x * (1.0 - x)
-            + self.start[k] * (1.0 - x) * (1.0 - 3.0 * x)
-            + self.end[k] * x * (3.0 * x - 2.0)
-    }
-
-    #[inline(always)]
-    fn all(&self, s: f64) -> Columns {
-        std::array::from_fn(|k| self.column(k, s))
     }
 }
 
@@ -162,9 +128,12 @@ fn turning_between(
         } else {
             (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
         };
-        let node = chain.refined(&chain.ahead(a, s)?)?;
-        let rate = node.tangent[column];
-        if best.as_ref().is_none_or(|b| rate.abs() < b.tangent[column].abs()) {
+        let node = chain.ahead(a, s)?;
+        let rate = node.rates[0][column];
+        if best
+            .as_ref()
+            .is_none_or(|b| rate.abs() < b.rates[0][column].abs())
+        {
             best = Some(node);
         }
         if rate.abs() < AT_REST || (high.0 - low.0).abs() < 1e-15 {
@@ -179,59 +148,84 @@ fn turning_between(
     best
 }
 
-impl Chain {
-    /// The node once more at its own place, so that its tangent has no error of the last correction.
-    pub fn refined(&self, node: &Node) -> Option<Node> {
-        let mut again = self.node(&node.at, &node.tangent)?;
-        again.step = node.step;
-        Some(again)
-    }
+/// A row's numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Solved<N> {
+    pub at: Configuration<N>,
+    pub rates: Rates<N>,
+    pub residual: N,
+    pub condition: N,
+}
 
+impl Chain {
     /// The configuration with the input at a value, by Newton from a near one, with its rates.
-    #[inline(always)]
-    pub fn solved(
+    fn solved(
         &self,
         input: usize,
-        value: f64,
         rough: &Configuration,
+        value: f64,
         rates: &[f64; ORDERS],
-    ) -> Option<Row> {
+    ) -> Option<Solved<f64>> {
         let mut at = *rough;
         at.values[input] = value;
-        let mut row = [0.0; COLUMNS];
-        row[input] = 1.0;
+        let row = input_row(input);
         let mut moved = 0.0;
         for step in 0..MOST_CORRECTIONS {
             let placed = self.place(&at);
-            let (factored, right) = bordered(&placed.screws, &placed.error, self.columns, &row);
-            let correction = factored.solve(right);
-            let size = dot(&correction, &correction).sqrt();
+            let inverse = bordered_inverse(&placed.screws, self.columns, &row);
+            let mut by = inverse.times(&placed.error).map(|x| -x);
+            by[input] = 0.0;
+            let size = length(&by);
             moved += size;
             if !size.is_finite() || moved > FARTHEST_CORRECTION {
                 return None;
             }
-            at = self.moved(&at, &correction);
-            at.values[input] = value;
+            at = self.moved(&at, &by);
             // the correction of the next step would be the square of this one
             if size < SETTLED || step == MOST_CORRECTIONS - 1 {
-                for ball in &mut at.balls {
-                    *ball = squared_up(ball);
-                }
                 let placed = self.place(&at);
-                let (factored, _) = bordered(&placed.screws, &placed.error, self.columns, &row);
-                let residual = self.residual(&placed);
-                return (residual < ROW_CLOSED).then(|| Row {
-                    at,
-                    rates: self.rates(&placed, &factored, (input, rates)),
-                    status: RowStatus::Ok,
-                    pass: 0,
-                    residual,
-                    condition: factored.condition(),
-                });
+                let inverse = bordered_inverse(&placed.screws, self.columns, &row);
+                return Some(self.finished(at, &placed, &inverse, (input, rates)));
             }
         }
         None
     }
+
+    /// The row at a solved configuration, by the inverse there or very near.
+    #[inline(always)]
+    pub fn finished<N: Number>(
+        &self,
+        at: Configuration<N>,
+        placed: &Placed<N>,
+        inverse: &Inverse<N>,
+        (input, given): (usize, &[f64; ORDERS]),
+    ) -> Solved<N> {
+        let one = N::splat(1.0);
+        // the rate's series has half its second derivative
+        let series = [N::splat(given[0]), N::splat(given[1]), N::splat(given[2] / 2.0)];
+        let (rates, _) = self.rates(placed, inverse, &series, Some(input));
+        let mut square = one;
+        for x in placed.screws.as_flattened() {
+            square = square.plus_product(*x, *x);
+        }
+        let mut at = at;
+        for ball in &mut at.balls[..self.ball_count()] {
+            *ball = squared_up(ball);
+        }
+        Solved {
+            at,
+            rates,
+            residual: self.residual(placed),
+            condition: (square * inverse.square(7)).sqrt(),
+        }
+    }
+}
+
+/// The row of the Jacobian that names the input.
+pub(super) fn input_row<N: Number>(input: usize) -> Columns<N> {
+    let mut row = [N::splat(0.0); COLUMNS];
+    row[input] = N::splat(1.0);
+    row
 }
 
 impl<'a> Passes<'a> {
@@ -240,28 +234,26 @@ impl<'a> Passes<'a> {
         let fastest = curve
             .nodes
             .iter()
-            .fold(0.0, |m: f64, n| m.max(n.tangent[input].abs()));
-        if curve.nodes.len() < 2 || fastest < STILL {
+            .fold(0.0, |m: f64, n| m.max(n.rates[0][input].abs()));
+        if fastest < STILL {
             return None;
         }
-        let mut curve = curve.clone();
-        let turnings = curve.turnings(chain, input);
-        if turnings.is_empty() {
-            if curve.nodes[0].tangent[input] < 0.0 {
-                curve = reversed(chain, &curve);
-            }
-            let last = curve.nodes.len() - 1;
-            let (start, end) = (
-                curve.nodes[0].at.values[input],
-                curve.nodes[last].at.values[input],
-            );
-            let pass = Pass { from: 0, to: last, start, end };
-            return Some(Self { chain, curve, input, passes: vec![pass], limits: Vec::new() });
+        let passes = Self::of(chain, curve.clone(), input)?;
+        if passes.passes[0].end > passes.passes[0].start {
+            return Some(passes);
         }
+        Self::of(chain, chain.turned_round(curve), input)
+    }
+
+    fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {
+        if curve.nodes.len() < 2 {
+            return None;
+        }
+        let turnings = curve.turnings(chain, input);
         // each turning becomes a node; a closed curve then begins at the lowest
         insert(chain, &mut curve, &turnings);
-        let is_turning = |n: &Node| n.tangent[input].abs() < STILL;
-        if curve.end == End::Closed {
+        let is_turning = |n: &Node| n.rates[0][input].abs() < STILL;
+        if curve.end == End::Closed && !turnings.is_empty() {
             let lowest = (0..curve.nodes.len() - 1)
                 .filter(|&k| is_turning(&curve.nodes[k]))
                 .min_by(|&a, &b| {
@@ -270,22 +262,10 @@ impl<'a> Passes<'a> {
                 })?;
             curve = begun_at(chain, &curve, lowest);
         }
-        let rises = |c: &Curve| {
-            let first = c.nodes[0].at.values[input];
-            c.nodes
-                .iter()
-                .map(|n| n.at.values[input] - first)
-                .find(|d| d.abs() > 1e-12)
-                .is_none_or(|d| d > 0.0)
-        };
-        if !rises(&curve) {
-            curve = reversed(chain, &curve);
-        }
-        let mut marks: Vec<usize> = (1..curve.nodes.len() - 1)
-            .filter(|&k| is_turning(&curve.nodes[k]))
-            .collect();
+        let last = curve.nodes.len() - 1;
+        let mut marks: Vec<usize> = (1..last).filter(|&k| is_turning(&curve.nodes[k])).collect();
         marks.insert(0, 0);
-        marks.push(curve.nodes.len() - 1);
+        marks.push(last);
         let value = |k: usize| curve.nodes[k].at.values[input];
         let passes = marks
             .windows(2)
@@ -296,19 +276,48 @@ impl<'a> Passes<'a> {
     }
 
     /// The row of a pass at an input, which lies in it.
-    #[inline(always)]
     pub fn row(&self, pass: usize, value: f64, rates: &[f64; ORDERS]) -> Option<Row> {
-        let (segment, s, rough) = self.rough(pass, value);
-        let row = self
-            .chain
-            .solved(self.input, value, &rough, rates)
-            .or_else(|| self.beside(segment, s, value, rates))?;
-        Some(Row { pass, ..row })
+        let rough = self.rough(pass, value);
+        let node = &self.curve.nodes[rough.node];
+        self.chain
+            .solved(self.input, &self.start(&rough), value, rates)
+            .and_then(|solved| self.accepted(pass, &rough, &solved))
+            .or_else(|| {
+                // where the input nearly stands still: along the curve first, then the input
+                let mut s = rough.along;
+                let mut here = self.chain.ahead(node, s)?;
+                for _ in 0..20 {
+                    let off = value - here.at.values[self.input];
+                    let next = s + off / (here.rates[0][self.input] / dot(&here.rates[0], &node.rates[0]));
+                    if !next.is_finite() || (next - s).abs() < 1e-14 {
+                        break;
+                    }
+                    s = next;
+                    here = self.chain.ahead(node, s)?;
+                }
+                let solved = self.chain.solved(self.input, &here.at, value, rates)?;
+                self.accepted(pass, &rough, &solved)
+            })
     }
 
-    /// Where the cubics through the nodes of a pass have an input: segment, length into it, and configuration.
-    #[inline(always)]
-    fn rough(&self, pass: usize, value: f64) -> (usize, f64, Configuration) {
+    /// A solved row, if it is certainly a place of this curve: it lies within the tube of the node it was made from.
+    fn accepted(&self, pass: usize, rough: &Rough, solved: &Solved<f64>) -> Option<Row> {
+        let node = &self.curve.nodes[rough.node];
+        let off = self.chain.difference(&node.at, &solved.at);
+        let along = dot(&off, &node.rates[0]);
+        let aside = length(&combined(&off, 1.0, &self.chain.predicted(node, along), -1.0));
+        (aside <= rough.tube && solved.residual < ROW_CLOSED).then_some(Row {
+            at: solved.at,
+            rates: solved.rates,
+            status: RowStatus::Ok,
+            pass,
+            residual: solved.residual,
+            condition: solved.condition,
+        })
+    }
+
+    /// Where a pass nearly has an input: the nearest node, and the length from it.
+    fn rough(&self, pass: usize, value: f64) -> Rough {
         let p = &self.passes[pass];
         let nodes = &self.curve.nodes[p.from..=p.to];
         let rising = p.end > p.start;
@@ -316,20 +325,34 @@ impl<'a> Passes<'a> {
             let v = n.at.values[self.input];
             if rising { v <= value } else { v >= value }
         });
-        let segment = p.from + past.saturating_sub(1).min(nodes.len() - 2);
-        let a = &self.curve.nodes[segment];
-        let cubic = self.curve.cubic(self.chain, segment);
-        let (mut low, mut high) = (0.0, a.step);
-        let target = value - a.at.values[self.input];
-        let mut s = (target / cubic.whole[self.input]).clamp(0.0, 1.0) * a.step;
+        self.rough_in(p.from + past.saturating_sub(1).min(nodes.len() - 2), value)
+    }
+
+    /// The same where the segment is known.
+    fn rough_in(&self, segment: usize, value: f64) -> Rough {
+        let input = self.input;
+        let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
+        let middle = a.at.values[input] + a.gone(input, 0.5 * a.step);
+        let (start, end) = (a.at.values[input], b.at.values[input]);
+        // by the nearer end, so that the series is short
+        let first = (value < middle) == (start < end);
+        let (node, low, high) = if first {
+            (segment, 0.0, 0.6 * a.step)
+        } else {
+            (segment + 1, -0.6 * a.step, 0.0)
+        };
+        let n = &self.curve.nodes[node];
+        let target = value - n.at.values[input];
+        let (mut low, mut high) = (low, high);
+        let mut s = (target / n.rates[0][input]).clamp(low, high);
         for _ in 0..40 {
-            let here = cubic.column(self.input, s);
-            if (here < target) == rising {
+            let here = n.gone(input, s);
+            if (here < target) == (start < end) {
                 low = s;
             } else {
                 high = s;
             }
-            let newton = s + (target - here) / cubic.rate(self.input, s);
+            let newton = s + (target - here) / n.rate(input, s);
             let next = if newton > low && newton < high {
                 newton
             } else {
@@ -341,24 +364,19 @@ impl<'a> Passes<'a> {
                 break;
             }
         }
-        (segment, s, self.chain.moved(&a.at, &cubic.all(s)))
+        let tube = if first || 0.6 * a.step <= b.step {
+            n.tube
+        } else {
+            self.chain.tube(n, 0.6 * a.step)
+        };
+        Rough { node, along: s, tube }
     }
 
-    /// The row where the input nearly stands still: along the curve first, then the input.
-    fn beside(&self, segment: usize, s: f64, value: f64, rates: &[f64; ORDERS]) -> Option<Row> {
-        let a = &self.curve.nodes[segment];
-        let mut s = s;
-        let mut node = self.chain.ahead(a, s)?;
-        for _ in 0..20 {
-            let off = value - node.at.values[self.input];
-            let next = s + off / (node.tangent[self.input] / dot(&node.tangent, &a.tangent));
-            if !(next >= -0.1 * a.step && next <= 1.1 * a.step) || (next - s).abs() < 1e-14 {
-                break;
-            }
-            s = next;
-            node = self.chain.ahead(a, s)?;
-        }
-        self.chain.solved(self.input, value, &node.at, rates)
+    /// The configuration that a rough place stands for.
+    pub fn start(&self, rough: &Rough) -> Configuration {
+        let node = &self.curve.nodes[rough.node];
+        self.chain
+            .moved(&node.at, &self.chain.predicted(node, rough.along))
     }
 
     /// The row at a dead centre.
@@ -382,16 +400,10 @@ impl<'a> Passes<'a> {
     /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres; the input has unit speed.
     pub fn rows(&self, origin: f64, step: f64) -> Vec<Row> {
         let mut rows = Vec::new();
-        dispatch(OnGrid { passes: self, grid: (origin, step), rows: &mut rows });
-        rows
-    }
-
-    #[inline(always)]
-    fn rows_on_grid(&self, (origin, step): (f64, f64), rows: &mut Vec<Row>) {
         let closed = self.curve.end == End::Closed;
         let slack = SAME_ROW * step;
         for (n, pass) in self.passes.iter().enumerate() {
-            let at_limit = |node: usize| self.curve.nodes[node].tangent[self.input].abs() < STILL;
+            let at_limit = |node: usize| self.curve.nodes[node].rates[0][self.input].abs() < STILL;
             let (starts_at_limit, ends_at_limit) = (at_limit(pass.from), at_limit(pass.to));
             if starts_at_limit {
                 rows.push(self.limit_row(n, &self.curve.nodes[pass.from]));
@@ -417,11 +429,12 @@ impl<'a> Passes<'a> {
                 };
                 origin + step * k as f64
             });
-            self.rows_at(n, values, rows);
+            self.rows_at(n, values, &mut rows);
             if ends_at_limit && !closed && n + 1 == self.passes.len() {
                 rows.push(self.limit_row(n, &self.curve.nodes[pass.to]));
             }
         }
+        rows
     }
 
     /// Rows at the inputs of a law, once for each pass.
@@ -453,44 +466,25 @@ impl<'a> Passes<'a> {
 }
 
 impl Passes<'_> {
-    /// Rows of a pass at inputs in it, side by side where the chain suits.
-    #[inline(always)]
+    /// Rows of a pass at inputs in it, in its order, side by side; singly where that does not settle.
     fn rows_at(&self, pass: usize, values: impl Iterator<Item = f64>, rows: &mut Vec<Row>) {
-        let single = |value: f64| self.row(pass, value, &UNIT).unwrap_or(missing(pass));
-        if !many::suits(self.chain) {
-            rows.extend(values.map(single));
-            return;
-        }
-        let rough: Vec<Columns> = values
+        let p = &self.passes[pass];
+        let value_at = |node: usize| self.curve.nodes[node].at.values[self.input];
+        let rising = p.end > p.start;
+        let mut segment = p.from;
+        let starts: Vec<(Rough, f64)> = values
             .map(|value| {
-                let mut columns = self.rough(pass, value).2.values;
-                columns[self.input] = value;
-                columns
+                while segment + 1 < p.to && (value_at(segment + 1) <= value) == rising {
+                    segment += 1;
+                }
+                (self.rough_in(segment, value), value)
             })
             .collect();
-        let together = many::solved(self.chain, self.input, &rough);
-        rows.extend(together.into_iter().zip(&rough).map(|(row, rough)| match row {
-            Some(row) => Row { pass, ..row },
-            None => single(rough[self.input]),
-        }));
+        many::add_rows(self, pass, &starts, rows);
     }
 }
 
-/// [`Passes::rows`], compiled for each vector unit.
-struct OnGrid<'a, 'b> {
-    passes: &'b Passes<'a>,
-    grid: (f64, f64),
-    rows: &'b mut Vec<Row>,
-}
-
-impl Kernel for OnGrid<'_, '_> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        self.passes.rows_on_grid(self.grid, self.rows);
-    }
-}
-
-fn missing(pass: usize) -> Row {
+pub(super) fn missing(pass: usize) -> Row {
     let mut at = Configuration::ZERO;
     at.values = [f64::NAN; COLUMNS];
     Row {

@@ -1,56 +1,71 @@
 //! One connected motion of a chain, followed by arc length in steps that cannot leave it.
 //!
-//! At a node `x0` with the bordered Jacobian `J = [A; c]` (`A` the screws, `c` the direction before) let
-//! `w >= |J^-1 D2F|` bound the curvature of the closure, as seen through `J`, in the neighbourhood. On each plane
-//! `c (x - x0) = s c t` with `0 <= s <= 1 / (2 w)` the simplified Newton map contracts a ball of radius `1 / (2 w)` about the
-//! point `x0 + s t` of the tangent into itself (Newton and Kantorovich), so exactly one solution lies in each of these balls, and
-//! it moves continuously with `s`: it is the curve through `x0`. A step is taken only to a solution inside its ball. The
-//! bound adds to the second derivative at the node, formed exactly, what the third can change it by within the ball.
-//! In a chain with redundant constraints `J^-1` is the pseudo-inverse: the argument holds for the constraints that count, and
-//! that the others close as well is looked at in every node.
+//! At a node `x0` let `A` be the screws, `t` the unit tangent, `A+` the pseudo-inverse, and `p(s)` the cubic whose rates
+//! `t + u1 s + u2 s^2` solve the closure of velocities to that order (see [`super::rates`]). On the plane `t (x - x0) = s` the
+//! simplified Newton map about `p(s)` changes by at most
+//!
+//! `k = s |A+ A1| + s^2 |A+ A2| + |A+| (s^3 K3 / 6 + L r)`
+//!
+//! times the distance within the ball of radius `r`, where `A + s A1 + s^2 A2` is the series of the screws along `p`, `K3` bounds
+//! its third derivative and `L` how the screws and the closure's coordinates change across. The closure error along `p` grows with
+//! the fourth power of `s` but for `K5 s^5 / 120`, so the correction `d` measured at the end of a step bounds that in between. Where
+//! `k <= 1/2` with `r` twice that bound, exactly one solution lies in each ball, for all `s` of the step, and moves continuously with
+//! it (Newton and Kantorovich): it is the curve through `x0`. Only such steps are taken. And where `k < 1` with a larger `r`, no
+//! other solution lies in the wider tube: what closes in there is a place of this curve.
+//!
+//! In a chain with redundant constraints the argument holds for the constraints that count, and that the others close as well
+//! is looked at in every node. A ball's three columns are the vector of its turn.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, Twist, squared_up};
-use super::dense::{Factored, ROWS, singular_values};
-use crate::rigid::cross;
-use crate::simd::{Kernel, dispatch};
+use super::chain::{
+    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Twist, cross, squared_up, twist_of,
+};
+use super::dense::{Factored, Inverse, ROWS};
+use super::rates::Rates;
+use crate::vectors::Number;
 
 /// Longest step [rad, or parts of the size].
 const LONGEST: f64 = 0.25;
 
-/// Shorter steps mean a place where the curve is not smooth: a change point.
-const SHORTEST: f64 = 1e-6;
+/// Change of the Newton map that steps aim at, that they must not exceed, and that bounds the tube in which a curve is alone.
+const AIMED: f64 = 0.33;
+const CONTRACTING: f64 = 0.5;
+const ALONE: f64 = 0.9;
 
-/// Most nodes of a curve; an ordinary circuit has some hundreds.
-const MOST_NODES: usize = 400_000;
+/// Corrections of a step with the inverse of the node before, each by so many terms of Neumann's series.
+const NEUMANN: usize = 3;
 
-/// Slides [parts of the size] and screws [rad] are not followed farther than this.
-const FARTHEST: f64 = 50.0;
+/// What a step's second correction may leave.
+const SETTLED: f64 = 1e-5;
 
-/// The closure error of a node above which redundant constraints have stopped to agree.
-const OPEN: f64 = 1e-9;
-
-/// The closure error of a step that did not arrive.
-const NOT_CLOSED: f64 = 1e-7;
-
-/// Back at the start when nearer than this in every column.
-const RETURNED: f64 = 1e-7;
-
-/// A place of the curve: the joints, the direction, and how it bends.
+/// A place of the curve: the joints, how they move on, and how far that can be trusted.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Node {
-    pub at: Configuration,
-    /// The unit tangent.
-    pub tangent: Columns,
-    /// Second derivative by arc length.
-    pub bend: Columns,
+pub(super) struct Node<N = f64> {
+    pub at: Configuration<N>,
+    /// Series of the joints' rates by the distance from the plane across the unit tangent, which is the first.
+    pub rates: Rates<N>,
     /// To the next node, measured along this node's tangent.
-    pub step: f64,
-    /// Certified length of a step.
-    pub reach: f64,
-    /// Norm of the inverse of the bordered Jacobian.
-    pub inverse_norm: f64,
-    /// Closure error [rad, or parts of the size], where the node was stepped to.
-    pub residual: f64,
+    pub step: N,
+    /// Radius about the predicted places of the step within which the curve is alone.
+    pub tube: N,
+    /// Norm of the pseudo-inverse of the screws.
+    pub inverse_norm: N,
+    /// Norms of the first and second coefficient of the screws' series, seen through the pseudo-inverse.
+    pub slopes: [N; 2],
+    /// How fast the Newton map changes across the curve.
+    pub across: N,
+    /// No two points of the chain are farther apart.
+    pub far: N,
+    /// Closure error of the constraints that do not count [rad, or parts of the size].
+    pub open: N,
+}
+
+/// A node with what steps from it need.
+#[derive(Clone, Copy)]
+pub(super) struct Stand<N> {
+    pub node: Node<N>,
+    pub screws: [Twist<N>; COLUMNS],
+    /// Of the screws with the tangent for the last row.
+    pub inverse: Inverse<N>,
 }
 
 /// Why a curve ends.
@@ -74,10 +89,10 @@ pub(super) struct Curve {
 }
 
 #[inline(always)]
-pub(super) fn dot(a: &Columns, b: &Columns) -> f64 {
-    let mut sum = 0.0;
+pub(super) fn dot<N: Number>(a: &Columns<N>, b: &Columns<N>) -> N {
+    let mut sum = N::splat(0.0);
     for k in 0..COLUMNS {
-        sum += a[k] * b[k];
+        sum = sum.plus_product(a[k], b[k]);
     }
     sum
 }
@@ -87,304 +102,278 @@ pub(super) fn combined(a: &Columns, x: f64, b: &Columns, y: f64) -> Columns {
     std::array::from_fn(|k| a[k] * x + b[k] * y)
 }
 
-fn length(a: &Columns) -> f64 {
+#[inline(always)]
+pub(super) fn length<N: Number>(a: &Columns<N>) -> N {
     dot(a, a).sqrt()
 }
 
-/// The closure with one more row, reduced; and minus the closure error.
+/// The pseudo-inverse of the screws with one more row.
 #[inline(always)]
-pub(super) fn bordered(
-    screws: &[Twist; COLUMNS],
-    error: &Twist,
+pub(super) fn bordered_inverse<N: Number>(
+    screws: &[Twist<N>; COLUMNS],
     count: usize,
-    row: &Columns,
-) -> (Factored, [f64; ROWS]) {
-    let mut columns = [[0.0; ROWS]; COLUMNS];
+    row: &Columns<N>,
+) -> Inverse<N> {
+    let mut columns = [[N::splat(0.0); ROWS]; COLUMNS];
     for c in 0..count {
         columns[c][..6].copy_from_slice(&screws[c]);
         columns[c][6] = row[c];
     }
-    let mut right = [0.0; ROWS];
-    for k in 0..6 {
-        right[k] = -error[k];
-    }
-    (Factored::new(columns, count), right)
+    Factored::new(columns, count).inverse()
 }
 
-/// How the closure bends: the second derivative by columns `i <= j`, where `same_ball` tells columns of one ball.
+/// The move `d` with `(A + change) d = -error`, by the inverse of `A` and a few terms of Neumann's series.
 #[inline(always)]
-fn second_derivative(a: &Twist, b: &Twist, same_ball: bool) -> Twist {
-    let part = |t: &Twist, i: usize| [t[i], t[i + 1], t[i + 2]];
-    let shift = cross(part(a, 0), part(b, 3));
-    if same_ball {
-        // the turn of a ball is one rotation, in which its columns are alike
-        let other = cross(part(b, 0), part(a, 3));
-        return [
-            0.0,
-            0.0,
-            0.0,
-            0.5 * (shift[0] + other[0]),
-            0.5 * (shift[1] + other[1]),
-            0.5 * (shift[2] + other[2]),
-        ];
+pub(super) fn correction<N: Number>(
+    inverse: &Inverse<N>,
+    (from, now): (&[Twist<N>; COLUMNS], &Placed<N>),
+    terms: usize,
+) -> (Columns<N>, Columns<N>) {
+    let mut change = now.screws;
+    for c in 0..COLUMNS {
+        for k in 0..6 {
+            change[c][k] = change[c][k] - from[c][k];
+        }
     }
-    let turn = cross(part(a, 0), part(b, 0));
-    [
-        0.5 * turn[0],
-        0.5 * turn[1],
-        0.5 * turn[2],
-        shift[0],
-        shift[1],
-        shift[2],
-    ]
+    let mut first = inverse.times(&now.error);
+    for x in &mut first {
+        *x = -*x;
+    }
+    let mut d = first;
+    for _ in 0..terms {
+        let seen = inverse.times(&twist_of(&change, &d));
+        for c in 0..COLUMNS {
+            d[c] = first[c] - seen[c];
+        }
+    }
+    (d, first)
+}
+
+impl Node {
+    /// The rate of a column by the distance along the tangent.
+    #[inline(always)]
+    pub fn rate(&self, column: usize, s: f64) -> f64 {
+        self.rates[0][column] + s * (self.rates[1][column] + s * self.rates[2][column])
+    }
+
+    /// How far a column has moved a distance along the tangent.
+    #[inline(always)]
+    pub fn gone(&self, column: usize, s: f64) -> f64 {
+        s * (self.rates[0][column] + s * (self.rates[1][column] / 2.0 + s * self.rates[2][column] / 3.0))
+    }
 }
 
 impl Chain {
-    /// For each column the ball it belongs to.
-    fn balls(&self) -> [Option<usize>; COLUMNS] {
-        let mut out = [None; COLUMNS];
-        for (joint, &column) in self.joints.iter().zip(&self.first) {
-            if let Joint::Ball(b) = *joint {
-                out[column..column + 3].fill(Some(b));
-            }
-        }
-        out
-    }
-
-    /// A bound of the third derivative of the closure: no point is farther than the sum of the links, one, and of the slides.
-    fn third_derivative(&self, at: &Configuration) -> f64 {
-        let joints = self.joints.len() as f64;
-        let mut farthest = 1.0;
-        for (joint, &c) in self.joints.iter().zip(&self.first) {
-            farthest += match *joint {
-                Joint::Slide => at.values[c].abs(),
-                Joint::Screw(advance) => (advance * at.values[c]).abs(),
-                _ => 0.0,
-            };
-        }
-        2.0 * farthest * joints * joints.sqrt()
-    }
-
-    /// The node at a closed configuration, with the direction that goes along `before`.
+    /// The move that the rates of a node lead to.
     #[inline(always)]
-    pub fn node(&self, rough: &Configuration, before: &Columns) -> Option<Node> {
-        let placed = self.place(rough);
-        let n = self.columns;
-        let (factored, right) = bordered(&placed.screws, &placed.error, n, before);
-        let correction = factored.solve(right);
-        let mut unit = [0.0; ROWS];
-        unit[6] = 1.0;
-        let along = factored.solve(unit);
-        let size = length(&along);
-        if !(size.is_finite() && size > 0.0 && correction.iter().all(|c| c.is_finite())) {
-            return None;
+    pub fn predicted<N: Number>(&self, node: &Node<N>, s: N) -> Columns<N> {
+        let (half, third) = (N::splat(0.5), N::splat(1.0 / 3.0));
+        let [u0, u1, u2] = &node.rates;
+        let mut by = [N::splat(0.0); COLUMNS];
+        for c in 0..self.columns {
+            let inner = (u1[c] * half).plus_product(u2[c] * third, s);
+            by[c] = s * u0[c].plus_product(inner, s);
         }
-        let tangent = along.map(|x| x / size);
-        let inverse = factored.inverse();
-        let mut inverse_square = 0.0;
-        for row in &inverse {
-            inverse_square += dot(row, row);
-        }
-        let balls = self.balls();
-        let mut bend = [0.0; COLUMNS];
-        let mut square = 0.0;
-        for i in 0..n {
-            for j in i..n {
-                let together = balls[i].is_some() && balls[i] == balls[j];
-                let second = second_derivative(&placed.screws[i], &placed.screws[j], together);
-                let mut seen = [0.0; COLUMNS];
-                for (row, x) in inverse.iter().zip(&second) {
-                    for k in 0..COLUMNS {
-                        seen[k] += row[k] * x;
-                    }
-                }
-                let twice = if i == j { 1.0 } else { 2.0 };
-                square += twice * dot(&seen, &seen);
-                let weight = twice * tangent[i] * tangent[j];
-                for k in 0..COLUMNS {
-                    bend[k] -= weight * seen[k];
+        for (joint, &c) in self.joints.iter().zip(&self.first) {
+            if let Joint::Ball(_) = *joint {
+                // Magnus: turns of a changing axis do not simply add
+                let lean = cross(&u1[c..c + 3], &u0[c..c + 3]);
+                let cube = s * s * s * N::splat(1.0 / 12.0);
+                for k in 0..3 {
+                    by[c + k] = by[c + k].plus_product(lean[k], cube);
                 }
             }
         }
-        let inverse_norm = inverse_square.sqrt();
-        let curvature = square.sqrt();
-        // w = curvature + third / w: within the ball of radius 1 / (2 w) about points up to 1 / (2 w) away
-        let third = inverse_norm * self.third_derivative(rough);
-        let bound = 0.5 * (curvature + (curvature * curvature + 4.0 * third).sqrt());
-        let mut at = self.moved(rough, &correction);
-        for ball in &mut at.balls {
+        by
+    }
+
+    /// Where the chain stands near a closed configuration, seen along a direction; the node itself is corrected to rounding.
+    #[inline(always)]
+    pub fn stand<N: Number>(&self, rough: &Configuration<N>, before: &Columns<N>) -> Stand<N> {
+        let (zero, one) = (N::splat(0.0), N::splat(1.0));
+        let placed = self.place(rough);
+        let mut inverse = bordered_inverse(&placed.screws, self.columns, before);
+        let scale = one / length(&inverse.0[6]);
+        for x in &mut inverse.0[6] {
+            *x = *x * scale;
+        }
+        let tangent = inverse.0[6];
+        for column in &mut inverse.0[..6] {
+            let along = dot(column, &tangent);
+            for c in 0..COLUMNS {
+                column[c] = column[c].minus_product(tangent[c], along);
+            }
+        }
+        let mut by = inverse.times(&placed.error);
+        for x in &mut by {
+            *x = -*x;
+        }
+        let reached = twist_of(&placed.screws, &by);
+        let mut open = zero;
+        let mut square = zero;
+        for k in 0..6 {
+            let left = placed.error[k] + reached[k];
+            open = open.plus_product(left, left);
+            for screw in &placed.screws {
+                square = square.plus_product(screw[k], screw[k]);
+            }
+        }
+        let (rates, screws) = self.rates(&placed, &inverse, &[one, zero, zero], None);
+        let mut slopes = [zero; 2];
+        for order in 0..2 {
+            for screw in &screws[order + 1][..self.columns] {
+                let seen = inverse.times(screw);
+                slopes[order] = slopes[order] + dot(&seen, &seen);
+            }
+            slopes[order] = slopes[order].sqrt();
+        }
+        let far = self.farthest(rough);
+        let inverse_norm = inverse.square(6).sqrt();
+        let pairs = (self.columns * (self.columns - 1)) as f64 / 2.0;
+        let turning = N::splat(pairs.sqrt()) * (one + N::splat(4.0) * far * far).sqrt();
+        let across = inverse_norm * turning.plus_product(N::splat(2.2), square);
+        let mut at = self.moved(rough, &by);
+        for ball in &mut at.balls[..self.ball_count()] {
             *ball = squared_up(ball);
         }
-        // a bend along the tangent is only a change of pace
-        let pace = dot(&bend, &tangent);
-        Some(Node {
-            at,
-            tangent,
-            bend: combined(&bend, 1.0, &tangent, -pace),
-            step: 0.0,
-            reach: 0.5 / bound,
-            inverse_norm,
-            residual: 0.0,
-        })
-    }
-
-    /// The node a step farther along the curve, if its solution lies in the ball of the argument.
-    #[inline(always)]
-    pub fn ahead(&self, from: &Node, step: f64) -> Option<Node> {
-        let guess = combined(&from.tangent, step, &from.bend, 0.5 * step * step);
-        let (near, correction) = self.corrected(&self.moved(&from.at, &guess), from)?;
-        // from the tangent's point, bend and correction together
-        let off = combined(&from.bend, 0.5 * step * step, &correction, 1.0);
-        if length(&off) > from.reach || length(&off).is_nan() {
-            return None;
+        Stand {
+            node: Node {
+                at,
+                rates,
+                step: zero,
+                tube: zero,
+                inverse_norm,
+                slopes,
+                across,
+                far,
+                // not closed at all if turned right round
+                open: placed.closing_cosine.if_greater(zero, open.sqrt(), one),
+            },
+            screws: placed.screws,
+            inverse,
         }
-        let mut node = self.node(&near, &from.tangent)?;
-        node.residual = self.residual(&self.place(&node.at));
-        (node.residual < NOT_CLOSED).then_some(node)
     }
 
-    /// One Newton step in the plane across the tangent of a node.
+    /// A bound of the distances within the loop, and of how slides move its points: half the way round.
     #[inline(always)]
-    fn corrected(&self, rough: &Configuration, from: &Node) -> Option<(Configuration, Columns)> {
-        let placed = self.place(rough);
-        let (factored, right) = bordered(&placed.screws, &placed.error, self.columns, &from.tangent);
-        let correction = factored.solve(right);
-        correction
-            .iter()
-            .all(|c| c.is_finite())
-            .then(|| (self.moved(rough, &correction), correction))
-    }
-
-    /// Any direction in which a closed configuration can move: the null vector of its screws.
-    pub fn direction(&self, at: &Configuration) -> Columns {
-        let (_, vectors) = singular_values(&self.screws(at));
-        let mut out = [0.0; COLUMNS];
-        if let Some(last) = vectors.last() {
-            out[..last.len()].copy_from_slice(last);
-        }
-        out
-    }
-
-    /// Follows the motion through a closed configuration until it comes back, in both directions where it does not.
-    pub fn follow(&self, start: &Configuration) -> Curve {
-        let direction = self.direction(start);
-        let Some(first) = self.node(start, &direction) else {
-            return Curve { nodes: Vec::new(), end: End::Singular };
-        };
-        let forward = self.walk(first);
-        if forward.end == End::Closed || forward.end == End::Open {
-            return forward;
-        }
-        let mut back = first;
-        back.tangent = back.tangent.map(|t| -t);
-        let backward = self.walk(back);
-        let mut nodes = reversed(self, &backward).nodes;
-        nodes.pop();
-        nodes.extend(forward.nodes);
-        Curve { nodes, end: forward.end }
-    }
-
-    fn walk(&self, first: Node) -> Curve {
-        let mut curve = Curve { nodes: Vec::new(), end: End::Far };
-        dispatch(Walk { chain: self, first, curve: &mut curve });
-        curve
-    }
-
-    #[inline(always)]
-    fn walk_on(&self, first: Node) -> Curve {
-        let mut nodes = vec![first];
-        let mut gone = 0.0;
-        loop {
-            let last = nodes.len() - 1;
-            let node = nodes[last];
-            let mut step = node.reach.min(LONGEST);
-            let next = loop {
-                if step < SHORTEST {
-                    return Curve { nodes, end: End::Singular };
-                }
-                if let Some(next) = self.ahead(&node, step) {
-                    break next;
-                }
-                step *= 0.5;
+    fn farthest<N: Number>(&self, at: &Configuration<N>) -> N {
+        // a little more where the loop does not quite close
+        let mut around = N::splat(1.02 * self.around);
+        let mut least = N::splat(0.0);
+        for (joint, &c) in self.joints.iter().zip(&self.first) {
+            let advance = match *joint {
+                Joint::Slide => 1.0,
+                Joint::Screw(advance) => advance,
+                _ => continue,
             };
-            if next.residual > OPEN {
-                return Curve { nodes, end: End::Open };
-            }
-            gone += step;
-            nodes[last].step = step;
-            if gone > 3.0 * (first.reach.min(LONGEST) + step)
-                && let Some(end) = self.returned(&first, &node, &next)
-            {
-                nodes[last].step = end.0;
-                nodes.push(end.1);
-                return Curve { nodes, end: End::Closed };
-            }
-            let far = self.joints.iter().zip(&self.first).any(|(joint, &c)| {
-                !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > FARTHEST
-            });
-            nodes.push(next);
-            if far || nodes.len() > MOST_NODES {
-                return Curve { nodes, end: End::Far };
-            }
+            around = around + (at.values[c] * N::splat(advance)).size();
+            least = N::splat(1.0);
         }
+        let half = around * N::splat(0.5);
+        half.if_greater(least, half, least)
     }
 
-    /// The start, its turns counted on, where it lies between two nodes: with the step that leads there.
-    fn returned(&self, first: &Node, from: &Node, to: &Node) -> Option<(f64, Node)> {
-        let ahead = self.difference(&from.at, &first.at);
-        let along = dot(&ahead, &from.tangent);
-        let span = dot(&self.difference(&from.at, &to.at), &from.tangent);
-        if along < 0.0 || along > span || dot(&first.tangent, &from.tangent) < 0.5 {
-            return None;
-        }
-        if length(&ahead) > 2.0 * span + 1e-3 {
-            return None;
-        }
-        let here = self.ahead(from, along)?;
-        let left = self.difference(&here.at, &first.at);
-        if left.iter().any(|d| d.abs() > RETURNED) {
-            return None;
-        }
-        // the start itself, with the turns made on the way
-        let mut end = *first;
+    /// `k` of the argument on the curve itself, a step ahead, and `|A+| K5 s^5 / 120`.
+    #[inline(always)]
+    fn change<N: Number>(&self, node: &Node<N>, s: N) -> (N, N) {
+        let (mut u, mut v, mut w) = (N::splat(0.0), N::splat(0.0), N::splat(0.0));
+        let mut third = N::splat(0.0);
         for c in 0..self.columns {
-            if self.is_turn(c) {
-                let turn = std::f64::consts::TAU;
-                end.at.values[c] += turn * ((here.at.values[c] - first.at.values[c]) / turn).round();
-            }
+            // the screw of a column is carried by those before it
+            let z = (u * u * u).plus_product(N::splat(3.0) * u, v) + w;
+            let p = node.far
+                * ((N::splat(8.0) * u * u * u).plus_product(N::splat(12.0) * u, v) + N::splat(2.0) * w);
+            third = third.plus_product(z, z).plus_product(p, p);
+            let [a, b, c] = [
+                node.rates[0][c].size(),
+                node.rates[1][c].size(),
+                node.rates[2][c].size(),
+            ];
+            let slope = b.plus_product(c, s);
+            u = u + a.plus_product(slope, s);
+            v = v + slope.plus_product(c, s);
+            w = w + N::splat(2.0) * c;
         }
-        Some((along, end))
+        let square = s * s;
+        let third = node.inverse_norm * third.sqrt() * s * square * N::splat(1.0 / 6.0);
+        let k = (s * node.slopes[0]).plus_product(square, node.slopes[1]) + third;
+        let fifth = u * u * u * (u * u + N::splat(10.0) * v)
+            + N::splat(15.0) * u * v * v
+            + N::splat(10.0) * w * (u * u + v);
+        let rest = node.inverse_norm * (N::splat(1.0) + node.far * node.far).sqrt() * fifth;
+        (k, rest * square * square * s * N::splat(1.0 / 120.0))
     }
-}
 
-/// The curve walked the other way.
-pub(super) fn reversed(chain: &Chain, curve: &Curve) -> Curve {
-    let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
-    for node in &mut nodes {
-        node.tangent = node.tangent.map(|t| -t);
+    /// The length of a step that is likely to be allowed.
+    #[inline(always)]
+    pub fn likely<N: Number>(&self, node: &Node<N>) -> N {
+        let aim = N::splat(AIMED);
+        let mut s = (aim / node.slopes[0]).lesser(N::splat(LONGEST));
+        for _ in 0..2 {
+            s = s * (aim / self.change(node, s).0);
+        }
+        s.lesser(N::splat(LONGEST))
     }
-    measure(chain, &mut nodes);
-    Curve { nodes, end: curve.end }
+
+    /// Radius about the predicted places of a step within which the curve is alone; not positive where that is not known.
+    pub fn tube(&self, node: &Node, step: f64) -> f64 {
+        (ALONE - self.change(node, step.abs()).0) / node.across
+    }
+
+    /// The stand a step farther along the curve, whether the argument allows the step, as a positive number, and the step's tube.
+    #[inline(always)]
+    pub fn step<N: Number>(&self, from: &Stand<N>, s: N) -> (Stand<N>, N, N) {
+        let node = &from.node;
+        let start = self.moved(&node.at, &self.predicted(node, s));
+        let placed = self.place(&start);
+        let (d, first) = correction(&from.inverse, (&from.screws, &placed), NEUMANN);
+        let rough = self.moved(&start, &d);
+        let again = self.place(&rough);
+        let (d, _) = correction(&from.inverse, (&from.screws, &again), NEUMANN);
+        let next = self.stand(&self.moved(&rough, &d), &node.rates[0]);
+        let (k, rest) = self.change(node, s);
+        let radius = N::splat(2.0) * (length(&first) + N::splat(2.0) * rest);
+        let tube = (N::splat(ALONE) - k) / node.across;
+        let k = k.plus_product(node.across, radius);
+        let settled = N::splat(SETTLED) - length(&d);
+        let close = placed.closing_cosine.lesser(settled);
+        (next, (N::splat(CONTRACTING) - k).lesser(close), tube)
+    }
+
+    /// The node a step ahead (or behind), for steps within a certified one.
+    pub fn ahead(&self, from: &Node, s: f64) -> Option<Node> {
+        let start = self.moved(&from.at, &self.predicted(from, s));
+        let mut at = start;
+        for _ in 0..3 {
+            let placed = self.place(&at);
+            let inverse = bordered_inverse(&placed.screws, self.columns, &from.rates[0]);
+            let d = inverse.times(&placed.error).map(|x| -x);
+            at = self.moved(&at, &d);
+        }
+        let off = length(&self.difference(&start, &at));
+        let node = self.stand(&at, &from.rates[0]).node;
+        (off <= self.tube(from, s) && node.inverse_norm.is_finite()).then_some(node)
+    }
+
+    /// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.
+    pub fn passes_through(&self, node: &Node, at: &Configuration) -> Option<f64> {
+        let off = self.difference(&node.at, at);
+        let along = dot(&off, &node.rates[0]);
+        let slack = 1e-9 * node.step;
+        if along < -slack || along > node.step + slack {
+            return None;
+        }
+        let aside = length(&combined(&off, 1.0, &self.predicted(node, along), -1.0));
+        (aside <= node.tube).then_some(along)
+    }
 }
 
 /// Steps between nodes, measured along the tangent of the first of each two.
 pub(super) fn measure(chain: &Chain, nodes: &mut [Node]) {
     for k in 1..nodes.len() {
         let by = chain.difference(&nodes[k - 1].at, &nodes[k].at);
-        nodes[k - 1].step = dot(&by, &nodes[k - 1].tangent);
-    }
-}
-
-/// [`Chain::walk`], compiled for each vector unit.
-struct Walk<'a> {
-    chain: &'a Chain,
-    first: Node,
-    curve: &'a mut Curve,
-}
-
-impl Kernel for Walk<'_> {
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        *self.curve = self.chain.walk_on(self.first);
+        let step = dot(&by, &nodes[k - 1].rates[0]);
+        nodes[k - 1].step = step;
+        nodes[k - 1].tube = chain.tube(&nodes[k - 1], step);
     }
 }

@@ -1,113 +1,129 @@
 //! Least squares with up to seven rows and columns, and singular values of small matrices.
 
 use super::chain::{COLUMNS, Columns};
+use crate::vectors::Number;
 
 /// Rows of the bordered closure: six and one.
 pub(super) const ROWS: usize = 7;
 
-/// A matrix with at least as many rows as columns, reduced by Householder reflections to `Q R`.
-///
-/// Columns past `count` are left out.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Factored {
-    /// Column by column: the reflections below the diagonal, R above it.
-    columns: [[f64; ROWS]; COLUMNS],
-    diagonal: Columns,
-    count: usize,
+/// Loops whose counter is known to the compiler in each turn, so that numbers stay in registers.
+macro_rules! unrolled {
+    ($c:ident in [$($n:literal)*] $body:block) => { $( { let $c: usize = $n; $body } )* };
 }
 
-impl Factored {
+/// A matrix with at least as many rows as columns, reduced by Householder reflections to `Q R`.
+///
+/// Columns past `count` are left out, and must be zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factored<N = f64> {
+    /// Column by column: the reflections below the diagonal, R above it.
+    columns: [[N; ROWS]; COLUMNS],
+    /// One by half the squares of the reflections' vectors.
+    inverses: Columns<N>,
+    /// One by the diagonal of R; zero in the columns left out, which are to be zero.
+    inverse_diagonal: Columns<N>,
+}
+
+/// Below this, the square of a column leaves nothing to reflect.
+const NOTHING: f64 = 1e-300;
+
+impl<N: Number> Factored<N> {
     #[inline(always)]
-    pub fn new(mut columns: [[f64; ROWS]; COLUMNS], count: usize) -> Self {
-        let mut diagonal = [0.0; COLUMNS];
-        for c in 0..count {
-            let (head, tail) = columns.split_at_mut(c + 1);
-            let pivot = &mut head[c];
-            let mut square = 0.0;
-            for x in &pivot[c..] {
-                square += x * x;
+    pub fn new(mut columns: [[N; ROWS]; COLUMNS], count: usize) -> Self {
+        let (zero, one) = (N::splat(0.0), N::splat(1.0));
+        let (mut inverse_diagonal, mut inverses) = ([zero; COLUMNS], [zero; COLUMNS]);
+        unrolled!(c in [0 1 2 3 4 5 6] {
+            let mut square = zero;
+            for k in c..ROWS {
+                square = square.plus_product(columns[c][k], columns[c][k]);
             }
             let length = square.sqrt();
-            let alpha = if pivot[c] > 0.0 { -length } else { length };
-            diagonal[c] = alpha;
-            // v = x - alpha e1, scaled so that the reflection is 1 - v v'
-            let scale = 1.0 / (alpha * (alpha - pivot[c])).sqrt();
-            let scale = if scale.is_finite() { scale } else { 0.0 };
-            pivot[c] -= alpha;
-            for x in &mut pivot[c..] {
-                *x *= scale;
+            let head = columns[c][c];
+            let alpha = head.if_greater(zero, -length, length);
+            columns[c][c] = head - alpha;
+            // the reflection is 1 - v v' / p with v = x - alpha e1; one division for both inverses
+            let p = square.minus_product(alpha, head);
+            let both = one / (alpha * p);
+            inverses[c] = p.if_greater(N::splat(NOTHING), both * alpha, zero);
+            if c < count {
+                inverse_diagonal[c] = both * p;
             }
-            for other in tail.iter_mut().take(count - c - 1) {
-                reflect(pivot, other, c);
+            let pivot = columns[c];
+            for j in c + 1..COLUMNS {
+                reflect(&pivot, inverses[c], &mut columns[j], c);
             }
-        }
-        Self { columns, diagonal, count }
+        });
+        Self { columns, inverses, inverse_diagonal }
     }
 
     /// The least-squares solution of `A x = b`; zero in the columns left out.
     #[inline(always)]
-    pub fn solve(&self, mut b: [f64; ROWS]) -> Columns {
-        for c in 0..self.count {
-            reflect(&self.columns[c], &mut b, c);
-        }
-        let mut x = [0.0; COLUMNS];
-        for c in (0..self.count).rev() {
-            let mut sum = b[c];
-            for j in c + 1..self.count {
-                sum -= self.columns[j][c] * x[j];
+    pub fn solve(&self, mut b: [N; ROWS]) -> Columns<N> {
+        unrolled!(c in [0 1 2 3 4 5 6] {
+            reflect(&self.columns[c], self.inverses[c], &mut b, c);
+        });
+        let mut x = [N::splat(0.0); COLUMNS];
+        unrolled!(c in [6 5 4 3 2 1 0] {
+            x[c] = b[c] * self.inverse_diagonal[c];
+            for k in 0..c {
+                b[k] = b[k].minus_product(self.columns[c][k], x[c]);
             }
-            x[c] = sum / self.diagonal[c];
-        }
+        });
         x
-    }
-
-    /// The condition number in the Frobenius norm, of the triangular factor, which has that of the matrix.
-    #[inline(always)]
-    pub fn condition(&self) -> f64 {
-        let n = self.count;
-        let mut inverse = [[0.0; COLUMNS]; COLUMNS];
-        let (mut square, mut inverse_square) = (0.0, 0.0);
-        for c in 0..n {
-            inverse[c][c] = 1.0 / self.diagonal[c];
-            for r in (0..c).rev() {
-                let mut sum = 0.0;
-                for k in r + 1..=c {
-                    sum += self.columns[k][r] * inverse[c][k];
-                }
-                inverse[c][r] = -sum / self.diagonal[r];
-            }
-            square += self.diagonal[c] * self.diagonal[c];
-            for r in 0..c {
-                square += self.columns[c][r] * self.columns[c][r];
-            }
-            for r in 0..=c {
-                inverse_square += inverse[c][r] * inverse[c][r];
-            }
-        }
-        (square * inverse_square).sqrt()
     }
 
     /// The pseudo-inverse, one column for each row of the matrix.
     #[inline(always)]
-    pub fn inverse(&self) -> [Columns; ROWS] {
-        let mut out = [[0.0; COLUMNS]; ROWS];
+    pub fn inverse(&self) -> Inverse<N> {
+        let mut out = [[N::splat(0.0); COLUMNS]; ROWS];
         for (row, column) in out.iter_mut().enumerate() {
-            let mut unit = [0.0; ROWS];
-            unit[row] = 1.0;
+            let mut unit = [N::splat(0.0); ROWS];
+            unit[row] = N::splat(1.0);
             *column = self.solve(unit);
         }
-        out
+        Inverse(out)
+    }
+}
+
+/// A pseudo-inverse, one column for each row of the matrix.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inverse<N = f64>(pub [Columns<N>; ROWS]);
+
+impl<N: Number> Inverse<N> {
+    /// The product with right-hand sides of the first rows.
+    #[inline(always)]
+    pub fn times(&self, b: &[N]) -> Columns<N> {
+        let mut x = [N::splat(0.0); COLUMNS];
+        for (column, b) in self.0.iter().zip(b) {
+            for c in 0..COLUMNS {
+                x[c] = x[c].plus_product(column[c], *b);
+            }
+        }
+        x
+    }
+
+    /// The square of the Frobenius norm of the first columns.
+    #[inline(always)]
+    pub fn square(&self, columns: usize) -> N {
+        let mut sum = N::splat(0.0);
+        for column in &self.0[..columns] {
+            for x in column {
+                sum = sum.plus_product(*x, *x);
+            }
+        }
+        sum
     }
 }
 
 #[inline(always)]
-fn reflect(v: &[f64; ROWS], x: &mut [f64; ROWS], from: usize) {
-    let mut sum = 0.0;
+fn reflect<N: Number>(v: &[N; ROWS], inverse: N, x: &mut [N; ROWS], from: usize) {
+    let mut sum = N::splat(0.0);
     for k in from..ROWS {
-        sum += v[k] * x[k];
+        sum = sum.plus_product(v[k], x[k]);
     }
+    sum = sum * inverse;
     for k in from..ROWS {
-        x[k] -= sum * v[k];
+        x[k] = x[k].minus_product(sum, v[k]);
     }
 }
 
@@ -168,7 +184,8 @@ mod tests {
         for count in [3, 5, 7] {
             let x: Columns = std::array::from_fn(|c| if c < count { 1.0 + c as f64 } else { 0.0 });
             let b = std::array::from_fn(|r| (0..count).map(|c| a[c][r] * x[c]).sum());
-            let got = Factored::new(a, count).solve(b);
+            let kept = std::array::from_fn(|c| if c < count { a[c] } else { [0.0; ROWS] });
+            let got = Factored::new(kept, count).solve(b);
             for c in 0..COLUMNS {
                 assert!((got[c] - x[c]).abs() < 1e-11, "{got:?}");
             }

@@ -43,7 +43,7 @@ impl<V: Vector> Lanes<V> {
 
     #[inline(always)]
     pub fn scale(self, factor: V) -> Self {
-        Self { re: self.re.mul(factor), im: self.im.mul(factor) }
+        Self { re: self.re * factor, im: self.im * factor }
     }
 
     /// `self + a b`
@@ -67,14 +67,14 @@ impl<V: Vector> Lanes<V> {
     /// `|z|^2` in each lane
     #[inline(always)]
     pub fn square(&self) -> V {
-        self.re.mul(self.re).plus_product(self.im, self.im)
+        (self.re * self.re).plus_product(self.im, self.im)
     }
 
     #[inline(always)]
     pub fn recip(self) -> Self {
-        let inverse = V::splat(1.0).div(self.square());
+        let inverse = V::splat(1.0) / self.square();
         Self {
-            re: self.re.mul(inverse),
+            re: self.re * inverse,
             im: V::splat(0.0).minus_product(self.im, inverse),
         }
     }
@@ -82,7 +82,7 @@ impl<V: Vector> Lanes<V> {
     /// `i z`
     #[inline(always)]
     pub fn times_i(self) -> Self {
-        Self { re: V::splat(0.0).sub(self.im), im: self.re }
+        Self { re: -self.im, im: self.re }
     }
 
     /// `e^(i z)`, to rounding while `|z|` is below a half: the diagonal Pade approximant of order three.
@@ -93,9 +93,9 @@ impl<V: Vector> Lanes<V> {
         let twelve = V::splat(12.0);
         let even = Self {
             re: V::splat(120.0).plus_product(twelve, square.re),
-            im: twelve.mul(square.im),
+            im: twelve * square.im,
         };
-        let odd = Self { re: V::splat(60.0).add(square.re), im: square.im } * x;
+        let odd = Self { re: V::splat(60.0) + square.re, im: square.im } * x;
         (even + odd) * (even - odd).recip()
     }
 
@@ -113,7 +113,7 @@ impl<V: Vector> Add for Lanes<V> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self { re: self.re.add(other.re), im: self.im.add(other.im) }
+        Self { re: self.re + other.re, im: self.im + other.im }
     }
 }
 
@@ -121,7 +121,7 @@ impl<V: Vector> Sub for Lanes<V> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self { re: self.re.sub(other.re), im: self.im.sub(other.im) }
+        Self { re: self.re - other.re, im: self.im - other.im }
     }
 }
 
@@ -138,8 +138,8 @@ impl<V: Vector> Mul for Lanes<V> {
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
         Self {
-            re: self.re.mul(b.re).minus_product(self.im, b.im),
-            im: self.re.mul(b.im).plus_product(self.im, b.re),
+            re: (self.re * b.re).minus_product(self.im, b.im),
+            im: (self.re * b.im).plus_product(self.im, b.re),
         }
     }
 }

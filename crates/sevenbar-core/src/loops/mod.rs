@@ -18,6 +18,7 @@ mod rows;
 mod starts;
 #[cfg(test)]
 mod tests;
+mod walk;
 
 pub use modes::Completeness;
 pub use motion::{Circuit, Found, Motion};

@@ -3,10 +3,11 @@
 use super::Loop;
 use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
 use super::circuits::{Passes, Row};
-use super::curve::{Curve, End, Node, combined, dot};
+use super::curve::{Curve, End, Node, combined};
 use super::dense::singular_values;
 use super::modes::{CLOSED, Completeness, ModeFinder};
 use super::rows::Rows;
+use super::walk::Start;
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
 use std::f64::consts::TAU;
 
@@ -298,7 +299,7 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
     };
     // the pose of a drawing first: the joints are zero there
     if chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED {
-        out.take(chain, &Configuration::ZERO);
+        out.take(chain, &[Configuration::ZERO], wished[0]);
     }
     for seed in seeds {
         let finder = ModeFinder::new(chain, seed);
@@ -312,9 +313,7 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
             if first_only && !out.curves.is_empty() {
                 break;
             }
-            for mode in finder.at(TAU * k as f64 / count as f64) {
-                out.take(chain, &mode);
-            }
+            out.take(chain, &finder.at(TAU * k as f64 / count as f64), wished[0]);
         }
     }
     if out.seed_columns.is_empty() {
@@ -330,35 +329,50 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
 }
 
 impl Curves {
-    /// Follows the motion through a mode, unless it lies on one that was followed already.
-    fn take(&mut self, chain: &Chain, mode: &Configuration) {
-        if self.curves.iter().any(|c| lies_on(chain, c, mode)) {
-            return;
+    /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
+    fn take(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
+        let mut starts: Vec<Start> = Vec::new();
+        for mode in modes {
+            if self.curves.iter().any(|c| lies_on(chain, c, mode)) {
+                continue;
+            }
+            let columns = chain.screws(mode);
+            let (values, vectors) = singular_values(&columns);
+            let rank = values
+                .iter()
+                .take(6)
+                .filter(|&&v| v > NO_RANK * values[0])
+                .count();
+            if self.found.as_ref().is_none_or(|f| rank > f.rank) {
+                self.found = Some(Found {
+                    rank,
+                    redundant: wrenches(&columns, rank),
+                    finite: chain.columns - rank,
+                });
+            }
+            if chain.columns - rank != 1 {
+                self.still += 1;
+                continue;
+            }
+            let mut direction = [0.0; COLUMNS];
+            direction[..chain.columns].copy_from_slice(&vectors[chain.columns - 1]);
+            if direction[rising] < 0.0 {
+                direction = direction.map(|d| -d);
+            }
+            starts.push((*mode, direction));
         }
-        let columns = chain.screws(mode);
-        let (values, _) = singular_values(&columns);
-        let rank = values
-            .iter()
-            .take(6)
-            .filter(|&&v| v > NO_RANK * values[0])
-            .count();
-        if self.found.as_ref().is_none_or(|f| rank > f.rank) {
-            self.found = Some(Found {
-                rank,
-                redundant: wrenches(&columns, rank),
-                finite: chain.columns - rank,
-            });
+        let before = self.curves.len();
+        for (curve, start) in chain.follow(&starts).into_iter().zip(&starts) {
+            // two modes may lie on one circuit
+            if self.curves[before..].iter().any(|c| lies_on(chain, c, &start.0)) {
+                continue;
+            }
+            if curve.nodes.len() < 3 || curve.end == End::Open {
+                self.still += 1;
+            } else {
+                self.curves.push(curve);
+            }
         }
-        if chain.columns - rank != 1 {
-            self.still += 1;
-            return;
-        }
-        let curve = chain.follow(mode);
-        if curve.nodes.len() < 3 || curve.end == End::Open {
-            self.still += 1;
-            return;
-        }
-        self.curves.push(curve);
     }
 }
 
@@ -379,7 +393,7 @@ fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
         .collect()
 }
 
-/// Whether a mode is a place of a curve: by the argument of [`super::curve`] the only one in a node's ball.
+/// Whether a mode is a place of a curve.
 fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
     // a scalar column tells most nodes apart at once
     let probe = chain
@@ -389,15 +403,8 @@ fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
         .find(|(j, _)| **j == Joint::Turn)
         .map(|(_, &c)| c);
     curve.nodes.iter().any(|node| {
-        if let Some(c) = probe
-            && short_way(mode.values[c] - node.at.values[c]).abs() > 2.0 * node.reach
-        {
-            return false;
-        }
-        let off = chain.difference(&node.at, mode);
-        let along = dot(&off, &node.tangent);
-        let across = combined(&off, 1.0, &node.tangent, -along);
-        along.abs() <= node.reach && dot(&across, &across).sqrt() <= node.reach
+        probe.is_none_or(|c| short_way(mode.values[c] - node.at.values[c]).abs() <= 2.0 * node.step)
+            && chain.passes_through(node, mode).is_some()
     })
 }
 

@@ -242,11 +242,12 @@ impl Follow<'_> {
         let mut sum = V::splat(0.0);
         for i in 0..UNKNOWNS {
             let square = by[i].square();
-            sum = sum.add(if self.slides[i] {
-                square.div(V::splat(1.0).add(x[i].square()))
-            } else {
-                square
-            });
+            sum = sum
+                + if self.slides[i] {
+                    square / (V::splat(1.0) + x[i].square())
+                } else {
+                    square
+                };
         }
         sum.store().map(f64::sqrt)
     }

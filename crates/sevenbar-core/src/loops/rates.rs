@@ -4,41 +4,53 @@
 //! screws follow from those of the joint rates `u`, and these order by order from one factorised matrix:
 //! `A u_k = - sum (a >= 1) Si_a ui_(k-a)`. Nothing is differenced and no angle is differentiated.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket};
-use super::dense::{Factored, ROWS};
+use super::chain::{
+    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket, twist_of,
+};
+use super::dense::{Inverse, ROWS};
 use crate::rigid::{Pose, Vec3};
 use crate::taylor::Taylor;
+use crate::vectors::Number;
 
 /// Orders of the rates: velocity, acceleration, jerk.
 pub(super) const ORDERS: usize = 3;
 
+/// Corrections of rates by what they leave over.
+const REFINEMENTS: usize = 2;
+
 /// Power series of the joint rates `u(t) = u0 + u1 t + u2 t^2`; a ball's are its angular velocity in the frame before it.
-pub(super) type Rates = [Columns; ORDERS];
+pub(super) type Rates<N = f64> = [Columns<N>; ORDERS];
+
+/// Power series of the joints' screws.
+pub(super) type Screws<N> = [[Twist<N>; COLUMNS]; ORDERS];
 
 impl Chain {
-    /// The twists of the link before each joint, to the orders that the rates so far allow, and the screws' series.
+    /// The screws' coefficients of an order, from those of lower ones and the rates.
     #[inline(always)]
-    fn carried(&self, screws: &mut [[Twist; COLUMNS]; ORDERS], rates: &Rates, order: usize) {
-        // the screws' coefficients of this order, from the twists and screws of lower ones
-        let mut twists = [[0.0; 6]; ORDERS];
+    fn carry<N: Number>(&self, screws: &mut Screws<N>, rates: &Rates<N>, order: usize) {
+        let zero = N::splat(0.0);
+        // of the link before each joint
+        let mut twists = [[zero; 6]; ORDERS];
+        let inverse = N::splat(1.0 / order as f64);
         for (joint, &first) in self.joints.iter().zip(&self.first) {
             let width = joint.columns();
             for c in first..first + width {
-                let mut sum = [0.0; 6];
-                for a in 0..order {
+                let mut sum = bracket(&twists[0], &screws[order - 1][c]);
+                for a in 1..order {
                     let part = bracket(&twists[a], &screws[order - 1 - a][c]);
                     for k in 0..6 {
-                        sum[k] += part[k];
+                        sum[k] = sum[k] + part[k];
                     }
                 }
-                let inverse = 1.0 / order as f64;
-                screws[order][c] = sum.map(|x| x * inverse);
+                for k in 0..6 {
+                    screws[order][c][k] = sum[k] * inverse;
+                }
             }
             for c in first..first + width {
                 for a in 0..order {
                     for b in 0..=a {
                         for k in 0..6 {
-                            twists[a][k] += screws[b][c][k] * rates[a - b][c];
+                            twists[a][k] = twists[a][k].plus_product(screws[b][c][k], rates[a - b][c]);
                         }
                     }
                 }
@@ -46,43 +58,57 @@ impl Chain {
         }
     }
 
-    /// The joint rates with the input's derivatives given, by the closure factorised with the input's row.
+    /// The joint rates, order by order, and the series of the screws, by the inverse of the screws with one more row, on which
+    /// the rates are `given`. Where that row holds one column, the inverse may be that of a place very near.
     #[inline(always)]
-    pub fn rates(
+    pub fn rates<N: Number>(
         &self,
-        placed: &Placed,
-        factored: &Factored,
-        (column, input): (usize, &[f64; ORDERS]),
-    ) -> Rates {
-        let mut rates = [[0.0; COLUMNS]; ORDERS];
-        let mut screws = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
-        let mut factorial = 1.0;
+        placed: &Placed<N>,
+        inverse: &Inverse<N>,
+        given: &[N; ORDERS],
+        held: Option<usize>,
+    ) -> (Rates<N>, Screws<N>) {
+        let zero = N::splat(0.0);
+        let mut rates = [[zero; COLUMNS]; ORDERS];
+        let mut screws = [placed.screws, [[zero; 6]; COLUMNS], [[zero; 6]; COLUMNS]];
         for order in 0..ORDERS {
-            let mut right = [0.0; ROWS];
+            let mut right = [zero; ROWS];
             if order > 0 {
-                factorial *= order as f64;
-                self.carried(&mut screws, &rates, order);
+                self.carry(&mut screws, &rates, order);
                 for a in 1..=order {
                     for c in 0..self.columns {
                         for k in 0..6 {
-                            right[k] -= screws[a][c][k] * rates[order - a][c];
+                            right[k] = right[k].minus_product(screws[a][c][k], rates[order - a][c]);
                         }
                     }
                 }
             }
-            right[6] = input[order] / factorial;
-            rates[order] = factored.solve(right);
-            // given, not solved for
-            rates[order][column] = right[6];
+            right[6] = given[order];
+            let mut solved = inverse.times(&right);
+            if let Some(column) = held {
+                for _ in 0..REFINEMENTS {
+                    solved[column] = given[order];
+                    let mut left = twist_of(&placed.screws, &solved);
+                    for k in 0..6 {
+                        left[k] = right[k] - left[k];
+                    }
+                    let more = inverse.times(&left);
+                    for c in 0..COLUMNS {
+                        solved[c] = solved[c] + more[c];
+                    }
+                }
+                solved[column] = given[order];
+            }
+            rates[order] = solved;
         }
-        rates
+        (rates, screws)
     }
 
     /// The series of the twist of the link after a joint, in the frame of the first joint: `V0 + V1 t + V2 t^2`.
     pub fn link_twist(&self, placed: &Placed, rates: &Rates, joint: usize) -> [Twist; ORDERS] {
         let mut screws = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
         for order in 1..ORDERS {
-            self.carried(&mut screws, rates, order);
+            self.carry(&mut screws, rates, order);
         }
         let end = self.first.get(joint + 1).copied().unwrap_or(self.columns);
         let mut twists = [[0.0; 6]; ORDERS];

@@ -1,0 +1,299 @@
+//! Curves walked eight side by side in vector lanes, each until it comes back or cannot go on.
+
+use super::chain::{BALLS, COLUMNS, Chain, Columns, Configuration, Joint};
+use super::curve::{Curve, End, Node, Stand, dot};
+use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
+
+/// Shorter steps mean a place where the curve is not smooth: a change point.
+const SHORTEST: f64 = 1e-6;
+
+/// Most nodes of a curve; an ordinary circuit has some hundreds.
+const MOST_NODES: usize = 400_000;
+
+/// Slides [parts of the size] and screws [rad] are not followed farther than this.
+const FARTHEST: f64 = 50.0;
+
+/// The closure error of a node above which redundant constraints have stopped to agree.
+const OPEN: f64 = 1e-9;
+
+/// A closed configuration and the direction in which to leave it.
+pub(super) type Start = (Configuration, Columns);
+
+impl Chain {
+    /// Follows the motions through closed configurations until they come back; those that do not, from end to end.
+    pub fn follow(&self, starts: &[Start]) -> Vec<Curve> {
+        let mut curves = self.walk(starts);
+        let open: Vec<usize> = (0..curves.len())
+            .filter(|&k| !matches!(curves[k].end, End::Closed | End::Open))
+            .collect();
+        // once more from the end it ran into
+        let ends: Vec<Start> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
+        for (k, curve) in open.into_iter().zip(self.walk(&ends)) {
+            curves[k] = curve;
+        }
+        curves
+    }
+
+    /// The curve walked the other way.
+    pub fn turned_round(&self, curve: &Curve) -> Curve {
+        self.walk(&[back_from_end(curve)]).swap_remove(0)
+    }
+
+    fn walk(&self, starts: &[Start]) -> Vec<Curve> {
+        let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
+        if !starts.is_empty() {
+            dispatch(Walk { chain: self, starts, curves: &mut curves });
+        }
+        curves
+    }
+
+    /// The start, its turns counted on, where it lies in the step from a node: with the step that leads there.
+    fn returned(&self, first: &Node, from: &Node) -> Option<(f64, Node)> {
+        if dot(&first.rates[0], &from.rates[0]) < 0.5 {
+            return None;
+        }
+        let along = self.passes_through(from, &first.at)?;
+        // the start itself, with the turns made on the way
+        let mut end = *first;
+        for c in 0..self.columns {
+            if self.is_turn(c) {
+                let here = from.at.values[c] + from.gone(c, along);
+                let turn = std::f64::consts::TAU;
+                end.at.values[c] += turn * ((here - first.at.values[c]) / turn).round();
+            }
+        }
+        Some((along, end))
+    }
+}
+
+fn back_from_end(curve: &Curve) -> Start {
+    let last = &curve.nodes[curve.nodes.len() - 1];
+    (last.at, last.rates[0].map(|t| -t))
+}
+
+/// Walks eight curves side by side.
+struct Walk<'a> {
+    chain: &'a Chain,
+    starts: &'a [Start],
+    curves: &'a mut [Curve],
+}
+
+impl LaneKernel for Walk<'_> {
+    #[inline(always)]
+    fn run<V: Vector>(mut self) {
+        let count = self.starts.len();
+        let mut walker = [usize::MAX; LANES];
+        for (lane, w) in walker.iter_mut().enumerate().take(count) {
+            *w = lane;
+        }
+        let mut waiting = LANES.min(count);
+        let mut here = self.begun::<V>(&walker);
+        let mut split = self.split(&here.node);
+        for lane in 0..LANES {
+            self.record(walker[lane], split[lane]);
+        }
+        let mut step = self.chain.likely(&here.node).store();
+        while walker.iter().any(|&w| w < count) {
+            let (next, allowed, tube) = self.chain.step(&here, V::load(&step));
+            let (mut allowed, tube) = (allowed.store(), tube.store());
+            split = self.split(&next.node);
+            for lane in 0..LANES {
+                // not a number is no allowance either
+                if !(allowed[lane] >= 0.0 && split[lane].inverse_norm.is_finite()) {
+                    allowed[lane] = -1.0;
+                }
+            }
+            let mut fresh = [false; LANES];
+            for lane in 0..LANES {
+                if walker[lane] >= count {
+                    continue;
+                }
+                let end = if allowed[lane] >= 0.0 {
+                    self.stepped(walker[lane], (step[lane], tube[lane]), split[lane])
+                } else {
+                    step[lane] *= 0.5;
+                    (step[lane] < SHORTEST || step[lane].is_nan()).then_some(End::Singular)
+                };
+                if let Some(end) = end {
+                    self.curves[walker[lane]].end = end;
+                    walker[lane] = if waiting < count { waiting } else { usize::MAX };
+                    waiting += 1;
+                    fresh[lane] = walker[lane] != usize::MAX;
+                }
+            }
+            let mask = V::load(&allowed);
+            here.replace(mask, &next, self.chain.ball_count());
+            if fresh.contains(&true) {
+                let begun = self.begun::<V>(&walker);
+                let mut mask = [-1.0; LANES];
+                let nodes = self.split(&begun.node);
+                for lane in (0..LANES).filter(|&k| fresh[k]) {
+                    mask[lane] = 1.0;
+                    self.record(walker[lane], nodes[lane]);
+                }
+                here.replace(V::load(&mask), &begun, self.chain.ball_count());
+            }
+            let likely = self.chain.likely(&here.node).store();
+            for lane in 0..LANES {
+                if allowed[lane] >= 0.0 || fresh[lane] {
+                    step[lane] = likely[lane];
+                }
+            }
+        }
+    }
+}
+
+impl Walk<'_> {
+    /// The stands at the starts of walkers; a lane without one has the first's.
+    #[inline(always)]
+    fn begun<V: Vector>(&self, walker: &[usize; LANES]) -> Stand<V> {
+        let of = |lane: usize| self.starts.get(walker[lane]).unwrap_or(&self.starts[0]);
+        let mut at = Configuration {
+            values: [V::splat(0.0); COLUMNS],
+            balls: [[[V::splat(0.0); 3]; 3]; BALLS],
+        };
+        let mut before = [V::splat(0.0); COLUMNS];
+        let mut lanes = [0.0; LANES];
+        for c in 0..COLUMNS {
+            for k in 0..LANES {
+                lanes[k] = of(k).0.values[c];
+            }
+            at.values[c] = V::load(&lanes);
+            for k in 0..LANES {
+                lanes[k] = of(k).1[c];
+            }
+            before[c] = V::load(&lanes);
+        }
+        for b in 0..self.chain.ball_count() {
+            for i in 0..3 {
+                for j in 0..3 {
+                    for k in 0..LANES {
+                        lanes[k] = of(k).0.balls[b][i][j];
+                    }
+                    at.balls[b][i][j] = V::load(&lanes);
+                }
+            }
+        }
+        self.chain.stand(&at, &before)
+    }
+
+    /// The lanes of a node.
+    #[inline(always)]
+    fn split<V: Vector>(&self, node: &Node<V>) -> [Node; LANES] {
+        let blank = Node {
+            at: Configuration::ZERO,
+            rates: [[0.0; COLUMNS]; 3],
+            step: 0.0,
+            tube: 0.0,
+            inverse_norm: 0.0,
+            slopes: [0.0; 2],
+            across: 0.0,
+            far: 0.0,
+            open: 0.0,
+        };
+        let mut out = [blank; LANES];
+        for c in 0..COLUMNS {
+            let lanes = node.at.values[c].store();
+            for k in 0..LANES {
+                out[k].at.values[c] = lanes[k];
+            }
+            for order in 0..3 {
+                let lanes = node.rates[order][c].store();
+                for k in 0..LANES {
+                    out[k].rates[order][c] = lanes[k];
+                }
+            }
+        }
+        for b in 0..self.chain.ball_count() {
+            for i in 0..9 {
+                let lanes = node.at.balls[b][i / 3][i % 3].store();
+                for k in 0..LANES {
+                    out[k].at.balls[b][i / 3][i % 3] = lanes[k];
+                }
+            }
+        }
+        let (norm, slope, sway) = (
+            node.inverse_norm.store(),
+            node.slopes[0].store(),
+            node.slopes[1].store(),
+        );
+        let (across, far, open) = (node.across.store(), node.far.store(), node.open.store());
+        for k in 0..LANES {
+            out[k].inverse_norm = norm[k];
+            out[k].slopes = [slope[k], sway[k]];
+            (out[k].across, out[k].far, out[k].open) = (across[k], far[k], open[k]);
+        }
+        out
+    }
+
+    fn record(&mut self, walker: usize, node: Node) {
+        if let Some(curve) = self.curves.get_mut(walker) {
+            curve.nodes.push(node);
+        }
+    }
+
+    /// Adds the node of a step; tells if the curve ends with it.
+    fn stepped(&mut self, walker: usize, (step, tube): (f64, f64), next: Node) -> Option<End> {
+        let chain = self.chain;
+        let curve = &mut self.curves[walker];
+        let last = curve.nodes.len() - 1;
+        if next.open > OPEN {
+            return Some(End::Open);
+        }
+        curve.nodes[last].step = step;
+        curve.nodes[last].tube = tube;
+        // it has left its own first steps behind
+        if last > 3
+            && let Some((along, end)) = chain.returned(&curve.nodes[0], &curve.nodes[last])
+        {
+            curve.nodes[last].step = along;
+            curve.nodes.push(end);
+            return Some(End::Closed);
+        }
+        curve.nodes.push(next);
+        let far = chain.joints.iter().zip(&chain.first).any(|(joint, &c)| {
+            !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > FARTHEST
+        });
+        (far || curve.nodes.len() > MOST_NODES).then_some(End::Far)
+    }
+}
+
+impl<V: Vector> Stand<V> {
+    /// Takes over the lanes of another where a number is not negative.
+    #[inline(always)]
+    fn replace(&mut self, mask: V, other: &Self, balls: usize) {
+        let (node, new) = (&mut self.node, &other.node);
+        take(mask, &mut node.at.values, &new.at.values);
+        for b in 0..balls {
+            take(
+                mask,
+                node.at.balls[b].as_flattened_mut(),
+                new.at.balls[b].as_flattened(),
+            );
+        }
+        take(mask, node.rates.as_flattened_mut(), new.rates.as_flattened());
+        take(mask, &mut node.slopes, &new.slopes);
+        let mut scalars = [node.inverse_norm, node.across, node.far, node.open];
+        take(
+            mask,
+            &mut scalars,
+            &[new.inverse_norm, new.across, new.far, new.open],
+        );
+        [node.inverse_norm, node.across, node.far, node.open] = scalars;
+        take(mask, self.screws.as_flattened_mut(), other.screws.as_flattened());
+        take(
+            mask,
+            self.inverse.0.as_flattened_mut(),
+            other.inverse.0.as_flattened(),
+        );
+    }
+}
+
+/// Takes new numbers over in the lanes where another is not negative.
+#[inline(always)]
+fn take<V: Vector>(mask: V, old: &mut [V], new: &[V]) {
+    let none = V::splat(-f64::MIN_POSITIVE);
+    for (x, y) in old.iter_mut().zip(new) {
+        *x = mask.if_greater(none, *y, *x);
+    }
+}
