@@ -242,7 +242,7 @@ impl<'a> Passes<'a> {
         if passes.passes[0].end > passes.passes[0].start {
             return Some(passes);
         }
-        Self::of(chain, chain.turned_round(curve), input)
+        Some(Self::of(chain, chain.turned_round(curve), input).unwrap_or(passes))
     }
 
     fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {

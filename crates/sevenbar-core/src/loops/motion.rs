@@ -23,6 +23,9 @@ const SEED_JOINTS: usize = 2;
 /// Singular values below this part of the greatest are zero.
 const NO_RANK: f64 = 1e-8;
 
+/// Norm of the screws' inverse from which rounding leaves nothing to follow.
+const LOST: f64 = 1e6;
+
 /// Rows in a turn from which extremes are bracketed.
 const LEAST_ROWS: usize = 180;
 
@@ -367,7 +370,8 @@ impl Curves {
             if self.curves[before..].iter().any(|c| lies_on(chain, c, &start.0)) {
                 continue;
             }
-            if curve.nodes.len() < 3 || curve.end == End::Open {
+            let lost = curve.end == End::Singular && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
+            if curve.nodes.len() < 3 || curve.end == End::Open || lost {
                 self.still += 1;
             } else {
                 self.curves.push(curve);

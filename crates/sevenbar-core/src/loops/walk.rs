@@ -5,7 +5,7 @@ use super::curve::{Curve, End, Node, Stand, dot};
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 
 /// Shorter steps mean a place where the curve is not smooth: a change point.
-const SHORTEST: f64 = 1e-6;
+const SHORTEST: f64 = 1e-10;
 
 /// Most nodes of a curve; an ordinary circuit has some hundreds.
 const MOST_NODES: usize = 400_000;
