@@ -2,7 +2,8 @@
 
 use super::chain::{BALLS, COLUMNS, Chain, Columns, Configuration, Joint};
 use super::curve::{Curve, End, Node, Stand, dot};
-use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
+use crate::simd::{self, Kernel};
+use crate::vectors::{self, LANES, LaneKernel, Vector};
 
 /// Shorter steps mean a place where the curve is not smooth: a change point.
 const SHORTEST: f64 = 1e-10;
@@ -41,8 +42,12 @@ impl Chain {
 
     fn walk(&self, starts: &[Start]) -> Vec<Curve> {
         let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
-        if !starts.is_empty() {
-            dispatch(Walk { chain: self, starts, curves: &mut curves });
+        let walk = Walk { chain: self, starts, curves: &mut curves };
+        match starts.len() {
+            0 => {}
+            // one curve has nothing beside it, and vector code would be slower
+            1 => simd::dispatch(walk),
+            _ => vectors::dispatch(walk),
         }
         curves
     }
@@ -112,7 +117,7 @@ impl LaneKernel for Walk<'_> {
                     self.stepped(walker[lane], (step[lane], tube[lane]), split[lane])
                 } else {
                     step[lane] *= 0.5;
-                    (step[lane] < SHORTEST || step[lane].is_nan()).then_some(End::Singular)
+                    too_short(step[lane])
                 };
                 if let Some(end) = end {
                     self.curves[walker[lane]].end = end;
@@ -141,6 +146,37 @@ impl LaneKernel for Walk<'_> {
             }
         }
     }
+}
+
+impl Kernel for Walk<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(mut self) {
+        let (at, before) = &self.starts[0];
+        let mut here = self.chain.stand(at, before);
+        self.record(0, here.node);
+        let mut step = self.chain.likely(&here.node);
+        loop {
+            let (next, allowed, tube) = self.chain.step(&here, step);
+            let end = if allowed >= 0.0 && next.node.inverse_norm.is_finite() {
+                let end = self.stepped(0, (step, tube), next.node);
+                here = next;
+                step = self.chain.likely(&here.node);
+                end
+            } else {
+                step *= 0.5;
+                too_short(step)
+            };
+            if let Some(end) = end {
+                self.curves[0].end = end;
+                return;
+            }
+        }
+    }
+}
+
+/// The end of a curve whose steps have become too short.
+fn too_short(step: f64) -> Option<End> {
+    (step < SHORTEST || step.is_nan()).then_some(End::Singular)
 }
 
 impl Walk<'_> {
