@@ -16,6 +16,7 @@ from sevenbar.general import GeneralLoop
 from sevenbar.mobility import Mobility
 from sevenbar.motion import Floats, Law, Modes, Motion, Output, finite_array
 from sevenbar.units import sliding_speed, turning_speed
+from sevenbar.written import FREEDOMS, Freedom, column_names
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000
@@ -36,8 +37,7 @@ class Joint:
     @property
     def columns(self) -> tuple[str, ...]:
         """One name for each of its freedoms."""
-        freedoms = {"R": 1, "P": 1, "H": 1, "C": 2, "U": 2, "S": 3}[self.kind]
-        return (self.name,) if freedoms == 1 else tuple(f"{self.name}.{k}" for k in range(1, freedoms + 1))
+        return column_names(self.name, FREEDOMS[self.kind])
 
 
 @dataclass(frozen=True)
@@ -99,15 +99,9 @@ class Linkage:
         return tuple(column for joint in self.joints for column in joint.columns)
 
     @property
-    def column_kinds(self) -> tuple[Literal["turn", "slide"], ...]:
+    def column_kinds(self) -> tuple[Freedom, ...]:
         """What each column is: an angle [rad] or a length."""
-        kinds: dict[str, tuple[Literal["turn", "slide"], ...]] = {
-            "P": ("slide",),
-            "C": ("turn", "slide"),
-            "U": ("turn", "turn"),
-            "S": ("turn", "turn", "turn"),
-        }
-        return tuple(kind for joint in self.joints for kind in kinds.get(joint.kind, ("turn",)))
+        return tuple(freedom for joint in self.joints for freedom in FREEDOMS[joint.kind])
 
     @property
     def lengths(self) -> tuple[float, float, float]:
