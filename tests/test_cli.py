@@ -16,7 +16,7 @@ import sevenbar as sb
 from sevenbar import report
 from sevenbar.gallery import names
 
-KNOWN = ", ".join(names())
+LISTED = "give the path of a TOML file, or a name that 'sevenbar gallery' lists"
 EXAMPLES = Path(__file__).parent.parent / "examples"
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
 
@@ -358,11 +358,17 @@ def folder(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["no.toml"], f"no.toml: no such file; give the path of a TOML file or a gallery name: {KNOWN}"),
+        (["no.toml"], f"no.toml: no such file; {LISTED}"),
+        (["Seven-R"], f"Seven-R: no such file; did you mean 'seven_r'? {LISTED}"),
+        (["7r"], f"7r: no such file; did you mean 'seven_r'? {LISTED}"),
         (
-            ["rssrr"],
-            f"rssrr: no such file; did you mean 'rssr'? give the path of a TOML file or a gallery name: {KNOWN}",
+            ["bricard"],
+            "bricard: no such file; did you mean 'bricard_line' or 'bricard_plane' or 'bricard_trihedral'? "
+            + LISTED,
         ),
+        (["nowhere/rssr"], f"nowhere/rssr: no such file; did you mean 'rssr'? {LISTED}"),
+        (["deeep.toml"], f"deeep.toml: no such file; did you mean 'deep.toml'? {LISTED}"),
+        (["./empty"], f"empty: no such file; did you mean 'empty.toml'? {LISTED}"),
         (["."], ".: is a folder; give the path of a TOML file in it"),
         (["junk.toml"], "junk.toml: not text: byte 128 is not UTF-8; give a TOML file of format 1"),
         (

@@ -6,9 +6,9 @@ import os
 import tomllib
 from pathlib import Path
 
-from sevenbar.errors import DescriptionError, Problem, suggestion
+from sevenbar.errors import DescriptionError, Problem
 from sevenbar.forms import from_form
-from sevenbar.gallery import names, text
+from sevenbar.gallery import names, nearest, text
 from sevenbar.linkage import Linkage
 
 #: A linkage has some dozen numbers; a larger file [bytes] or a longer line [characters] is something else,
@@ -59,11 +59,10 @@ def _read(path: Path) -> str:
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except FileNotFoundError:
-        known = names()
         raise _unreadable(
             place,
-            f"no such file; {suggestion(place, known)}"
-            f"give the path of a TOML file or a gallery name: {', '.join(known)}",
+            f"no such file; {_offer(path)}"
+            "give the path of a TOML file, or a name that 'sevenbar gallery' lists",
         ) from None
     except IsADirectoryError:
         raise _unreadable(place, "is a folder; give the path of a TOML file in it") from None
@@ -80,6 +79,16 @@ def _read(path: Path) -> str:
         raise _unreadable(
             place, f"not text: byte {error.start} is not UTF-8; give a TOML file of format 1"
         ) from None
+
+
+def _offer(path: Path) -> str:
+    """`did you mean 'rssr' or 'rsur'? `: files of the folder and names of the gallery, or nothing."""
+    try:
+        files = sorted(file.name for file in path.parent.glob("*.toml"))
+    except (OSError, ValueError):  # a folder that may not be read; a path that cannot be
+        files = []
+    near = [f"'{path.with_name(name) if name in files else name}'" for name in nearest(path.name, files)]
+    return f"did you mean {' or '.join(near)}? " if near else ""
 
 
 def _unreadable(place: str, message: str) -> DescriptionError:
