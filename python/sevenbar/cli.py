@@ -50,7 +50,7 @@ def analyze(
         str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for report.json, motion.csv and the figures.")
+        Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
     ] = None,
     figures: Annotated[
         list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
