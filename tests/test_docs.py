@@ -16,7 +16,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
-    "name", ["errors", "files", "forms", "gallery", "linkage", "motion", "schema", "units"]
+    "name", ["errors", "files", "forms", "gallery", "linkage", "mobility", "motion", "schema", "units"]
 )
 def test_docstring_examples_give_what_they_show(name):
     assert doctest.testmod(importlib.import_module(f"sevenbar.{name}")).failed == 0
