@@ -49,6 +49,10 @@ def analyze(
     speed: Annotated[
         str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")
     ] = None,
+    law: Annotated[
+        Path | None,
+        typer.Option(help="CSV file of an input law: time, value of the input, perhaps its rates."),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
     ] = None,
@@ -66,7 +70,11 @@ def analyze(
     from sevenbar import report
 
     endings = _figure_formats(figures)
-    motion = sb.load(linkage).motion(samples, input=input_joint, output=output, speed=speed)
+    if law is not None and speed is not None:
+        raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
+    loaded = sb.load(linkage)
+    read = None if law is None else sb.load_law(law, loaded, input=input_joint)
+    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
     if animate is not None:
         from sevenbar.animate import animate as write_animation
         from sevenbar.animate import check_target

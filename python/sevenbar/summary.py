@@ -123,7 +123,12 @@ def _facts(motion: Motion) -> list[tuple[str, str]]:
     if numbers:
         told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
         facts.append(("dimensions", f"{told}  [{linkage.length_unit}]"))
-    facts.append(("drive", f"{motion.input} {_drive(motion)}, output {motion.output}"))
+    how = f"at {motion.speed:.6g} {_units(motion)[0]}/s" if motion.law is None else "by a law"
+    facts.append(("drive", f"{motion.input} {how}, output {motion.output}"))
+    if motion.law is not None:
+        t = motion.law.t
+        rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
+        facts.append(("law", f"{rows}; extremes of velocity and acceleration are those of its rows"))
     facts.append(("motion type", motion.motion_type))
     if meaning := _meaning(motion):
         facts.append(("", meaning))
@@ -145,13 +150,6 @@ def _facts(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
     return facts
-
-
-def _drive(motion: Motion) -> str:
-    if motion.law is None:
-        return f"at {motion.speed:.6g} {_units(motion)[0]}/s"
-    t = motion.law.t
-    return f"by a law of {t.size} sample{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
 
 
 def _units(motion: Motion) -> tuple[str, str]:
@@ -310,7 +308,10 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         return ("-",) if circuit.swing is None else (result(circuit.swing),)
 
     def time_ratio(circuit: Circuit) -> Texts:
-        return ("-",) if circuit.time_ratio is None else (_plain(circuit.time_ratio),)
+        # a ratio of angles, and of times at a constant speed
+        return (
+            ("-",) if circuit.time_ratio is None or motion.law is not None else (_plain(circuit.time_ratio),)
+        )
 
     def reach(circuit: Circuit) -> Texts:
         return ends(circuit.angle, result, "") if circuit.angle else range_of(circuit.output_range, result)
