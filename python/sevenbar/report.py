@@ -227,8 +227,8 @@ def joint_value(text: str, key: str, linkage: Linkage, column: int) -> float:
     own = LENGTHS[linkage.length_unit] * 1e6
     sizes = {unit: round(size * 1e6) / round(own) for unit, size in LENGTHS.items()} if slides else ANGLES
     plain = linkage.length_unit if slides else "deg"
-    match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\W\d]*)\s*", text)
-    unit = (match[2] or plain) if match else ""
+    match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\W\d]*|\u00b0)\s*", text)
+    unit = (match[2] or plain).replace("\u00b0", "deg") if match else ""
     if match is None or unit not in sizes or not math.isfinite(float(match[1])):
         kind = "slides" if slides else "turns"
         hint = f"12 or 12{plain}" if slides else "30, 30deg or 0.5rad"

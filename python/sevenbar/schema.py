@@ -36,6 +36,7 @@ from sevenbar.written import (
     drive_of,
     driven,
     joints_of,
+    meant_kind,
 )
 
 #: How the kinds that take more than one Denavit-Hartenberg row are written.
@@ -43,8 +44,8 @@ AS_ROWS = {"C": "R and P on one axis", "U": "R and R", "S": "R, R and R through 
 
 
 def _row_kind(value: object) -> object:
-    if isinstance(value, str) and value in AS_ROWS:
-        rows = AS_ROWS[value]
+    rows = AS_ROWS.get(value if isinstance(value, str) and value in AS_ROWS else meant_kind(value))
+    if rows is not None:
         raise refuse(f"{shown(value)} takes more than one row; write {rows}, or draw the loop as [[joint]]")
     return value
 
@@ -187,7 +188,8 @@ def _problem(detail: ErrorDetails) -> Problem:
             message = _missing(location, owner)
         case "extra_forbidden":
             near = suggestion(str(location[-1]), owner.model_fields if owner else ())
-            message = f"is not known here; {near}allowed: {keys}"
+            home = "" if near else _home(str(location[-1]))
+            message = home or f"is not known here; {near}allowed: {keys}"
         case "literal_error" | "int_parsing_size":
             message = f"{value} is not a format of this version; give format = 1"
         case "model_type" | "dict_type":
@@ -228,16 +230,31 @@ def _array_hint(location: list[int | str]) -> str:
     return f"write [[{location[-1] if location else 'joint'}]] before each one"
 
 
+#: The form of each table, by its head without brackets.
+TABLES: dict[str, type[_Form]] = {
+    "rssr": RssrForm,
+    "joint": JointForm,
+    "link": LinkForm,
+    "point": PointForm,
+    "drive": DriveForm,
+}
+
+
 def _form_at(location: list[int | str]) -> type[_Form] | None:
     """The form that owns a place: the file's own, or that of the table that the path enters."""
     words = [part for part in location if isinstance(part, str)]
-    tables: dict[str, type[_Form]] = {
-        "rssr": RssrForm,
-        "joint": JointForm,
-        "link": LinkForm,
-        "point": PointForm,
-        "drive": DriveForm,
-    }
     if not words:
         return LinkageForm
-    return tables.get(words[0]) if len(words) == 1 else None
+    return TABLES.get(words[0]) if len(words) == 1 else None
+
+
+def _home(key: str) -> str:
+    """Where a key belongs that stands elsewhere, if it can belong to one place only."""
+    homes = [table for table, form in TABLES.items() if key in form.model_fields]
+    if key in LinkageForm.model_fields and not homes:
+        return "is a key of the whole file; write it above the first table"
+    if len(homes) != 1 or key in LinkageForm.model_fields:
+        return ""
+    (table,) = homes
+    head = f"[{table}]" if table in ("rssr", "drive") else f"[[{table}]]"
+    return f"is a key of {head}; write it below that head"

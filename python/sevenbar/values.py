@@ -11,6 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.units import sliding_speed, turning_speed, unknown_unit
+from sevenbar.written import JOINT_KINDS, ROW_KINDS, meant_kind
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
 LARGEST_DIMENSION = 1e100
@@ -86,7 +87,8 @@ def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> BeforeVa
             return value
         if what == "unit":
             raise refuse(unknown_unit(value, known))
-        near = suggestion(value, known) if isinstance(value, str) else ""
+        meant = meant_kind(value) if known in (JOINT_KINDS, ROW_KINDS) else ""
+        near = f"did you mean '{meant}'? " if meant in known else suggestion(str(value), known)
         raise refuse(f"{shown(value)} is not a {what}; {near}allowed: {', '.join(known)}")
 
     return BeforeValidator(choose)

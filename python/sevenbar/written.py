@@ -23,6 +23,16 @@ JOINT_KINDS = tuple(FREEDOMS)
 #: Kinds that a Denavit-Hartenberg row can hold.
 ROW_KINDS = ("R", "P", "H")
 
+#: Words that people use for the kinds.
+KIND_WORDS = {
+    "R": ("revolute", "hinge", "pin", "turning", "rotary", "rotation"),
+    "P": ("prismatic", "slider", "sliding", "slide", "translation"),
+    "H": ("helical", "helix", "screw"),
+    "C": ("cylindric", "cylindrical", "cylinder"),
+    "U": ("universal", "cardan", "hooke"),
+    "S": ("spherical", "sphere", "ball"),
+}
+
 #: Words that people use for the ground where a joint's kind should stand.
 GROUND_WORDS = ("g", "ground", "fixed", "frame", "base")
 
@@ -68,6 +78,12 @@ def joints_of(raw: Mapping[str, Any]) -> list[Written]:
             known = kind if isinstance(kind, str) and kind in FREEDOMS else ""
             joints.append(Written(f"{key}[{i}]", label or f"theta_{i}", known))
     return joints
+
+
+def meant_kind(word: object) -> str:
+    """The kind that a word stands for, or nothing."""
+    plain = word.strip().lower().removesuffix("joint").strip() if isinstance(word, str) else ""
+    return next((kind for kind, words in KIND_WORDS.items() if plain in words), "")
 
 
 def names_ground(kind: object) -> bool:
