@@ -298,6 +298,41 @@ def test_the_command_line_takes_a_law_and_writes_its_rows(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("linkage", "joint", "unit", "first", "last", "posed"),
+    [
+        # circuit 0 is within 111 to 187 deg, circuit 1 within -7 to 68
+        ("rssr", "rocker", "deg", 0, 20, True),
+        ("rssr", "rocker", "deg", 80, 100, False),
+        ("rssp", "slider", "mm", -300, 300, True),
+        ("rssp", "slider", "mm", 2000, 3000, False),
+    ],
+)
+def test_a_law_beyond_the_range_of_circuits_is_told_so(tmp_path, linkage, joint, unit, first, last, posed):
+    times = np.linspace(0, 1, 61)
+    write(tmp_path / "law.csv", f"time [s],{joint} [{unit}]", [times, first + (last - first) * times])
+    arguments = ["analyze", linkage, "--input", joint, "--law", "law.csv", "--out", "out"]
+    arguments += ["--animate", "move.gif"] if linkage == "rssr" and posed else []
+    run = sevenbar(*arguments, cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert ("no row within the range" in run.stdout) == (linkage == "rssr" or not posed)
+    assert "no bound" not in run.stdout
+    rows = (tmp_path / "out" / "motion.csv").read_text().splitlines()[1:]
+    assert {row.split(",")[3] for row in rows} == ({"ok", "no-solution"} if posed else {"no-solution"})
+    assert (tmp_path / "out" / "motion.png").exists()
+    assert (tmp_path / "out" / "configuration.png").exists() == posed
+
+
+@pytest.mark.parametrize("linkage", ["rssr", "rssp"])
+@pytest.mark.parametrize("rows", [1, 8])
+def test_a_law_that_rests_is_a_motion_of_its_rows(tmp_path, linkage, rows):
+    write(tmp_path / "law.csv", "t,q [deg],v [rad/s],a [rad/s2],j [rad/s3]",
+          [np.arange(rows), np.full(rows, 10.0), *np.zeros((3, rows))])  # fmt: skip
+    run = sevenbar("analyze", linkage, "--law", "law.csv", "--out", "out", cwd=tmp_path)
+    assert (run.returncode, run.stderr) == (0, "")
+    assert len((tmp_path / "out" / "motion.csv").read_text().splitlines()) == 1 + 2 * rows
+
+
+@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (["--law", "none.csv"], "none.csv: no such file; give the path of a CSV file"),

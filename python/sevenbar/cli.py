@@ -101,11 +101,11 @@ def analyze(
 
         # before anything is written
         check_target(animate)
-        chosen_circuit(motion, 0)
+        drawn = chosen_circuit(motion, report.posed_circuit(motion) or 0).index
     written = report.write(motion, out, endings) if out is not None else []
     if animate is not None:
         with _progress_bar(f"drawing {animate.name}") as progress:
-            write_animation(motion, animate, progress=progress)
+            write_animation(motion, animate, circuit=drawn, progress=progress)
         written.append(animate)
     if json:
         typer.echo(report.as_json(motion))

@@ -41,6 +41,7 @@ __all__ = [
     "joint_value",
     "markdown",
     "modes_json",
+    "posed_circuit",
     "print_modes",
     "print_text",
     "write",
@@ -205,9 +206,15 @@ def write(motion: Motion, folder: str | os.PathLike[str], figures: Sequence[str]
         write_csv(motion, staging / "motion.csv")
         if motion.circuits:
             general = motion.linkage.kind != "RSSR"
-            kinds = ["configuration", "curves", *(["joints", "point"] if general else [])]
+            posed = posed_circuit(motion)
+            kinds = ["curves", *(["joints"] if general else [])]
+            if posed is not None:
+                # a law that rests leaves no path
+                inputs = motion.circuits[posed].input
+                moves = np.unique(inputs[np.isfinite(inputs)]).size > 1
+                kinds += ["configuration", *(["point"] if general and moves else [])]
             points = {point.name: (point.link, point.at) for point in motion.linkage.points}
-            draw(motion, staging, kinds, points, 0, figures)
+            draw(motion, staging, kinds, points, posed or 0, figures)
         # a browser shows no PDF in place; of several formats one is enough
         shown_here = [file.name for file in sorted(staging.iterdir()) if file.suffix in (".png", ".svg")]
         stems = {name.rpartition(".")[0]: name for name in reversed(shown_here)}
@@ -215,6 +222,12 @@ def write(motion: Motion, folder: str | os.PathLike[str], figures: Sequence[str]
         (staging / "report.md").write_text(markdown(motion, pictures), encoding="utf-8")
 
     return fill_folder(Path(folder), fill)
+
+
+def posed_circuit(motion: Motion) -> int | None:
+    """The first circuit with a pose to draw; `None` where a law leaves the range of all."""
+    posed = (circuit.index for circuit in motion if (circuit.status != "no-solution").any())
+    return next(posed, None)
 
 
 def joint_value(text: str, key: str, linkage: Linkage, column: int) -> float:

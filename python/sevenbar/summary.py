@@ -295,6 +295,8 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         return tuple(f"{show(value)} @ {place(at, whole=True)}" for value, at in pairs)
 
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
+        if motion.law is not None:
+            return ends(extremes, _plain, "no row within the range")
         return ends(extremes, _plain, "no bound at limits" if circuit.input_range else "change point")
 
     def range_of(extent: tuple[float, float] | None, show: _Shown) -> Texts:
