@@ -240,12 +240,13 @@ def _no_limits(motion: Motion) -> str:
 def _circuit_count(motion: Motion) -> str:
     if not motion.circuits:
         return "none: it closes only at the change point" if motion.change_points.size else "none"
+    turning = sorted({c.turns for c in motion if c.closed and c.turns})
     ways = {
-        "{} after one turn of the input": sum(c.closed and c.turns == 1 for c in motion),
-        "{} after two turns of the input": sum(c.closed and c.turns == 2 for c in motion),
-        "{} to and fro": sum(c.closed and c.turns == 0 for c in motion),
-        "{} not known to close": sum(not c.closed for c in motion),
+        f"{{}} after {_turns(k)} of the input": sum(c.closed and c.turns == k for c in motion)
+        for k in turning
     }
+    ways["{} to and fro"] = sum(c.closed and c.turns == 0 for c in motion)
+    ways["{} not known to close"] = sum(not c.closed for c in motion)
     found = {way: count for way, count in ways.items() if count}
     total = len(motion.circuits)
 
@@ -369,7 +370,11 @@ def _quantities(motion: Motion) -> list[_Quantity]:
 def _way_round(circuit: Circuit) -> str:
     if not circuit.closed:
         return "open"
-    return {0: "to and fro", 1: "one turn", 2: "two turns"}[circuit.turns]
+    return _turns(circuit.turns) if circuit.turns else "to and fro"
+
+
+def _turns(count: int) -> str:
+    return {1: "one turn", 2: "two turns"}.get(count, f"{count} turns")
 
 
 def _telling(motion: Motion, form: Literal["list", "table"]) -> list[tuple[_Quantity, list[Texts]]]:
