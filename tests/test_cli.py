@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +17,6 @@ import sevenbar as sb
 from sevenbar import report
 from sevenbar.gallery import names
 
-KNOWN = ", ".join(names())
 EXAMPLES = Path(__file__).parent.parent / "examples"
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
 
@@ -97,6 +97,7 @@ def test_the_folder_holds_report_rows_and_figures(tmp_path):
     run = sevenbar("analyze", "rssr", "--samples", 36, "--out", out, "--figures", "png", "--figures", "svg")
     assert run.returncode == 0, run.stderr
     names = {
+        "report.md",
         "report.json",
         "motion.csv",
         "configuration.png",
@@ -145,7 +146,7 @@ def test_a_linkage_that_does_not_close_is_an_answer(tmp_path):
     run = sevenbar("analyze", "short.toml", "--out", "out", cwd=tmp_path)
     assert run.returncode == 0
     assert "cannot-assemble" in run.stdout
-    assert {p.name for p in (tmp_path / "out").iterdir()} == {"report.json", "motion.csv"}
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {"report.md", "report.json", "motion.csv"}
 
 
 def test_animation_goes_where_it_is_told(tmp_path):
@@ -178,15 +179,27 @@ def test_the_report_of_a_general_loop_says_how_it_moves():
     assert "idle" not in run.stdout
 
 
-def test_eight_circuits_have_a_line_each_and_no_cell_is_cut():
+def test_eight_circuits_are_one_table_where_those_that_agree_share_a_row():
     run = sevenbar("analyze", "seven_r")
     lines = run.stdout.splitlines()
     assert max(len(line) for line in lines) <= 80
     assert "…" not in run.stdout
     motion = sb.load("seven_r").motion()
-    for circuit in motion:
-        cell = f"{circuit.velocity.lowest:.6g} @ "
-        assert any(line.split()[:1] == [str(circuit.index)] and cell in line for line in lines)
+    told = []
+    for place, line in enumerate(lines):
+        if not re.match(r"\s+\d, \d  ", line):
+            continue
+        indices = [int(word) for word in re.findall(r"\d+", line)[:2]]
+        told += indices
+        for circuit in (motion.circuits[i] for i in indices):
+            for low, high in (
+                (circuit.velocity.lowest, circuit.velocity.highest),
+                (circuit.acceleration.lowest, circuit.acceleration.highest),
+            ):
+                assert f" {low:.6g} @ " in line
+                assert f" {high:.6g} @ " in lines[place + 1]
+    assert told == list(range(8))
+    assert run.stdout.count("double-crank") == 1
     (row,) = [line.split() for line in lines if "R theta_4" in line and line.split()[0] == "4"]
     assert row == ["4", "R", "theta_4", "-115", "10", "0"]
 
@@ -227,7 +240,13 @@ def test_the_modes_of_a_loop_are_a_table():
 
 @pytest.mark.parametrize(
     ("at", "value"),
-    [("30", math.pi / 6), ("30deg", math.pi / 6), ("-0.25 rad", -0.25), ("1e1", math.pi / 18)],
+    [
+        ("30", math.pi / 6),
+        ("30.000\u00b0", math.pi / 6),
+        ("30deg", math.pi / 6),
+        ("-0.25 rad", -0.25),
+        ("1e1", math.pi / 18),
+    ],
 )
 def test_an_angle_is_given_in_degrees_or_with_its_unit(at, value):
     report = json.loads(sevenbar("modes", "seven_r", "--json", f"--at={at}").stdout)
@@ -268,7 +287,7 @@ def test_each_kind_of_figure_is_written(tmp_path):
 def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
     assert sevenbar("analyze", "rssp", "--samples", 24, "--out", tmp_path).returncode == 0
     figures = {"configuration.png", "motion.png", "joints.png", "path_B.png"}
-    assert {p.name for p in tmp_path.iterdir()} == {"report.json", "motion.csv", *figures}
+    assert {p.name for p in tmp_path.iterdir()} == {"report.md", "report.json", "motion.csv", *figures}
 
 
 @pytest.mark.parametrize(
@@ -318,8 +337,8 @@ def test_each_mistake_with_modes_and_figures_ends_with_its_message(tmp_path, arg
     assert not list(tmp_path.iterdir())
 
 
-def _report(motion):
-    console = Console(width=100, file=io.StringIO())
+def _report(motion, width=100):
+    console = Console(width=width, file=io.StringIO())
     report.print_text(motion, console)
     return console.file.getvalue()
 
@@ -339,74 +358,63 @@ def test_each_way_not_to_move_is_told_in_a_sentence():
     assert "turns fully" not in told
 
 
-def test_every_linkage_of_the_gallery_has_its_report():
-    for name in names():
-        assert sb.load(name).name in _report(sb.load(name).motion(samples=36))
+@pytest.mark.parametrize("name", names())
+def test_the_report_of_every_linkage_of_the_gallery_holds_its_extremes_within_a_page(name):
+    motion = sb.load(name).motion(samples=36)
+    told = _report(motion)
+    assert told.startswith(motion.linkage.name)
+    assert max(len(line) for line in told.splitlines()) <= 100
+    for circuit in motion:
+        for extremes in (circuit.velocity, circuit.acceleration):
+            if extremes is not None:
+                assert f"{extremes.lowest:.6g} @ " in told
+                assert f"{extremes.highest:.6g} @ " in told
+        for centre in circuit.dead_centres:
+            assert _places([math.degrees(centre.input) % 360], told)
+    if len(motion.circuits) > 1:
+        assert told.count(motion.motion_type) == 1
+    page = report.markdown(motion)
+    assert _words(page) == _words(told)
 
 
-@pytest.fixture
-def folder(tmp_path):
-    (tmp_path / "junk.toml").write_bytes(bytes(range(256)) * 20)
-    (tmp_path / "nested.toml").write_text("a = " + "[" * 5_000_000 + "]" * 5_000_000)
-    (tmp_path / "deep.toml").write_text("a = " + "[\n" * 30_000)
-    (tmp_path / "dotted.toml").write_text(".".join("a" * 900) + " = 1\n")
-    (tmp_path / "empty.toml").write_text("")
-    (tmp_path / "taken").write_text("a file")
-    return tmp_path
+def _places(angles, told):
+    """Whether each angle [deg] is told, to the last digit shown but for rounding."""
+    shown = np.array([float(word) for word in re.findall(r"(-?\d+\.\d{3})°", told)]) % 360
+    return all(np.abs((shown - angle + 180) % 360 - 180).min() < 1e-3 for angle in angles)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["no.toml"], f"no.toml: no such file; give the path of a TOML file or a gallery name: {KNOWN}"),
-        (
-            ["rssrr"],
-            f"rssrr: no such file; did you mean 'rssr'? give the path of a TOML file or a gallery name: {KNOWN}",
-        ),
-        (["."], ".: is a folder; give the path of a TOML file in it"),
-        (["junk.toml"], "junk.toml: not text: byte 128 is not UTF-8; give a TOML file of format 1"),
-        (
-            ["nested.toml"],
-            "nested.toml: larger than 100000 bytes, so it is no linkage file; give a TOML file of format 1",
-        ),
-        (["deep.toml"], "deep.toml: nested too deep; a linkage file has tables of plain keys only"),
-        (["rssr", "--samples", "3"], "samples: 3 is not a count; give 4 to 1000000"),
-        (
-            ["rssr", "--speed", "0 rpm"],
-            "speed: '0 rpm' moves nothing; give a finite speed other than 0, as in '10 rad/s'",
-        ),
-        (["rssr", "--figures", "bmp"], "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf"),
-        (
-            ["rssr", "--out", "taken"],
-            "taken: cannot be written: file exists; give a folder that can be made or written",
-        ),
-        (
-            ["rssr", "--out", "taken/more"],
-            "taken/more: cannot be written: not a directory; give a folder that can be made or written",
-        ),
-    ],
-)
-def test_each_mistake_ends_with_its_message_and_exit_2(folder, arguments, message):
-    before = sorted(p.name for p in folder.iterdir())
-    assert mistake("analyze", *arguments, cwd=folder) == message
-    assert sorted(p.name for p in folder.iterdir()) == before
+def _words(told):
+    """Numbers and words in order of the alphabet, whatever stands between them."""
+    return sorted(set(re.findall(r"[\w.°²/]+", told.replace("\\", "").replace("<br>", " "))) - {"-"})
 
 
-def test_a_name_nested_a_thousand_times_is_one_short_message(folder):
-    lines = mistake("analyze", "dotted.toml", cwd=folder).splitlines()
-    assert lines[1].startswith("sevenbar: dotted.toml: a: is not known here; ")
-    assert all(len(line) < 300 for line in lines)
+def test_a_dead_centre_that_no_range_ends_at_is_told_beside_it():
+    told = _report(sb.load("rsur").motion(samples=36, input="cross.2"))
+    assert "other dead" in told
+    (row,) = [line.split() for line in told.splitlines() if line.split()[:2] == ["0", "0.000°"]]
+    assert row == ["0", "0.000°", "-7.001°", "@", "4.077°", "0.000°"]
+    assert "360.000°" not in told
+    assert "-0.000°" not in told
 
 
-def test_words_that_the_command_line_does_not_know_end_with_exit_2():
-    assert sevenbar("analyze", "rssr", "--samples", "many").returncode == 2
-    assert sevenbar("analyse", "rssr").returncode == 2
-    assert sevenbar("analyze").returncode == 2
+def test_circuits_of_two_kinds_tell_their_kind_and_narrow_consoles_fold_at_the_place():
+    motion = sb.load("rscr").motion(samples=36)
+    told = _report(motion)
+    for words in ("crank-rocker", "double-rocker", "one turn", "to and fro", "no bound at limits"):
+        assert words in told
+    narrow = _report(motion, width=80)
+    assert max(len(line) for line in narrow.splitlines()) <= 80
+    assert all(cell in narrow for cell in ("-0.18743 ", "@ 306.021°", "118.968°", "@ 47.539°"))
 
 
-def test_a_figure_in_a_place_that_cannot_be_written_leaves_nothing(folder):
-    before = sorted(p.name for p in folder.iterdir())
-    for place in ("taken/move.gif", "nowhere/move.gif", "move.avi"):
-        message = mistake("analyze", "rssr", "--out", "out", "--animate", place, cwd=folder)
-        assert place in message or "avi" in message
-    assert sorted(p.name for p in folder.iterdir()) == before
+def test_the_page_for_people_shows_the_figures_beside_it(tmp_path):
+    assert sevenbar("analyze", "rssp", "--samples", 24, "--out", tmp_path).returncode == 0
+    page = (tmp_path / "report.md").read_text(encoding="utf-8")
+    shown = re.findall(r"!\[(\w+)\]\((.*?)\)", page)
+    assert shown == [(name, f"{name}.png") for name in ("configuration", "joints", "motion", "path_B")]
+    assert all((tmp_path / target).is_file() for _, target in shown)
+    tables = [
+        [line.count("|") for line in part.splitlines()] for part in page.split("\n\n") if part[0] == "|"
+    ]
+    assert tables
+    assert all(len(set(bars)) == 1 for bars in tables)

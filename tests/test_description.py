@@ -114,7 +114,7 @@ def test_errors_of_form_and_errors_between_keys_are_told_together():
         (
             "[rssr]",
             "[rssr]\nM = 700",
-            "not valid TOML: Cannot overwrite a value (at line 13, column 8); see the examples",
+            "line 13: 'M = 700' stands twice; leave one of them out",
         ),
     ],
 )

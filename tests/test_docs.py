@@ -15,7 +15,9 @@ ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", ["errors", "files", "forms", "linkage", "motion", "schema", "units"])
+@pytest.mark.parametrize(
+    "name", ["errors", "files", "forms", "gallery", "linkage", "mobility", "motion", "schema", "units"]
+)
 def test_docstring_examples_give_what_they_show(name):
     assert doctest.testmod(importlib.import_module(f"sevenbar.{name}")).failed == 0
 

@@ -142,16 +142,18 @@ def test_the_result_says_how_completeness_was_established(
         assert case.linkage().assembly_modes(case.theta).completeness == want
 
 
-def test_balls_with_a_joint_between_on_both_sides_need_two_inputs() -> None:
-    """Eight freedoms and no idle one: the middle joints keep the balls from spinning about the line between them."""
+def test_two_links_between_balls_spin_together_and_are_refused_by_name() -> None:
+    """Eight freedoms, one of them idle: the hinge between the balls is carried round and does not turn."""
     for seed in range(5):
         linkage = compound(np.random.default_rng(seed), "RSRS").linkage()
-        with pytest.raises(sb.errors.RequestError, match="driven"):
-            linkage.assembly_modes(0.0)
-        assert linkage.mobility().finite == 2
-        motion = linkage.motion(samples=24)
-        assert motion.motion_type == "two-inputs"
-        assert len(motion.circuits) == 0
+        loop = Loop.of(linkage)
+        count, _, moved = loop.idle(np.zeros(loop.count), 0)
+        assert count == len(linkage.mobility().idle) == 1
+        assert moved.tolist() == [False, True, True]
+        assert linkage.mobility().finite == 1
+        for call in (lambda: linkage.assembly_modes(0.0), lambda: linkage.motion(samples=24)):  # noqa: B023
+            with pytest.raises(sb.errors.NotCoveredError, match="spin of links 2 and 3 together"):
+                call()
 
 
 def test_the_sixteen_modes_of_liu_and_zhu_are_all_there() -> None:

@@ -16,6 +16,7 @@ from sevenbar import errors
 from sevenbar._core import __version__
 from sevenbar.files import load, loads
 from sevenbar.forms import from_axes, from_dh, rssr
+from sevenbar.law_file import load_law
 from sevenbar.linkage import Drive, Joint, Linkage, Point
 from sevenbar.motion import Circuit, DeadCentre, Extremes, Law, Modes, Motion, Output, Trace
 
@@ -37,6 +38,7 @@ __all__ = [
     "from_axes",
     "from_dh",
     "load",
+    "load_law",
     "loads",
     "rssr",
 ]

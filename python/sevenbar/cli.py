@@ -8,15 +8,32 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
+import typer.core
 
 import sevenbar as sb
 from sevenbar.errors import RequestError, SevenbarError, shown
 
+
+class _Commands(typer.core.TyperGroup):
+    """The commands; a linkage in the place of one is told what is missing."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        from sevenbar.gallery import names
+
+        word = args[0]
+        if word not in self.commands and (word in names() or word.endswith(".toml")):
+            raise RequestError(
+                f"{word}: is a linkage, where a command should stand; give: sevenbar analyze {word}"
+            )
+        return super().resolve_command(ctx, args)
+
+
 app = typer.Typer(
     name="sevenbar",
+    cls=_Commands,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -49,8 +66,12 @@ def analyze(
     speed: Annotated[
         str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")
     ] = None,
+    law: Annotated[
+        Path | None,
+        typer.Option(help="CSV file of an input law: time, value of the input, perhaps its rates."),
+    ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for report.json, motion.csv and the figures.")
+        Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
     ] = None,
     figures: Annotated[
         list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
@@ -66,7 +87,13 @@ def analyze(
     from sevenbar import report
 
     endings = _figure_formats(figures)
-    motion = sb.load(linkage).motion(samples, input=input_joint, output=output, speed=speed)
+    if figures is not None and out is None:
+        raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
+    if law is not None and speed is not None:
+        raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
+    loaded = sb.load(linkage)
+    read = None if law is None else sb.load_law(law, loaded, input=input_joint)
+    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
     if animate is not None:
         from sevenbar.animate import animate as write_animation
         from sevenbar.animate import check_target
@@ -74,11 +101,11 @@ def analyze(
 
         # before anything is written
         check_target(animate)
-        chosen_circuit(motion, 0)
+        drawn = chosen_circuit(motion, report.posed_circuit(motion) or 0).index
     written = report.write(motion, out, endings) if out is not None else []
     if animate is not None:
         with _progress_bar(f"drawing {animate.name}") as progress:
-            write_animation(motion, animate, progress=progress)
+            write_animation(motion, animate, circuit=drawn, progress=progress)
         written.append(animate)
     if json:
         typer.echo(report.as_json(motion))
@@ -164,7 +191,7 @@ def plot_(
 
 
 def _kinds(given: list[str] | None) -> list[str]:
-    words = list(dict.fromkeys(given or ["all"]))
+    words = _words(given or ["all"])
     for word in words:
         if word not in (*KINDS, "all"):
             raise RequestError(f"--kind: {shown(word)} is not a figure; allowed: {', '.join(KINDS)}, all")
@@ -201,14 +228,31 @@ def _points(
 
 
 @app.command()
-def gallery() -> None:
-    """List the linkages that come with Sevenbar."""
-    from sevenbar.gallery import names
+def gallery(
+    name: Annotated[
+        str | None, typer.Argument(metavar="[NAME]", help="The one whose file is printed.")
+    ] = None,
+) -> None:
+    """List the linkages that come with Sevenbar, or print the file of one to begin with."""
+    from sevenbar.gallery import names, nearest, text
 
     known = names()
+    if name is not None and name not in known:
+        near = " or ".join(f"'{word}'" for word in nearest(name))
+        offer = f"did you mean {near}? " if near else ""
+        raise RequestError(f"{name}: no such linkage; {offer}'sevenbar gallery' lists all")
+    if name is not None:
+        typer.echo(text(name), nl=False)
+        return
     width = max(len(name) for name in known)
     for name in known:
         typer.echo(f"{name:<{width}}  {sb.load(name).name}")
+
+
+def _words(given: list[str]) -> list[str]:
+    """The words of an option that is repeated, or has several parted by commas; each once."""
+    parts = [part.strip() for word in given for part in word.split(",")]
+    return list(dict.fromkeys(part for part in parts if part))
 
 
 def _figure_formats(given: list[str] | None) -> tuple[str, ...]:
@@ -216,7 +260,7 @@ def _figure_formats(given: list[str] | None) -> tuple[str, ...]:
         return ("png",)
     from sevenbar.figure import FORMATS
 
-    endings = tuple(dict.fromkeys(word.lower().removeprefix(".") for word in given))
+    endings = tuple(word.lower().removeprefix(".") for word in _words(given))
     for ending in endings:
         if ending not in FORMATS:
             raise RequestError(
@@ -240,7 +284,7 @@ def _progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
 def main() -> NoReturn:
     """The program: exit 0 well, 2 the caller's mistake, 1 our own fault."""
     try:
-        app(standalone_mode=True)
+        app(standalone_mode=True, prog_name="sevenbar")
     except SevenbarError as error:
         sys.stderr.write("".join(f"sevenbar: {line}\n" for line in str(error).splitlines()))
         sys.exit(2)

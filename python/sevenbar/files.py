@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
 from pathlib import Path
 
-from sevenbar.errors import DescriptionError, Problem, suggestion
+from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.forms import from_form
-from sevenbar.gallery import names, text
+from sevenbar.gallery import names, nearest, text
 from sevenbar.linkage import Linkage
 
 #: A linkage has some dozen numbers; a larger file [bytes] or a longer line [characters] is something else,
@@ -45,12 +46,43 @@ def loads(content: str, source: str = "text") -> Linkage:
     try:
         raw = tomllib.loads(content)
     except ValueError as error:  # not TOML, or an integer of thousands of digits
-        raise _unreadable(
-            source, f"not valid TOML: {str(error)[:200]}; see the examples for the form of a linkage file"
-        ) from None
+        raise _unreadable(source, _told(error, content.split("\n"))) from None
     except RecursionError:
         raise _unreadable(source, "nested too deep; a linkage file has tables of plain keys only") from None
     return from_form(schema.check(raw, source=source), source)
+
+
+#: What TOML's reader says of a place.
+_PLACE = re.compile(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)")
+
+#: Slips that people make in TOML, by how the line looks: a unit beside a number, a decimal comma, a text or
+#: a sign of another language.
+_SLIPS = (
+    (
+        re.compile(r"[^=]+=\s*[-+\d.]+\s*[A-Za-z\u00b0/]+.*"),
+        "write a number without its unit, which length_unit and angle_unit tell for the whole file",
+    ),
+    (re.compile(r"[^=]+=\s*[-+]?\d+,\d+\s*(#.*)?"), "write a decimal point, as in 0.5"),
+    (re.compile(r"\s*[A-Za-z_]\w*\s*=\s*[A-Za-z_][^\"']*"), 'write a text in quotes, as in kind = "R"'),
+    (re.compile(r"\s*\w+\s*:.*"), "write a key and its value with '=', as in M = 700"),
+    (re.compile(r"\s*\[+[^\]]*"), "close the head of a table, as in [rssr] or [[joint]]"),
+)
+
+
+def _told(error: ValueError, lines: list[str]) -> str:
+    """What is wrong with a text that is not TOML: the line, the reader's words, and what to do."""
+    match = _PLACE.fullmatch(str(error))
+    example = "'sevenbar gallery rssr' prints a file that is right"
+    if match is None:
+        return f"not valid TOML: {str(error)[:200]}; {example}"
+    reason = match[1][:1].lower() + match[1][1:200]
+    if match[2] is None:
+        return f"not valid TOML: {reason}, at the end of the file; {example}"
+    line = lines[int(match[2]) - 1]
+    if reason.startswith(("cannot overwrite", "cannot declare")):
+        return f"line {match[2]}: {shown(line.strip())} stands twice; leave one of them out"
+    remedy = next((told for slip, told in _SLIPS if slip.fullmatch(line)), example)
+    return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 
 
 def _read(path: Path) -> str:
@@ -59,11 +91,10 @@ def _read(path: Path) -> str:
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except FileNotFoundError:
-        known = names()
         raise _unreadable(
             place,
-            f"no such file; {suggestion(place, known)}"
-            f"give the path of a TOML file or a gallery name: {', '.join(known)}",
+            f"no such file; {_offer(path)}"
+            "give the path of a TOML file, or a name that 'sevenbar gallery' lists",
         ) from None
     except IsADirectoryError:
         raise _unreadable(place, "is a folder; give the path of a TOML file in it") from None
@@ -80,6 +111,16 @@ def _read(path: Path) -> str:
         raise _unreadable(
             place, f"not text: byte {error.start} is not UTF-8; give a TOML file of format 1"
         ) from None
+
+
+def _offer(path: Path) -> str:
+    """`did you mean 'rssr' or 'rsur'? `: files of the folder and names of the gallery, or nothing."""
+    try:
+        files = sorted(file.name for file in path.parent.glob("*.toml"))
+    except (OSError, ValueError):  # a folder that may not be read; a path that cannot be
+        files = []
+    near = [f"'{path.with_name(name) if name in files else name}'" for name in nearest(path.name, files)]
+    return f"did you mean {' or '.join(near)}? " if near else ""
 
 
 def _unreadable(place: str, message: str) -> DescriptionError:

@@ -219,7 +219,7 @@ def _from_dimensions(form: RssrForm) -> Linkage:
             pose(np.diag([1.0, -1.0, -1.0]), [form.L3, 0.0, 0.0]),
         ]
     )
-    from sevenbar.schema import RSSR_JOINTS
+    from sevenbar.written import RSSR_JOINTS
 
     return Linkage(
         name="RSSR",

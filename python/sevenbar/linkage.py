@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -13,9 +13,10 @@ import numpy.typing as npt
 from sevenbar.closed_form import ClosedForm
 from sevenbar.errors import NotCoveredError, RequestError, no_joint, shown
 from sevenbar.general import GeneralLoop
-from sevenbar.mobility import Mobility
+from sevenbar.mobility import Mobility, spins_between_balls
 from sevenbar.motion import Floats, Law, Modes, Motion, Output, finite_array
 from sevenbar.units import sliding_speed, turning_speed
+from sevenbar.written import FREEDOMS, Freedom, column_names
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000
@@ -36,8 +37,7 @@ class Joint:
     @property
     def columns(self) -> tuple[str, ...]:
         """One name for each of its freedoms."""
-        freedoms = {"R": 1, "P": 1, "H": 1, "C": 2, "U": 2, "S": 3}[self.kind]
-        return (self.name,) if freedoms == 1 else tuple(f"{self.name}.{k}" for k in range(1, freedoms + 1))
+        return column_names(self.name, FREEDOMS[self.kind])
 
 
 @dataclass(frozen=True)
@@ -99,15 +99,9 @@ class Linkage:
         return tuple(column for joint in self.joints for column in joint.columns)
 
     @property
-    def column_kinds(self) -> tuple[Literal["turn", "slide"], ...]:
+    def column_kinds(self) -> tuple[Freedom, ...]:
         """What each column is: an angle [rad] or a length."""
-        kinds: dict[str, tuple[Literal["turn", "slide"], ...]] = {
-            "P": ("slide",),
-            "C": ("turn", "slide"),
-            "U": ("turn", "turn"),
-            "S": ("turn", "turn", "turn"),
-        }
-        return tuple(kind for joint in self.joints for kind in kinds.get(joint.kind, ("turn",)))
+        return tuple(freedom for joint in self.joints for freedom in FREEDOMS[joint.kind])
 
     @property
     def lengths(self) -> tuple[float, float, float]:
@@ -248,6 +242,7 @@ class Linkage:
         (value,) = finite_array("theta", theta)
         if self._has_closed_form(method):
             return self._closed_form.modes(column, value)
+        self._refuse_unheld()
         return self._general.modes(column, value)
 
     def mobility(self) -> Mobility:
@@ -256,12 +251,27 @@ class Linkage:
 
     @cached_property
     def _mobility(self) -> Mobility:
-        return self._general.mobility(self.columns.index(self.drive.joint))
+        found = self._general.mobility(self.columns.index(self.drive.joint))
+        if found.finite is None or not self._unheld:
+            return found
+        return replace(found, finite=found.finite - len(self._unheld), idle=found.idle + self._unheld)
 
     @property
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
-        return self._general.idle()
+        return self._general.idle() + self._unheld
+
+    @cached_property
+    def _unheld(self) -> tuple[str, ...]:
+        """Idle freedoms that the core does not hold: it knows those of one link only."""
+        return spins_between_balls(self.kind, [joint.name for joint in self.joints])
+
+    def _refuse_unheld(self) -> None:
+        if self._unheld and self._mobility.finite == 1:
+            raise NotCoveredError(
+                f"linkage: the {self._unheld[0]} moves no other link, and a loop with such a freedom is not "
+                "followed yet; write one of these balls as a joint U, which holds it but may narrow the range"
+            )
 
     def motion(
         self,
@@ -279,6 +289,9 @@ class Linkage:
         [rad/s, or length/s], the drive's where none is given, or by a `law`, whose samples take the place of
         the grid: a circuit that rocks holds them once for each of its passes. `input` and `output` name
         joints. `method` "general" takes the general way for an RSSR too, which has a closed form.
+
+        Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which several
+        links between two balls spin idly.
         """
         column, output_column = self._ends(
             input, self.drive.output if output is None and input is None else output
@@ -292,6 +305,7 @@ class Linkage:
         rate = self._speed(speed, column)
         if self._has_closed_form(method):
             return self._closed_form.motion(column, int(samples), rate, law)
+        self._refuse_unheld()
         return self._general.motion(column, output_column, int(samples), rate, law)
 
     def _has_closed_form(self, method: str) -> bool:

@@ -67,8 +67,11 @@ def joints(motion: Motion) -> Figure:
                 axes.set_xlabel(input_label(motion))
                 axes.tick_params(labelbottom=True)
         inputs = np.concatenate([shown_value(motion, motion.input, walk(motion, c).input) for c in motion])
+        # a law may leave every range, or have one row
+        inputs = inputs[np.isfinite(inputs)]
         for axes in figure.axes:
-            axes.set_xlim(inputs.min(), inputs.max())
+            if inputs.size and np.ptp(inputs) > 0:
+                axes.set_xlim(inputs.min(), inputs.max())
             if not slides(motion, motion.input):
                 axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 1.5, 3, 4.5, 6, 9, 10]))
         figure.suptitle(title(motion), fontsize=11)
