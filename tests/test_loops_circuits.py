@@ -18,6 +18,7 @@ import sevenbar as sb
 from random_linkages import Dimensions, mixed
 from random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
 from reference_loops import Loop
+from sevenbar.errors import RequestError
 from sevenbar.gallery import names
 
 #: Random linkages whose circuits are compared under half the step.
@@ -455,3 +456,30 @@ def test_bennetts_half_angle_tangents_have_a_constant_product() -> None:
             # cross-multiplied: the tangents themselves pass through infinity
             numbers = np.sin(first) * np.sin(second) - want * np.cos(first) * np.cos(second)
             assert np.abs(numbers).max() < 1e-13 * (1 + abs(want)), seed
+
+
+# One circuit through a pose
+
+
+@pytest.mark.parametrize("name", ["seven_r", "rssr", "rccc", "rsur", "rssp", "bennett", "six_bar"])
+def test_the_circuit_through_a_pose_is_the_one_that_the_motion_has_there(name: str) -> None:
+    linkage = sb.load(name)
+    for whole in linkage.motion(samples=36, method="general"):
+        pose = whole.q[np.flatnonzero(whole.status == "ok")[5]]
+        one = linkage.circuit(pose, samples=36)
+        assert (one.motion_type, len(one.q), one.closed) == (whole.motion_type, len(whole.q), whole.closed)
+        # the same rows, though another may come first
+        gap = [np.nanmin(np.nanmax(np.abs(wrapped(whole.q - q)), axis=1)) for q in one.q[one.status == "ok"]]
+        assert max(gap) < 1e-8
+
+
+def test_a_rough_pose_is_closed_and_one_that_does_not_close_is_refused() -> None:
+    linkage = sb.load("seven_r")
+    pose = linkage.assembly_modes(0.3).q[2]
+    rough = pose + np.array([0, 1, -1, 1, -1, 1, -1]) * 1e-3
+    near = linkage.circuit(rough, samples=36)
+    assert np.abs(wrapped(near.q - pose)).max(axis=1).min() < 0.2
+    with pytest.raises(RequestError, match="does not close near it"):
+        linkage.circuit(pose + 0.5)
+    with pytest.raises(RequestError, match="3 values where the linkage has 7 columns"):
+        linkage.circuit(pose[:3])

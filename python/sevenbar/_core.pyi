@@ -55,6 +55,9 @@ class Loop:
     def motion(
         self, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
     ) -> dict[str, Any]: ...
+    def circuit_through(
+        self, pose: _Floats, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
+    ) -> dict[str, Any]: ...
 
 @final
 class Rows:

@@ -89,11 +89,7 @@ class GeneralLoop:
         raw = self._solve(column, self._core.motion, column, output, samples, speed, table)
         mobility = self._mobility(raw)
         if raw["input_rests"] and not raw["circuits"]:
-            name = linkage.columns[column]
-            raise RequestError(
-                f"input: joint '{name}' stands still while others move, so it cannot drive; "
-                f"give another: {', '.join(linkage.drivable(column))}"
-            )
+            raise self._rests(column)
         circuits = tuple(
             self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw["circuits"])
         )
@@ -112,6 +108,30 @@ class GeneralLoop:
             redundant=mobility.redundant,
             established=_established(raw, linkage.columns),
             law=law,
+        )
+
+    def circuit(
+        self, pose: Floats, column: int, output: int, samples: int, speed: float, law: Law | None
+    ) -> Circuit:
+        """The one circuit through a pose (columns,)."""
+        table = None if law is None else law.table
+        raw = self._solve(column, self._core.circuit_through, pose, column, output, samples, speed, table)
+        if "apart" in raw:
+            raise RequestError(
+                f"pose: the loop does not close near it (closure error {raw['apart'] * self.size:.3g} "
+                f"{self._linkage.length_unit}); give a row of assembly_modes() or of a circuit"
+            )
+        if "still" in raw:
+            raise RequestError("pose: no motion through it could be followed; see mobility()")
+        if "input_rests" in raw:
+            raise self._rests(column)
+        return self._circuit(0, raw, (column, output), speed, law)
+
+    def _rests(self, column: int) -> RequestError:
+        linkage = self._linkage
+        return RequestError(
+            f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot drive; "
+            f"give another: {', '.join(linkage.drivable(column))}"
         )
 
     def _solve(self, column: int, call: Any, *arguments: Any) -> Any:

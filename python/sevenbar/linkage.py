@@ -14,7 +14,7 @@ from sevenbar.closed_form import ClosedForm
 from sevenbar.errors import NotCoveredError, RequestError, no_joint, shown
 from sevenbar.general import GeneralLoop
 from sevenbar.mobility import Mobility, spins_between_balls
-from sevenbar.motion import Floats, Law, Modes, Motion, Output, finite_array
+from sevenbar.motion import Circuit, Floats, Law, Modes, Motion, Output, finite_array
 from sevenbar.units import sliding_speed, turning_speed
 from sevenbar.written import FREEDOMS, Freedom, column_names
 
@@ -293,6 +293,49 @@ class Linkage:
         Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which several
         links between two balls spin idly.
         """
+        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        if self._has_closed_form(method):
+            return self._closed_form.motion(column, samples, rate, law)
+        self._refuse_unheld()
+        return self._general.motion(column, output_column, samples, rate, law)
+
+    def circuit(
+        self,
+        pose: npt.ArrayLike,
+        samples: int = 360,
+        *,
+        input: str | None = None,
+        output: str | None = None,
+        speed: float | str | None = None,
+        law: Law | None = None,
+    ) -> Circuit:
+        """The one circuit through a pose, without a search for the others.
+
+        `pose` holds a value for each of `columns` [rad, or length], as a row of `assembly_modes(..).q` or of
+        a circuit's `q` does; a rough one is closed with the input held. The rest is as for `motion`, always
+        by the general way.
+
+        Raises `RequestError` where the loop does not close near the pose, or does not move.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.load("seven_r")
+            >>> linkage.circuit(linkage.assembly_modes(0.3).q[2]).motion_type
+            'double-crank'
+        """
+        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        values = finite_array("pose", pose)
+        if values.size != len(self.columns):
+            raise RequestError(
+                f"pose: {values.size} values where the linkage has {len(self.columns)} columns; "
+                f"give one for each of {', '.join(self.columns)}"
+            )
+        self._refuse_unheld()
+        return self._general.circuit(values, column, output_column, samples, rate, law)
+
+    def _asked(
+        self, samples: int, input: str | None, output: str | None, speed: float | str | None
+    ) -> tuple[int, int, int, float]:
+        """Columns of input and output, a count, and the speed, once looked at."""
         column, output_column = self._ends(
             input, self.drive.output if output is None and input is None else output
         )
@@ -302,11 +345,7 @@ class Linkage:
             or not 4 <= samples <= MOST_SAMPLES
         ):
             raise RequestError(f"samples: {shown(samples)} is not a count; give 4 to {MOST_SAMPLES}")
-        rate = self._speed(speed, column)
-        if self._has_closed_form(method):
-            return self._closed_form.motion(column, int(samples), rate, law)
-        self._refuse_unheld()
-        return self._general.motion(column, output_column, int(samples), rate, law)
+        return column, output_column, int(samples), self._speed(speed, column)
 
     def _has_closed_form(self, method: str) -> bool:
         if method not in ("auto", "general"):

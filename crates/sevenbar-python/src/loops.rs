@@ -8,7 +8,7 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sevenbar_core::loops::{self, Circuit, Idle, Kind};
+use sevenbar_core::loops::{self, Circuit, Idle, Kind, Through};
 use sevenbar_core::rigid::Pose;
 use std::sync::Arc;
 
@@ -140,12 +140,7 @@ impl Loop {
         speed: f64,
         law: Option<PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let law: Option<Vec<[f64; 4]>> = law.map(|rows| {
-            rows.as_array()
-                .outer_iter()
-                .map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0)))
-                .collect()
-        });
+        let law = law_rows(law);
         let motion = py
             .detach(|| self.0.motion(input, output, samples, speed, law.as_deref()))
             .ok_or_else(|| no_input(input))?;
@@ -166,6 +161,51 @@ impl Loop {
         result.set_item("circuits", circuits)?;
         Ok(result)
     }
+
+    /// The one circuit through a pose (columns,): itself, or how far the loop is from closing, or why there is none.
+    #[pyo3(signature = (pose, input, output, samples, speed, law=None))]
+    #[expect(clippy::too_many_arguments)]
+    fn circuit_through<'py>(
+        &self,
+        py: Python<'py>,
+        pose: PyReadonlyArray1<'py, f64>,
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<PyReadonlyArray2<'py, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let law = law_rows(law);
+        let pose = flat("pose", &pose)?;
+        if pose.len() != self.0.columns() {
+            return Err(CoreError::new_err("pose needs one value for each column"));
+        }
+        let through = py
+            .detach(|| {
+                self.0
+                    .circuit_through(pose, input, output, samples, speed, law.as_deref())
+            })
+            .ok_or_else(|| no_input(input))?;
+        let result = PyDict::new(py);
+        match through {
+            Through::Circuit(circuit) => return self.circuit_dict(py, *circuit),
+            Through::Apart(gap) => result.set_item("apart", gap)?,
+            Through::Still => result.set_item("still", true)?,
+            Through::InputRests => result.set_item("input_rests", true)?,
+        }
+        Ok(result)
+    }
+}
+
+type LawRows = Option<Vec<[f64; 4]>>;
+
+fn law_rows(law: Option<PyReadonlyArray2<'_, f64>>) -> LawRows {
+    law.map(|rows| {
+        rows.as_array()
+            .outer_iter()
+            .map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0)))
+            .collect()
+    })
 }
 
 fn write_found(result: &Bound<'_, PyDict>, found: &loops::Found) -> PyResult<()> {

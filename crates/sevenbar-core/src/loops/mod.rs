@@ -21,7 +21,7 @@ mod tests;
 mod walk;
 
 pub use modes::Completeness;
-pub use motion::{Circuit, Found, Motion};
+pub use motion::{Circuit, Found, Motion, Through};
 pub use reduce::{Idle, Kind};
 pub use rows::Rows;
 
@@ -140,7 +140,7 @@ impl Loop {
         let input = self.chain_column(column)?;
         let finder = modes::ModeFinder::new(chain, input);
         let found = finder
-            .at(value * self.inward(column))
+            .once(value * self.inward(column))
             .iter()
             .map(|at| (self.joint_values(at), chain.residual(&chain.place(at))))
             .collect();

@@ -14,6 +14,7 @@ use super::reduce::Z_TO_X;
 use super::starts::{Frame, Random, SAME_GENERAL, STARTS, distinct, general_count, start};
 use crate::rigid::Pose;
 use num_complex::Complex64;
+use std::cell::OnceCell;
 
 /// How complete a set of modes is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,7 +73,9 @@ pub(super) struct ModeFinder<'a> {
     slides: Slides,
     /// The fixed transform after each unknown, the last one before the input, and that after the input.
     transforms: Vec<Pose>,
-    generic: Option<Generic>,
+    algebraic: bool,
+    /// Found when it is first asked for.
+    generic: OnceCell<Generic>,
 }
 
 /// The input as the closure takes it: `e^(i t)` and the slide. A screw's two are moved apart on the way to it.
@@ -99,7 +102,8 @@ impl<'a> ModeFinder<'a> {
             unknowns: Vec::new(),
             slides: [false; UNKNOWNS],
             transforms: Vec::new(),
-            generic: None,
+            algebraic: false,
+            generic: OnceCell::new(),
         };
         let input_joint = chain.joint_of(input);
         let count = chain.joints.len();
@@ -139,14 +143,13 @@ impl<'a> ModeFinder<'a> {
             *slide =
                 matches!(unknown, Unknown::Column(c) if chain.joints[chain.joint_of(*c)] == Joint::Slide);
         }
-        if algebraic && finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0 {
-            finder.generic = Some(finder.solve_generic());
-        }
+        finder.algebraic =
+            algebraic && finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
         finder
     }
 
     pub fn completeness(&self) -> Completeness {
-        if self.generic.is_some() {
+        if self.algebraic {
             Completeness::Algebraic
         } else {
             Completeness::Searched
@@ -156,7 +159,7 @@ impl<'a> ModeFinder<'a> {
     /// How many solutions there are over the complex numbers at a general input.
     #[cfg(test)]
     pub fn complex_count(&self) -> Option<usize> {
-        self.generic.as_ref().map(|g| g.solutions.len())
+        self.algebraic.then(|| self.generic().solutions.len())
     }
 
     /// The closure at an input, and what its unknowns differ by from the joints' values.
@@ -180,6 +183,10 @@ impl<'a> ModeFinder<'a> {
         parameters.turns[UNKNOWNS] *= input.turn;
         parameters.slide = input.slide;
         (parameters, std::array::from_fn(|i| shift[i]))
+    }
+
+    fn generic(&self) -> &Generic {
+        self.generic.get_or_init(|| self.solve_generic())
     }
 
     fn solve_generic(&self) -> Generic {
@@ -206,11 +213,29 @@ impl<'a> ModeFinder<'a> {
         Generic { input, solutions }
     }
 
+    /// All modes at the one value that is asked for [rad, or parts of the size].
+    pub fn once(&self, value: f64) -> Vec<Configuration> {
+        if !self.algebraic {
+            return self.search(value);
+        }
+        // straight there: where as many arrive as there can be, none is missing
+        let (to, shift) = self.parameters(self.input_at(value));
+        let start = start(&self.slides, 0);
+        let found = follow(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
+        let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
+        if ends.len() == general_count(&self.slides) {
+            self.real_ones(ends, &shift, value)
+        } else {
+            self.at(value)
+        }
+    }
+
     /// All modes with the input at this value [rad, or parts of the size].
     pub fn at(&self, value: f64) -> Vec<Configuration> {
-        let Some(generic) = &self.generic else {
+        if !self.algebraic {
             return self.search(value);
-        };
+        }
+        let generic = self.generic();
         let input = self.input_at(value);
         let (from, _) = self.parameters(generic.input);
         let (to, shift) = self.parameters(input);
@@ -238,9 +263,19 @@ impl<'a> ModeFinder<'a> {
                 break;
             }
         }
+        self.real_ones(ends, &shift, value)
+    }
+
+    /// The modes among solutions, polished, in order.
+    fn real_ones(
+        &self,
+        ends: Vec<Solution>,
+        shift: &[Complex64; UNKNOWNS],
+        value: f64,
+    ) -> Vec<Configuration> {
         let mut modes: Vec<Configuration> = Vec::new();
         for end in ends {
-            let Some(rough) = self.configuration(&end, &shift, value) else {
+            let Some(rough) = self.configuration(&end, shift, value) else {
                 continue;
             };
             if let Some(mode) = polish(self.chain, self.input, &rough, POLISHED_MOVE)

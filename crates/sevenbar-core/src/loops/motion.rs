@@ -5,7 +5,7 @@ use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
 use super::circuits::{Passes, Row};
 use super::curve::{Curve, End, Node, combined};
 use super::dense::singular_values;
-use super::modes::{CLOSED, Completeness, ModeFinder};
+use super::modes::{CLOSED, Completeness, ModeFinder, polish};
 use super::rows::Rows;
 use super::walk::Start;
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
@@ -25,6 +25,9 @@ const NO_RANK: f64 = 1e-8;
 
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
+
+/// How far a joint of a given pose [rad, or parts of the size] may be moved to close the loop.
+const PUT_RIGHT: f64 = 0.05;
 
 /// Rows in a turn from which extremes are bracketed.
 const LEAST_ROWS: usize = 180;
@@ -78,6 +81,19 @@ pub struct Motion {
     pub circuits: Vec<Circuit>,
     /// Whether some circuit has the input at rest.
     pub input_rests: bool,
+}
+
+/// What goes through a pose.
+#[derive(Clone, Debug)]
+pub enum Through {
+    /// The loop closes near the pose, and moves.
+    Circuit(Box<Circuit>),
+    /// It does not close near it; how far it is from closing, in parts of the size or radians.
+    Apart(f64),
+    /// It closes and no motion could be followed.
+    Still,
+    /// It moves with the input at rest.
+    InputRests,
 }
 
 /// All curves of a chain.
@@ -139,6 +155,37 @@ impl Loop {
             circuits,
             input_rests,
         })
+    }
+
+    /// The one circuit through a pose, given by its joint values and closed by Newton's method with the input held.
+    ///
+    /// `None` where one of the columns is no joint of one freedom that moves.
+    pub fn circuit_through(
+        &self,
+        values: &[f64],
+        input: usize,
+        output: usize,
+        samples: usize,
+        speed: f64,
+        law: Option<&[[f64; 4]]>,
+    ) -> Option<Through> {
+        let chain = self.reduced.chain.as_ref()?;
+        let (a, b) = (self.chain_column(input)?, self.chain_column(output)?);
+        let rough = self.configuration(values);
+        let Some(pose) = polish(chain, a, &rough, PUT_RIGHT) else {
+            return Some(Through::Apart(chain.residual(&chain.place(&rough))));
+        };
+        let mut curves = Curves::new();
+        curves.take(chain, &[pose], a);
+        let Some(curve) = curves.curves.first() else {
+            return Some(Through::Still);
+        };
+        let Some(passes) = Passes::new(chain, curve, a) else {
+            return Some(Through::InputRests);
+        };
+        let grid = grid(chain, std::slice::from_ref(&passes), a, samples);
+        let circuit = self.circuit(&passes, (input, output), (a, b), grid, speed, law);
+        Some(Through::Circuit(Box::new(circuit)))
     }
 
     /// How freely the loop moves, from the first poses found over the values of a column.
@@ -292,14 +339,7 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
             seeds.push(c);
         }
     }
-    let mut out = Curves {
-        curves: Vec::new(),
-        found: None,
-        completeness: Completeness::Algebraic,
-        seed_columns: seeds.clone(),
-        seeds: 0,
-        still: 0,
-    };
+    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new() };
     // the pose of a drawing first: the joints are zero there
     if chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED {
         out.take(chain, &[Configuration::ZERO], wished[0]);
@@ -332,6 +372,17 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
 }
 
 impl Curves {
+    fn new() -> Self {
+        Self {
+            curves: Vec::new(),
+            found: None,
+            completeness: Completeness::Algebraic,
+            seed_columns: Vec::new(),
+            seeds: 0,
+            still: 0,
+        }
+    }
+
     /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
     fn take(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
         let mut starts: Vec<Start> = Vec::new();

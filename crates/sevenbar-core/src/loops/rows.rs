@@ -1,8 +1,9 @@
 //! Rows of a circuit as the description's joints and links have them.
 
 use super::Loop;
-use super::chain::{Configuration, short_way, transposed};
+use super::chain::{Configuration, Joint, product, short_way, transposed};
 use super::circuits::Row;
+use super::modes::ball_rotation;
 use super::rates::{ORDERS, point_rates, product_series, turned_series};
 use super::reduce::{Kind, Source, Z_TO_X};
 use crate::outcome::RowStatus;
@@ -79,6 +80,35 @@ impl Loop {
                 }
             })
             .collect()
+    }
+
+    /// The configuration with these joint values; a link's idle spin is left out.
+    pub(super) fn configuration(&self, values: &[f64]) -> Configuration {
+        let mut out = Configuration::ZERO;
+        let Some(chain) = &self.reduced.chain else {
+            return out;
+        };
+        for (part, &first) in self.reduced.parts.iter().zip(&self.first) {
+            let turns = || ball_rotation(&[values[first], values[first + 1], values[first + 2]]);
+            match (part.source, part.kind) {
+                (Source::Held, _) => {}
+                (Source::Joint(joint), Kind::Ball) => {
+                    if let Joint::Ball(b) = chain.joints[joint] {
+                        out.balls[b] = turns();
+                    }
+                }
+                (Source::Joint(joint), _) => {
+                    out.values[chain.first[joint]] = values[first] * self.inward(first);
+                }
+                (Source::Universal(joint, frame), _) => {
+                    // Rz Rx in that frame
+                    let turn = product(&product(&transposed(&frame), &turns()), &frame);
+                    out.values[chain.first[joint]] = turn[1][0].atan2(turn[0][0]);
+                    out.values[chain.first[joint + 1]] = turn[2][1].atan2(turn[2][2]);
+                }
+            }
+        }
+        out
     }
 
     fn wrapped(&self, column: usize, angle: f64) -> f64 {
