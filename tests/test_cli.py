@@ -389,12 +389,19 @@ def _words(told):
 
 
 def test_a_dead_centre_that_no_range_ends_at_is_told_beside_it():
-    told = _report(sb.load("rsur").motion(samples=36, input="cross.2"))
+    told = _report(sb.load("six_bar").motion(samples=36, input="parallel_3"))
     assert "other dead" in told
+    # the circuit's range goes from -146.253 to -94.171; these two lie between
+    (row,) = [line.split() for line in told.splitlines() if line.split()[:2] == ["1", "-146.253°"]]
+    assert row[2] == "219.256°"
+
+
+def test_a_circuit_drawn_at_a_dead_centre_has_it_once():
+    told = _report(sb.load("rsur").motion(samples=36, input="cross.2"))
+    assert "other dead" not in told
     (row,) = [line.split() for line in told.splitlines() if line.split()[:2] == ["0", "0.000°"]]
-    assert row == ["0", "0.000°", "-7.001°", "@", "4.077°", "0.000°"]
+    assert row == ["0", "0.000°", "-7.001°", "@", "4.077°"]
     assert "360.000°" not in told
-    assert "-0.000°" not in told
 
 
 def test_circuits_of_two_kinds_tell_their_kind_and_narrow_consoles_fold_at_the_place():

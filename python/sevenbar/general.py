@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 #: Rank six, and the one that is driven.
 MOST_FREEDOMS = 7
 
+#: An angle [rad] short of a full turn by less is zero.
+ROUNDING = 1e-12
+
 #: Limits [rad] nearer than this are one.
 SAME_LIMIT = 1e-6
 
@@ -273,7 +276,11 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
 
 
 def _merged(limits: Sequence[float], *, turns: bool) -> Floats:
-    values: Floats = np.sort(np.mod(limits, math.tau) if turns else np.asarray(limits, dtype=np.float64))
+    values: Floats = np.asarray(limits, dtype=np.float64)
+    if turns:
+        values = np.mod(values, math.tau)
+        values[values > math.tau - ROUNDING] = 0.0
+    values = np.sort(values)
     if values.size == 0:
         return np.array([])
     kept: Floats = values[np.concatenate([[True], np.diff(values) > SAME_LIMIT])]

@@ -15,6 +15,9 @@ const AT_REST: f64 = 1e-13;
 /// A column whose part of the unit tangent is below this stands still.
 const STILL: f64 = 1e-9;
 
+/// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
+const SAME_PLACE: f64 = 1e-6;
+
 /// The input at unit speed.
 pub(super) const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
 
@@ -251,7 +254,7 @@ impl<'a> Passes<'a> {
         }
         let turnings = curve.turnings(chain, input);
         // each turning becomes a node; a closed curve then begins at the lowest
-        insert(chain, &mut curve, &turnings);
+        insert(chain, &mut curve, &turnings, input);
         let is_turning = |n: &Node| n.rates[0][input].abs() < STILL;
         if curve.end == End::Closed && !turnings.is_empty() {
             let lowest = (0..curve.nodes.len() - 1)
@@ -497,9 +500,15 @@ pub(super) fn missing(pass: usize) -> Row {
     }
 }
 
-fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning]) {
+fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], column: usize) {
+    // a curve that was begun at a dead centre has that node already
+    let known = |t: &Turning| {
+        curve.nodes[t.segment..=t.segment + 1].iter().any(|n| {
+            n.rates[0][column].abs() < STILL && length(&chain.difference(&n.at, &t.node.at)) < SAME_PLACE
+        })
+    };
     let mut nodes = Vec::with_capacity(curve.nodes.len() + turnings.len());
-    let mut rest = turnings.iter().peekable();
+    let mut rest = turnings.iter().filter(|t| !known(t)).peekable();
     for (k, node) in curve.nodes.iter().enumerate() {
         nodes.push(*node);
         while let Some(t) = rest.next_if(|t| t.segment == k) {
