@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.errors import MissingExtraError, OutputError
-from sevenbar.export.parts import Assembly, Ball, Bar, Part, Solid
+from sevenbar.export.parts import Assembly, Ball, Bar, Part, Solid, across
 from sevenbar.motion import Floats
 from sevenbar.units import LENGTHS
 
@@ -27,9 +27,7 @@ def write_step(assembly: Assembly, path: Path) -> None:
         frame = assembly.frames[part.body]
         shape.label = part.name
         shape.color = library.Color(*(c / 255 for c in bytes.fromhex(part.colour[1:])))
-        shape.location = library.Location(
-            _plane(library, scale * frame[:3, 3], frame[:3, 0], frame[:3, 2])
-        )
+        shape.location = library.Location(_plane(library, scale * frame[:3, 3], frame[:3, 0], frame[:3, 2]))
         components.append(shape)
     whole = library.Compound(label=linkage.name, children=components)
     if not library.export_step(whole, path):
@@ -55,23 +53,16 @@ def _primitive(piece: Solid, scale: float) -> Any:
     length = float(np.linalg.norm(along))
     along = along / length
     if isinstance(piece, Bar):
-        across = np.cross(along, piece.side)
-        corner = piece.start - piece.width / 2 * (piece.side + across)
+        other = np.cross(along, piece.side)
+        corner = piece.start - piece.width / 2 * (piece.side + other)
         plane = _plane(library, scale * corner, piece.side, along)
         return library.Solid.make_box(scale * piece.width, scale * piece.width, scale * length, plane)
-    plane = _plane(library, scale * piece.start, _across(along), along)
+    plane = _plane(library, scale * piece.start, across(along), along)
     return library.Solid.make_cylinder(scale * piece.radius, scale * length, plane)
 
 
 def _plane(library: Any, origin: Floats, x: Floats, z: Floats) -> Any:
     return library.Plane(origin=tuple(origin), x_dir=tuple(x), z_dir=tuple(z))
-
-
-def _across(axis: Floats) -> Floats:
-    """A unit vector at right angles to an axis."""
-    way = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    across: Floats = way / np.linalg.norm(way)
-    return across
 
 
 def _build123d() -> Any:

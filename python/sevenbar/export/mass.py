@@ -18,7 +18,7 @@ DENSITY = 7850.0
 
 @dataclass(frozen=True, eq=False)
 class Mass:
-    """Mass [kg], its centre (3,) in the body's frame [length], inertia (3, 3) about the centre [kg length^2]."""
+    """Mass [kg]; its centre (3,) in the body's frame; inertia (3, 3) about the centre [kg length^2]."""
 
     mass: float
     centre: Floats
@@ -61,5 +61,3 @@ def _of(solid: Solid, density: float) -> Mass:
         about, across = solid.width**2 / 6, (solid.width**2 + length**2) / 12
     inertia = mass * (across * np.eye(3) + (about - across) * np.outer(axis, axis))
     return Mass(mass, (solid.start + solid.end) / 2, inertia)
-
-

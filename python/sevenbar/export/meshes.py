@@ -1,18 +1,15 @@
-"""Watertight meshes of a linkage's parts, and the files GLB and STL made of them (trimesh, extra `[export]`)."""
+"""Watertight meshes of a linkage's parts, and GLB and STL made of them (trimesh, extra `[export]`)."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from sevenbar.errors import MissingExtraError
-from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
+from sevenbar.export.parts import Assembly, Ball, Part, Rod, Solid, frame_of, length_of
 from sevenbar.units import LENGTHS
-
-if TYPE_CHECKING:
-    import trimesh
 
 #: Flat faces round a rod, and rings of a ball: 0.2 % of the radius from round.
 SECTIONS = 48
@@ -22,7 +19,7 @@ TO_GLTF = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
 def write_glb(assembly: Assembly, path: Path) -> None:
-    """Writes the assembly as a scene: a node for each link, in place by its matrix, its parts below it [m]."""
+    """Writes the assembly as a scene [m]: a node for each link, in place by its matrix, parts below it."""
     library = _trimesh()
     scene = library.Scene(base_frame="world")
     scale = LENGTHS[assembly.pose.linkage.length_unit]
@@ -36,7 +33,10 @@ def write_glb(assembly: Assembly, path: Path) -> None:
         solid.apply_transform(metres)
         solid.visual = library.visual.TextureVisuals(
             material=library.visual.material.PBRMaterial(
-                name=part.colour, baseColorFactor=_rgba(part.colour), metallicFactor=0.35, roughnessFactor=0.45
+                name=part.colour,
+                baseColorFactor=_rgba(part.colour),
+                metallicFactor=0.35,
+                roughnessFactor=0.45,
             )
         )
         scene.add_geometry(
@@ -59,12 +59,12 @@ def write_stl(assembly: Assembly, path: Path) -> None:
 
 
 def write_stl_parts(assembly: Assembly, folder: Path) -> None:
-    """Writes each part into a binary STL of its own, in the frame of its link and the linkage's length unit."""
+    """Writes each part into a binary STL of its own, in its link's frame and the linkage's length unit."""
     for part in assembly.parts:
         (folder / f"{part.name}.stl").write_bytes(mesh(part).export(file_type="stl"))
 
 
-def mesh(part: Part) -> trimesh.Trimesh:
+def mesh(part: Part) -> Any:
     """The watertight mesh of a part, in its body's frame and the linkage's length unit."""
     library = _trimesh()
     solid = library.boolean.union([_primitive(s) for s in part.add], engine="manifold")
@@ -83,20 +83,6 @@ def _primitive(solid: Solid) -> Any:
         case Rod():
             return creation.cylinder(solid.radius, segment=[solid.start, solid.end], sections=SECTIONS)
     return creation.box((solid.width, solid.width, length_of(solid)), transform=frame_of(solid))
-
-
-def length_of(solid: Rod | Bar) -> float:
-    """The length of a rod or a bar."""
-    return float(np.linalg.norm(solid.end - solid.start))
-
-
-def frame_of(bar: Bar) -> Any:
-    """The frame (4, 4) in the middle of a bar: x along its side, z along its length."""
-    frame = np.eye(4)
-    along = (bar.end - bar.start) / length_of(bar)
-    frame[:3, :3] = np.stack([bar.side, np.cross(along, bar.side), along], axis=1)
-    frame[:3, 3] = (bar.start + bar.end) / 2
-    return frame
 
 
 def _rgba(colour: str) -> list[int]:

@@ -1,7 +1,7 @@
 """The parts of a linkage as it would be built, from rods, bars and balls: what meshes, CAD and others share.
 
-Each turning or sliding joint has a hub with a hole on either link, side by side on the axis, and a shaft through
-both; a universal joint a cross between two hubs; a ball joint a ball in an open socket.
+Each turning or sliding joint has a hub with a hole on either link, side by side on the axis, and a shaft
+through both; a universal joint a cross between two hubs; a ball joint a ball in an open socket.
 """
 
 from __future__ import annotations
@@ -62,12 +62,33 @@ class Ball:
 Solid = Rod | Bar | Ball
 
 
+def length_of(solid: Rod | Bar) -> float:
+    """The length of a rod or a bar."""
+    return float(np.linalg.norm(solid.end - solid.start))
+
+
+def frame_of(solid: Rod | Bar) -> Floats:
+    """The frame (4, 4) in the middle of a rod or a bar: z along it, x along a bar's side."""
+    along = (solid.end - solid.start) / length_of(solid)
+    side = solid.side if isinstance(solid, Bar) else across(along)
+    frame = np.eye(4)
+    frame[:3, :3] = np.stack([side, np.cross(along, side), along], axis=1)
+    frame[:3, 3] = (solid.start + solid.end) / 2
+    return frame
+
+
+def across(axis: Floats) -> Floats:
+    """A unit vector at right angles to an axis."""
+    way = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    unit: Floats = way / np.linalg.norm(way)
+    return unit
+
+
 @dataclass(frozen=True, eq=False)
 class Part:
     """One piece: the union of `add` less the union of `cut`, in the frame of the body that carries it.
 
-    `body` counts the links from 0, the ground last; from n on, the crosses of universal joints. `holes` are those
-    of `cut` that bear a joint, by the joint's name.
+    `body` counts the links from 0, the ground last; from n on, the crosses of universal joints.
     """
 
     name: str
@@ -91,8 +112,11 @@ class Assembly:
 
 @dataclass(frozen=True)
 class Seat:
-    """Where a joint's hubs sit: `side` of the axis on which the second lies, `shift` along the axis and
-    `aside` across it, in heights of a hub; for a universal joint `side` and `other` of its two axes."""
+    """Where a joint's hubs sit, in heights of a hub.
+
+    `side` is that of the axis on which the sleeve lies, as seen from what carries the shaft; `shift` goes
+    along the axis, `aside` across it. A universal joint has `side` and `other`, one for each of its axes.
+    """
 
     side: int = 1
     shift: float = 0.0
@@ -135,7 +159,13 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
             carrier_is_near = i != count - 1
             shaft, middles = _axial(before, after, pose, i, (near, far), seat, unit, carrier_is_near)
             extra.append(
-                Part(f"shaft_{_word(joint.name)}", (i - 1) % count if carrier_is_near else i, (shaft,), (), JOINT)
+                Part(
+                    f"shaft_{_word(joint.name)}",
+                    (i - 1) % count if carrier_is_near else i,
+                    (shaft,),
+                    (),
+                    JOINT,
+                )
             )
             ends[i - 1][1], ends[i][0] = middles
     arms = [np.vstack([ends[k][0], lines[k][1:-1], ends[k][1]]) for k in range(count)]
@@ -249,10 +279,10 @@ def _universal(
         build.hub(middle, way, True, None)
         pins.append(Rod(pose.near[i, :3, 3], middle + 0.46 * unit * way, SHAFT * unit))
         middles.append(middle)
-    across = np.cross(axes[0], axes[1])
-    across /= np.linalg.norm(across)
+    square = np.cross(axes[0], axes[1])
+    square /= np.linalg.norm(square)
     frame = np.eye(4)
-    frame[:3, :3] = np.stack([across, np.cross(axes[0], across), axes[0]], axis=1)
+    frame[:3, :3] = np.stack([square, np.cross(axes[0], square), axes[0]], axis=1)
     frame[:3, 3] = centre
     cross = Part("", 0, (*pins, Ball(centre, 1.5 * SHAFT * unit)), (), JOINT)
     return frame, cross, (middles[0], middles[1])
@@ -261,7 +291,7 @@ def _universal(
 def _ball_joint(
     before: _Build, after: _Build, pose: Pose, i: int, arms: tuple[Floats, Floats], unit: float
 ) -> None:
-    """The ball on the link before, the socket on the link after, open to where the ball's arm is on average."""
+    """The ball on the link before; on the link after a socket, open to the ball's arm as it is on average."""
     radius = BALL * unit
     centre = arms[1][0]
     before.add.append(Ball(centre, radius))
@@ -286,10 +316,9 @@ def _mean_arm(pose: Pose, i: int, arm: Floats) -> Floats:
     count = len(pose.frames)
     before, after = (i - 1) % count, i
     here = pose.frames[after, :3, :3]
-    poses = pose.others if len(pose.others) else pose.frames[None]
     local = pose.frames[before, :3, :3].T @ arm
-    seen = poses[:, before, :3, :3] @ local
-    mean = np.einsum("mji,mj->i", poses[:, after, :3, :3], seen)
+    seen = pose.others[:, before, :3, :3] @ local
+    mean = np.einsum("mji,mj->i", pose.others[:, after, :3, :3], seen)
     length = float(np.linalg.norm(mean))
     # arms that go all the way round have no mean
     direction: Floats = here @ mean / length if length > 1e-3 * float(np.linalg.norm(seen)) else arm

@@ -14,7 +14,7 @@ from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit, Floats, Law, Motion
 from sevenbar.skeleton import Chain, chain, frames_along
 
-#: Poses of a circuit for which a layout is chosen: enough to meet what a link sweeps over, few enough to be quick.
+#: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
 SAMPLED = 12
 
 
@@ -23,8 +23,8 @@ class Pose:
     """A pose of a linkage on one of its circuits; lengths in the linkage's unit, report frame.
 
     `frames` (n, 4, 4) are those of the links in it, the ground's last (the identity), and `others`
-    (m, n, 4, 4) those of further poses of the circuit. `near` and `far` (n, 4, 4) are the frames of each joint
-    on the link before it and on the link after it. `travel` (n, 2) is how far each joint slides along
+    (m, n, 4, 4) those of further poses of the circuit. `near` and `far` (n, 4, 4) are the frames of each
+    joint on the link before it and on the link after it. `travel` (n, 2) is how far each joint slides along
     its axis on the circuit, and `slide` (n,) how far it has in this pose. `places` is what the figures draw.
     """
 
@@ -82,9 +82,9 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
     if np.isnan(frames).any() or np.isnan(q).any():
         raise _no_pose(linkage, chosen, circuit, at)
     valid = frames_along(linkage, chosen, np.arange(len(chosen.time)))
-    valid = valid[~np.isnan(valid).any(axis=(1, 2, 3))]
-    picked = np.unique(np.linspace(0, len(valid) - 1, SAMPLED).astype(int)) if len(valid) else []
-    # the sizes of a drawing are to be those of its circuit, not of one pose
+    # this pose among them, so that there is one at least
+    valid = np.concatenate([frames, valid[~np.isnan(valid).any(axis=(1, 2, 3))]])
+    picked = np.unique(np.linspace(0, len(valid) - 1, SAMPLED).astype(int))
     near, far = _joint_frames(linkage, frames)
     return Pose(
         motion=motion,
@@ -103,8 +103,6 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
 
 def size_of(pose: Pose) -> float:
     """The size [length] that drawn parts are shares of: the extent of all places along the circuit."""
-    if not len(pose.others):
-        return pose.places.span
     return max(pose.places.span, chain(pose.linkage, pose.others[:, :-1]).span)
 
 
@@ -157,8 +155,6 @@ def _no_pose(linkage: Linkage, circuit: Circuit, index: int, at: float) -> Reque
 
 def shortest_link(pose: Pose) -> float:
     """The length of the shortest link that has one [length]; links of no length aside."""
-    lengths = [
-        sum(float(np.linalg.norm(b - a)) for a, b in pairwise(line)) for line in pose.polylines()
-    ]
+    lengths = [sum(float(np.linalg.norm(b - a)) for a, b in pairwise(line)) for line in pose.polylines()]
     small = 1e-6 * max(lengths, default=0.0)
     return min((length for length in lengths if length > small), default=1.0)

@@ -66,7 +66,7 @@ def write_npz(motion: Motion, path: Path, units: Units) -> None:
 
 
 def write_mat(motion: Motion, path: Path, units: Units) -> None:
-    """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), and `circuits`, an array of structures."""
+    """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), `circuits` (an array of structures)."""
     try:
         from scipy.io import savemat
     except ImportError:
