@@ -40,7 +40,9 @@ def test_pandas_reads_every_row_of_every_circuit(motion, tmp_path, to, read):
     assert len(table) == sum(len(c.time) for c in motion)
     assert "dead-centre" in set(table.status)
     np.testing.assert_array_equal(table.slider_in, rows_of(motion, "q")[:, -1])
-    np.testing.assert_array_equal(np.radians(table.crank_deg), np.radians(np.degrees(rows_of(motion, "q")[:, 0])))
+    np.testing.assert_array_equal(
+        np.radians(table.crank_deg), np.radians(np.degrees(rows_of(motion, "q")[:, 0]))
+    )
     np.testing.assert_array_equal(table.crank_rad_s2, rows_of(motion, "ddq")[:, 0])
     np.testing.assert_array_equal(table.time_s, rows_of(motion, "time"))
     assert list(table.status) == list(rows_of(motion, "status"))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.errors import MissingExtraError, OutputError
-from sevenbar.export.parts import Assembly, Ball, Bar, Part, Solid, across
+from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid, across
 from sevenbar.motion import Floats
 from sevenbar.units import LENGTHS
 
@@ -36,19 +36,18 @@ def write_step(assembly: Assembly, path: Path) -> None:
 
 def solid(part: Part, scale: float) -> Any:
     """The exact solid of a part in its body's frame, lengths times `scale`."""
-    first, *rest = [_primitive(s, scale) for s in part.add]
+    first, *rest = [_primitive(s, scale, part) for s in part.add]
     whole = first.fuse(*rest) if rest else first
     if part.cut:
-        whole = whole.cut(*[_primitive(s, scale) for s in part.cut])
+        whole = whole.cut(*[_primitive(s, scale, part) for s in part.cut])
     return whole.solids()[0] if len(whole.solids()) == 1 else whole
 
 
-def _primitive(piece: Solid, scale: float) -> Any:
+def _primitive(piece: Solid, scale: float, part: Part) -> Any:
     library = _build123d()
     if isinstance(piece, Ball):
-        return library.Solid.make_sphere(
-            scale * piece.radius, _plane(library, scale * piece.centre, np.eye(3)[0], np.eye(3)[2])
-        )
+        plane = _plane(library, scale * piece.centre, *_free_of_arms(piece, part))
+        return library.Solid.make_sphere(scale * piece.radius, plane)
     along = piece.end - piece.start
     length = float(np.linalg.norm(along))
     along = along / length
@@ -59,6 +58,26 @@ def _primitive(piece: Solid, scale: float) -> Any:
         return library.Solid.make_box(scale * piece.width, scale * piece.width, scale * length, plane)
     plane = _plane(library, scale * piece.start, across(along), along)
     return library.Solid.make_cylinder(scale * piece.radius, scale * length, plane)
+
+
+def _free_of_arms(ball: Ball, part: Part) -> tuple[Floats, Floats]:
+    """Where a ball's seam and pole are free of the arms that leave it: cut by them, STEP readers go wrong."""
+    arms = [
+        (end - start) / np.linalg.norm(end - start)
+        for rod in part.add
+        if isinstance(rod, Rod)
+        for start, end in ((rod.start, rod.end), (rod.end, rod.start))
+        if np.linalg.norm(start - ball.centre) < 1e-9 * np.linalg.norm(end - start)
+    ]
+    if not arms:
+        return np.eye(3)[0], np.eye(3)[2]
+    seam = -np.sum(arms[:2], axis=0)
+    if np.linalg.norm(seam) < 1e-3:
+        seam = across(arms[0])
+    pole = np.cross(arms[0], seam)
+    if np.linalg.norm(pole) < 1e-3:
+        pole = across(seam / np.linalg.norm(seam))
+    return seam, pole
 
 
 def _plane(library: Any, origin: Floats, x: Floats, z: Floats) -> Any:

@@ -21,7 +21,7 @@ SWEEPS = 4
 SHIFTS = (0.0, 1.2, -1.2, 2.4, -2.4, 4.0, -4.0)
 ASIDE = 2.4
 #: What a shift of one hub's height costs, beside the squared overlap in heights of a hub.
-SHIFT_COST = 0.02
+SHIFT_COST = 0.03
 
 
 def arrange(pose: Pose) -> Assembly:

@@ -23,11 +23,13 @@ HUB, HOLE, SHAFT, ARM, BALL = 0.72, 0.36, 0.33, 0.30, 0.62
 #: Distance of the middles of two neighbouring hubs; how far a shaft stands out; the thickness of a hub's lid.
 SPACING, STANDS_OUT, LID = 1.06, 0.18, 0.45
 #: A socket's outer radius, and where its mouth is cut, in radii of the ball.
-SOCKET, MOUTH = 1.42, 0.25
+SOCKET, MOUTH = 1.42, 0.1
 #: The greatest cosine of the mouth's direction and the arm that holds the socket.
 AWAY = -0.35
 #: Distance of a hub of a universal joint from the middle of its cross.
 REACH = 1.5
+#: Below this cosine between an arm and the axis, the arm first goes so far off, round the other hub.
+PAST_THE_OTHER, ELBOW = -0.35, 1.6
 #: Above this cosine between an arm and the axis, the arm leaves through the hub's end, which then has a lid.
 THROUGH_THE_END = 0.5
 
@@ -168,7 +170,10 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
                 )
             )
             ends[i - 1][1], ends[i][0] = middles
-    arms = [np.vstack([ends[k][0], lines[k][1:-1], ends[k][1]]) for k in range(count)]
+    arms = [
+        np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last])
+        for line, (first, last) in zip(lines, ends, strict=True)
+    ]
     for i in (i for i, joint in enumerate(linkage.joints) if joint.kind == "S"):
         _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
     for build, arm in zip(builds, arms, strict=True):
@@ -196,6 +201,7 @@ class _Build:
 
     def arm(self, line: Floats, unit: float) -> None:
         """The body along a polyline, whose ends lie in hubs or balls; then the hubs with their holes."""
+        line = self._round_the_others(line, unit)
         steps = [(a, b) for a, b in pairwise(line) if np.linalg.norm(b - a) > 1e-3 * unit]
         self.add += [Rod(a, b, ARM * unit) for a, b in steps]
         self.add += [Ball(a, 1.04 * ARM * unit) for a, _ in steps[1:]]
@@ -219,8 +225,39 @@ class _Build:
                 self.add.append(Rod(inner, end, HUB * unit))
                 self.cut.append(Rod(start, stop, HOLE * unit))
 
+    def _round_the_others(self, line: Floats, unit: float) -> Floats:
+        """The polyline with an elbow where it would run into the hub beside its own."""
+        places = list(line)
+        for middle, outward, _, _ in self._hubs:
+            for at_end in (False, True):
+                here, ahead = (places[-1], places[-2]) if at_end else (places[0], places[1])
+                way = ahead - here
+                aslant = way @ outward < PAST_THE_OTHER * np.linalg.norm(way)
+                if not np.allclose(here, middle) or not aslant:
+                    continue
+                off = way - (way @ outward) * outward
+                length = float(np.linalg.norm(off))
+                off = off / length if length > 1e-3 * float(np.linalg.norm(way)) else across(outward)
+                places.insert(len(places) - 1 if at_end else 1, here + ELBOW * unit * off)
+        return np.array(places)
+
     def part(self) -> Part:
+        """What has been put together."""
         return Part(self.name, self.body, tuple(self.add), tuple(self.cut), self.colour)
+
+
+def _bent(line: Floats, first: Floats, last: Floats, centre: Floats) -> Floats:
+    """The inner places of a link whose ends have moved; an arc on a sphere moves in or out with them."""
+    inner = line[1:-1]
+    if len(inner) < 2:
+        return inner
+    low, high = (
+        np.linalg.norm(end - centre) / np.linalg.norm(foot - centre)
+        for end, foot in ((first, line[0]), (last, line[-1]))
+    )
+    ratios = np.linspace(low, high, len(line))[1:-1, None]
+    moved: Floats = centre + ratios * (inner - centre)
+    return moved
 
 
 def _axial(
