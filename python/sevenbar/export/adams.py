@@ -108,7 +108,7 @@ class _Commands:
         unit = self.linkage.length_unit
         written = "mm" if unit == "um" else unit
         self.lines += [
-            f"! {self.linkage.name}",
+            f"! {_ascii(self.linkage.name)}",
             "! An ADAMS/View command file written by Sevenbar from the documentation of the language;",
             "! it has not been run in ADAMS. Lengths in " + written + ", masses in kg; masses are those of",
             "! the drawn bodies in steel. Plain angles in functions are in radians. No gravity.",
