@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from pathlib import Path
 from xml.etree import ElementTree
 
 import mujoco
@@ -12,7 +14,7 @@ import yourdfpy
 import adams_reader
 import sevenbar as sb
 from sevenbar.errors import OutputError, RequestError
-from sevenbar.export import export
+from sevenbar.export import FORMATS, export
 from sevenbar.gallery import names
 from sevenbar.units import LENGTHS
 
@@ -294,3 +296,15 @@ def test_a_motion_by_a_law_has_no_constant_speed_to_drive(tmp_path):
     with pytest.raises(RequestError, match="cmd: a motion driven by a law has no constant speed"):
         export(sb.load("rssr").motion(law=law), "cmd", tmp_path / "a.cmd")
     assert not list(tmp_path.iterdir())
+
+
+def test_the_commands_on_the_docs_page_are_those_of_today(tmp_path):
+    page = (Path(__file__).parent.parent / "docs" / "export.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```\n(.*?)```", page, flags=re.DOTALL)
+    export(sb.load("rssr"), None, tmp_path / "rssr.cmd")
+    written = (tmp_path / "rssr.cmd").read_text()
+    commands = block.split("!\n")[:-1]
+    assert len(commands) == 3
+    assert all(f"{command}!\n" in written for command in commands)
+    for word, form in FORMATS.items():
+        assert f"`{word}`" in page, form

@@ -1,6 +1,8 @@
 """The whole motion in tables of other programs: what pandas, NumPy, SciPy and Arrow read is what Sevenbar has."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pandas as pd
@@ -171,7 +173,33 @@ def test_a_linkage_that_does_not_close_has_nothing_to_export(tmp_path):
     ],
 )
 def test_a_missing_library_is_named_with_its_extra(motion, tmp_path, monkeypatch, to, package, extra):
-    monkeypatch.setitem(__import__("sys").modules, package, None)
+    monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(MissingExtraError, match=rf"need.*{package.split('.')[0]}.*'sevenbar\[{extra}\]'"):
         export(motion, to, tmp_path / f"m.{to}")
     assert not list(tmp_path.iterdir())
+
+
+def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
+    def run(*arguments):
+        command = [sys.executable, "-m", "sevenbar.cli", "export", *arguments]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+
+    done = run("rssr", "--to", "urdf", "--at", "30", "--samples", "24")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "rssr.urdf" in done.stdout
+    assert "the joint that closes the loop is in the .loop.json file" in done.stdout
+    pose = json.loads((tmp_path / "rssr.loop.json").read_text())["pose"]
+    assert pose["q"]["crank"] == pytest.approx(np.pi / 6, rel=1e-15)
+    assert run("rssp", "--out", "new/s.json", "--input", "slider", "--samples", "24").returncode == 0
+    assert json.loads((tmp_path / "new" / "s.json").read_text())["input"] == "slider"
+    for arguments, message in (
+        (["rssr", "--to", "urdf"], "rssr.urdf: exists already; give another path, or --force to replace it"),
+        (["rssr"], "--to: missing; give a format, csv, parquet,"),
+        (["rssr", "--to", "doc"], "to: 'doc' is not a format; allowed: csv,"),
+        (["rssp", "--to", "glb", "--at", "3mm"], "--at: '3mm' is no value of crank, which turns;"),
+    ):
+        failed = run(*arguments)
+        assert (failed.returncode, failed.stdout) == (2, "")
+        assert failed.stderr.startswith(f"sevenbar: {message}")
+    assert not (tmp_path / "rssp.glb").exists()
+    assert run("rssr", "--to", "urdf", "--force", "--samples", "24").returncode == 0
