@@ -179,6 +179,7 @@ def test_a_missing_library_is_named_with_its_extra(motion, tmp_path, monkeypatch
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
     def run(*arguments):
         command = [sys.executable, "-m", "sevenbar.cli", "export", *arguments]
