@@ -66,7 +66,12 @@ def imported_from_core(python: str) -> set[str]:
 
 
 def test_the_core_is_imported_by_the_two_solvers_only():
-    taken = {file.stem: imported_from_core(file.read_text(encoding="utf-8")) for file in PYTHON_FILES}
+    taken = {
+        file.relative_to(PACKAGE).with_suffix("").as_posix(): imported_from_core(
+            file.read_text(encoding="utf-8")
+        )
+        for file in PYTHON_FILES
+    }
     importers = {module for module, names in taken.items() if names}
     assert importers == CORE_IMPORTERS
     assert taken["__init__"] <= {"__version__"}

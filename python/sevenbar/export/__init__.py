@@ -1,0 +1,226 @@
+"""A linkage and its motion in the files of other programs: tables, meshes, CAD, robots, ADAMS.
+
+    from sevenbar.export import export
+    export(sb.load("rssr"), "step", "rssr.step", at=0.5)
+
+The way there: a `Pose` of a circuit (`pose`), the parts as they would be built (`parts`), seated so that they
+overlap little (`layout`), and one module for each kind of file.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sevenbar.errors import OutputError, RequestError, shown, suggestion
+from sevenbar.export.pose import take
+from sevenbar.folder import fill_folder
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Motion
+
+if TYPE_CHECKING:
+    from sevenbar.export.parts import Assembly
+    from sevenbar.export.tables import Units
+
+__all__ = ["FORMATS", "Bodies", "Format", "Table", "export", "format_of"]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A kind of file that holds all rows of every circuit: its endings, and what writes it."""
+
+    endings: tuple[str, ...]
+    write: Callable[[Motion, Path, Units], None]
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """A kind of file that holds the linkage's bodies in one pose: its endings, and what writes it."""
+
+    endings: tuple[str, ...]
+    write: Callable[[Assembly, Path], None]
+
+
+Format = Table | Bodies
+
+
+# each writer is imported when it is used: behind them stand large libraries
+
+
+def _csv(motion: Motion, path: Path, units: Units) -> None:
+    from sevenbar.export import tables
+
+    tables.write_csv(motion, path, units)
+
+
+def _parquet(motion: Motion, path: Path, units: Units) -> None:
+    from sevenbar.export import tables
+
+    tables.write_parquet(motion, path, units)
+
+
+def _npz(motion: Motion, path: Path, units: Units) -> None:
+    from sevenbar.export import tables
+
+    tables.write_npz(motion, path, units)
+
+
+def _mat(motion: Motion, path: Path, units: Units) -> None:
+    from sevenbar.export import tables
+
+    tables.write_mat(motion, path, units)
+
+
+def _json(motion: Motion, path: Path, units: Units) -> None:
+    from sevenbar.export import tables
+
+    tables.write_json(motion, path, units)
+
+
+def _glb(assembly: Assembly, path: Path) -> None:
+    from sevenbar.export import meshes
+
+    meshes.write_glb(assembly, path)
+
+
+def _stl(assembly: Assembly, path: Path) -> None:
+    from sevenbar.export import meshes
+
+    meshes.write_stl(assembly, path)
+
+
+def _step(assembly: Assembly, path: Path) -> None:
+    from sevenbar.export import cad
+
+    cad.write_step(assembly, path)
+
+
+def _urdf(assembly: Assembly, path: Path) -> None:
+    from sevenbar.export import urdf
+
+    urdf.write_urdf(assembly, path)
+
+
+def _cmd(assembly: Assembly, path: Path) -> None:
+    from sevenbar.export import adams
+
+    adams.write_cmd(assembly, path)
+
+
+#: All kinds of file, by the word that asks for them.
+FORMATS: dict[str, Format] = {
+    "csv": Table((".csv",), _csv),
+    "parquet": Table((".parquet",), _parquet),
+    "npz": Table((".npz",), _npz),
+    "mat": Table((".mat",), _mat),
+    "json": Table((".json",), _json),
+    "glb": Bodies((".glb",), _glb),
+    "stl": Bodies((".stl",), _stl),
+    "step": Bodies((".step", ".stp"), _step),
+    "urdf": Bodies((".urdf",), _urdf),
+    "cmd": Bodies((".cmd",), _cmd),
+}
+
+
+def export(
+    source: Linkage | Motion,
+    to: str | None,
+    path: str | os.PathLike[str],
+    *,
+    circuit: int | None = None,
+    at: float | None = None,
+    branch: int | None = None,
+    samples: int = 360,
+    units: Units | None = None,
+    force: bool = False,
+) -> list[Path]:
+    """Writes a linkage or its motion for another program; returns the files written.
+
+    `to` is a word of `FORMATS`; `None` tells it from the path's ending. Tables hold every circuit; `units`
+    "file" (the default) keeps the linkage's length unit, "si" takes metres and radians. The others hold one
+    pose: of `circuit` (0), at the input `at` [rad, or length], on its pass `branch` (0). `stl` with a path
+    without an ending is a folder with one file for each part. `samples` are inputs in a turn, for a linkage.
+
+    Files appear whole or not at all, and take the place of others only with `force`. Raises `RequestError`
+    for what cannot be, `MissingExtraError` for a library that is not installed, and `OutputError` for a file
+    that exists or cannot be written.
+    """
+    target = Path(path)
+    word = format_of(target, to)
+    form = FORMATS[word]
+    _check_choices(word, form, circuit, at, branch, units)
+    into_folder = word == "stl" and not target.suffix
+    if not force and not into_folder:
+        _check_free(_files(word, target))
+    motion = source.motion(samples) if isinstance(source, Linkage) else source
+    if isinstance(form, Table):
+        if not motion.circuits:
+            raise RequestError(f"motion: {motion.motion_type}, so there are no rows to export")
+        return fill_folder(
+            target.parent, lambda aside: form.write(motion, aside / target.name, units or "file")
+        )
+    from sevenbar.export.layout import arrange
+
+    assembly = arrange(take(motion, circuit or 0, at, branch))
+    if into_folder:
+        from sevenbar.export.meshes import write_stl_parts
+
+        if not force:
+            _check_free([target / f"{part.name}.stl" for part in assembly.parts])
+        return fill_folder(target, lambda aside: write_stl_parts(assembly, aside))
+    return fill_folder(target.parent, lambda aside: form.write(assembly, aside / target.name))
+
+
+def format_of(path: Path, to: str | None) -> str:
+    """The word for the kind of a file: the one given, else that of the path's ending."""
+    if to is not None:
+        word = to.lower().removeprefix(".")
+        known = {ending[1:]: name for name, form in FORMATS.items() for ending in form.endings}
+        if word not in known:
+            raise RequestError(
+                f"to: {shown(to)} is not a format; {suggestion(word, FORMATS)}allowed: {', '.join(FORMATS)}"
+            )
+        word = known[word]
+        if path.suffix and path.suffix.lower() not in FORMATS[word].endings:
+            raise RequestError(
+                f"{path}: its ending {shown(path.suffix)} is not that of {word}; "
+                f"give {' or '.join(FORMATS[word].endings)}"
+            )
+        if not path.suffix and word != "stl":
+            raise RequestError(f"{path}: has no ending; give {' or '.join(FORMATS[word].endings)}")
+        return word
+    for word, form in FORMATS.items():
+        if path.suffix.lower() in form.endings:
+            return word
+    endings = ", ".join(ending for form in FORMATS.values() for ending in form.endings)
+    raise RequestError(f"{path}: {shown(path.suffix)} tells no format; give one of {endings}")
+
+
+def _check_choices(
+    word: str, form: Format, circuit: int | None, at: float | None, branch: int | None, units: str | None
+) -> None:
+    if units not in (None, "file", "si"):
+        raise RequestError(f"units: {shown(units)} is not offered; give file or si")
+    if isinstance(form, Table):
+        for name, value in (("circuit", circuit), ("at", at), ("branch", branch)):
+            if value is not None:
+                raise RequestError(f"{name}: {word} holds all rows of all circuits; leave it out")
+    elif units is not None:
+        raise RequestError(f"units: the units of {word} are fixed; leave it out")
+
+
+def _files(word: str, target: Path) -> list[Path]:
+    if word != "urdf":
+        return [target]
+    from sevenbar.export.urdf import loop_file
+
+    return [target, loop_file(target)]
+
+
+def _check_free(targets: list[Path]) -> None:
+    for target in targets:
+        if target.exists():
+            raise OutputError(f"{target}: exists already; give another path, or --force to replace it")

@@ -1,0 +1,362 @@
+"""A linkage as a command file for ADAMS/View: parts, markers, joints, the motion, one simulated cycle.
+
+Written by the public documentation of the command language. No ADAMS was at hand to run it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+
+from sevenbar.errors import RequestError
+from sevenbar.export.mass import Mass, masses
+from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
+from sevenbar.export.pose import Pose
+from sevenbar.linkage import inverse
+from sevenbar.linkage import pose as matrix
+from sevenbar.motion import Floats
+from sevenbar.units import LENGTHS
+
+#: The names ADAMS has for length units; micrometres are written in millimetres.
+UNITS = {"mm": "mm", "cm": "cm", "m": "meter", "in": "inch", "ft": "foot", "um": "mm"}
+
+#: How much of the way to a dead centre of the input is driven: at it, constant speed asks the impossible.
+DRIVEN_SHARE = 0.98
+
+#: Axes [rad] nearer than this to a right angle make a Hooke joint.
+RIGHT = 1e-9
+
+
+def write_cmd(assembly: Assembly, path: Path) -> None:
+    """Writes the command file in the linkage's own length unit, kilograms, seconds and degrees.
+
+    A part for each moving link, in place in the pose, its frame that of the link; at each joint a marker on
+    either part, so that `AZ(I, J)` is the joint's angle as Sevenbar counts it and `DZ(I, J, J)` its slide.
+    No gravity acts.
+    """
+    path.write_text(_Commands(assembly).text(), encoding="utf-8")
+
+
+class _Commands:
+    """The commands as they are collected."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self.assembly = assembly
+        self.pose: Pose = assembly.pose
+        self.linkage = self.pose.linkage
+        unit = self.linkage.length_unit
+        self.scale = LENGTHS[unit] / LENGTHS["mm"] if unit == "um" else 1.0
+        self.model = "." + _word(self.linkage.name, "linkage")
+        self.lines: list[str] = []
+        self.joints = _distinct([_word(joint.name, "joint") for joint in self.linkage.joints])
+        #: Each column's joint, its markers, and whether it turns; none for turns of Hooke joints and balls.
+        self.columns: dict[str, tuple[str, str, str, bool]] = {}
+
+    def text(self) -> str:
+        drive = self._drive()
+        self._head()
+        weights = masses(self.assembly)
+        for body, name in enumerate(self.assembly.bodies):
+            if name == "ground" or self._has_part(body):
+                self._part(body, weights[body])
+        for i in range(len(self.linkage.joints)):
+            self._joint(i)
+        for point in self.linkage.points:
+            # from how the file writes a point to its link's own frame; that of the ground is the report frame
+            body = point.link - 1
+            frame = self.linkage.point_frames[body]
+            place = frame[:3, :3] @ np.array(point.at) + frame[:3, 3]
+            self._marker(body, f"point_{_word(point.name, 'p')}", matrix(np.eye(3), place))
+        self._motion(drive)
+        return "\n".join(self.lines) + "\n"
+
+    def _drive(self) -> tuple[float, float, int]:
+        """The input's speed, and the time and the steps of one cycle."""
+        motion, circuit = self.pose.motion, self.pose.circuit
+        if motion.law is not None:
+            raise RequestError(
+                "cmd: a motion driven by a law has no constant speed; give one that is driven at a speed"
+            )
+        if circuit.input_range is None:
+            turns = max(1, circuit.turns)
+            return motion.speed, turns * math.tau / abs(motion.speed), turns * motion.samples
+        low, high = circuit.input_range
+        way = (high - self.pose.input) if motion.speed > 0 else (self.pose.input - low)
+        return motion.speed, DRIVEN_SHARE * way / abs(motion.speed), motion.samples
+
+    def _has_part(self, body: int) -> bool:
+        """Whether a cross is a part of its own: not where a Hooke joint holds it."""
+        count = len(self.linkage.joints)
+        if body < count:
+            return True
+        crosses = [i for i, joint in enumerate(self.linkage.joints) if joint.kind == "U"]
+        return not self._hooke(crosses[body - count])
+
+    def _hooke(self, i: int) -> bool:
+        joint = self.linkage.joints[i]
+        ends = (self.pose.motion.input, self.pose.motion.output)
+        return abs(joint.angle - math.pi / 2) < RIGHT and not set(joint.columns) & set(ends)
+
+    def _say(self, keywords: str, **parameters: str) -> None:
+        words = [f"{key} = {value}" for key, value in parameters.items()]
+        self.lines += [" &\n   ".join([keywords, *words]), "!"]
+
+    def _head(self) -> None:
+        unit = self.linkage.length_unit
+        written = "mm" if unit == "um" else unit
+        self.lines += [
+            f"! {_ascii(self.linkage.name)}",
+            "! An ADAMS/View command file written by Sevenbar from the documentation of the language;",
+            "! it has not been run in ADAMS. Lengths in " + written + ", masses in kg; masses are those of",
+            "! the drawn bodies in steel. Plain angles in functions are in radians. No gravity.",
+            *(f"! Idle freedom: {_ascii(words)}." for words in self.linkage.idle),
+            *(f"! Redundant constraint, which the solver takes out itself: {_ascii(words)}."
+              for words in self.pose.motion.redundant),
+            "!",
+        ]  # fmt: skip
+        self._say("defaults units", length=UNITS[unit], angle="deg", force="newton", mass="kg", time="sec")
+        self._say("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
+        self._say("model create", model_name=self.model)
+        self._say("defaults model", model_name=self.model)
+        self._say("defaults coordinate_system", default_coordinate_system=f"{self.model}.ground")
+
+    def _name(self, body: int) -> str:
+        return f"{self.model}.{_word(self.assembly.bodies[body], 'link')}"
+
+    def _part(self, body: int, mass: Mass) -> None:
+        name = self._name(body)
+        if self.assembly.bodies[body] != "ground":
+            location, orientation = self._place(self.assembly.frames[body])
+            self._say(
+                "part create rigid_body name_and_position",
+                part_name=name,
+                location=location,
+                orientation=orientation,
+            )
+            # about its main axes, so that no products of inertia are left
+            moments, axes = np.linalg.eigh(mass.inertia)
+            axes[:, 2] *= np.linalg.det(axes)
+            self._marker(body, "cm", matrix(axes, mass.centre))
+            moments = self.scale**2 * moments
+            self._say(
+                "part modify rigid_body mass_properties",
+                part_name=name,
+                mass=_number(mass.mass),
+                center_of_mass_marker=f"{name}.cm",
+                ixx=_number(moments[0]), iyy=_number(moments[1]), izz=_number(moments[2]),
+                ixy="0.0", izx="0.0", iyz="0.0",
+            )  # fmt: skip
+        solids = [s for part in self.assembly.parts if part.body == body for s in part.add]
+        for k, solid in enumerate(solids, 1):
+            self._shape(body, k, solid)
+
+    def _shape(self, body: int, k: int, solid: Solid) -> None:
+        name = self._name(body)
+        marker = f"shape_{k}"
+        if isinstance(solid, Ball):
+            self._marker(body, marker, matrix(np.eye(3), solid.centre))
+            across = _number(2 * self.scale * solid.radius)
+            self._say(
+                "geometry create shape ellipsoid",
+                ellipsoid_name=f"{name}.ball_{k}",
+                center_marker=f"{name}.{marker}",
+                x_scale_factor=across, y_scale_factor=across, z_scale_factor=across,
+            )  # fmt: skip
+            return
+        frame = frame_of(solid).copy()
+        frame[:3, 3] = solid.start
+        length = self.scale * length_of(solid)
+        if isinstance(solid, Rod):
+            self._marker(body, marker, frame)
+            self._say(
+                "geometry create shape cylinder",
+                cylinder_name=f"{name}.rod_{k}",
+                center_marker=f"{name}.{marker}",
+                angle_extent="360.0",
+                length=_number(length),
+                radius=_number(self.scale * solid.radius),
+            )
+            return
+        frame[:3, 3] -= solid.width / 2 * (frame[:3, 0] + frame[:3, 1])
+        self._marker(body, marker, frame)
+        width = self.scale * solid.width
+        self._say(
+            "geometry create shape block",
+            block_name=f"{name}.bar_{k}",
+            corner_marker=f"{name}.{marker}",
+            diag_corner_coords=", ".join(map(_number, (width, width, length))),
+        )
+
+    def _marker(self, body: int, word: str, frame: Floats) -> str:
+        """A marker on a body, by its frame (4, 4) on it."""
+        name = f"{self._name(body)}.{word}"
+        location, orientation = self._place(frame)
+        self._say(
+            "marker create",
+            marker_name=name,
+            location=location,
+            orientation=orientation,
+            relative_to=self._name(body),
+        )
+        return name
+
+    def _joint(self, i: int) -> None:
+        joint, word = self.linkage.joints[i], self.joints[i]
+        count = len(self.linkage.joints)
+        before, after = (i - 1) % count, i
+        on_before = inverse(self.pose.frames[before]) @ self.pose.near[i]
+        on_after = inverse(self.pose.frames[after]) @ self.pose.far[i]
+        if joint.kind == "U":
+            self._universal(i, on_before, on_after)
+            return
+        j_marker = self._marker(before, f"{word}_j", on_before)
+        i_marker = self._marker(after, f"{word}_i", on_after)
+        kinds = {
+            "R": "revolute",
+            "P": "translational",
+            "C": "cylindrical",
+            "H": "cylindrical",
+            "S": "spherical",
+        }
+        name = self._connect(kinds[joint.kind], word, i_marker, j_marker)
+        if joint.kind == "H":
+            # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
+            self._connect("screw", f"{word}_thread", i_marker, j_marker, self.scale * joint.pitch)
+        if joint.kind in "RH":
+            self.columns[joint.name] = (name, i_marker, j_marker, True)
+        elif joint.kind == "P":
+            self.columns[joint.name] = (name, i_marker, j_marker, False)
+        elif joint.kind == "C":
+            for column, turns in zip(joint.columns, (True, False), strict=True):
+                self.columns[column] = (name, i_marker, j_marker, turns)
+
+    def _universal(self, i: int, on_before: Floats, on_after: Floats) -> None:
+        joint, word = self.linkage.joints[i], self.joints[i]
+        count = len(self.linkage.joints)
+        before = (i - 1) % count
+        body = count + sum(other.kind == "U" for other in self.linkage.joints[:i])
+        cross = self.assembly.frames[body]
+        if self._hooke(i):
+            # its crosspiece: y of the J marker and x of the I marker
+            square, first, second = cross[:3, 0], self.pose.near[i, :3, 2], self.pose.far[i, :3, 2]
+            turn_j = np.stack([np.cross(first, square), first, square], axis=1)
+            turn_i = np.stack([second, np.cross(square, second), square], axis=1)
+            frame_j = inverse(self.pose.frames[before]) @ matrix(turn_j, self.pose.near[i, :3, 3])
+            frame_i = inverse(self.pose.frames[i]) @ matrix(turn_i, self.pose.far[i, :3, 3])
+            j_marker = self._marker(before, f"{word}_j", frame_j)
+            i_marker = self._marker(i, f"{word}_i", frame_i)
+            self._connect("hooke", word, i_marker, j_marker)
+            return
+        cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
+        tilt = np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
+        for k, (j_body, j_frame, i_body, i_frame) in enumerate(
+            ((before, on_before, body, np.eye(4)), (body, tilt, i, on_after)), 1
+        ):
+            j_marker = self._marker(j_body, f"{word}_{k}_j", j_frame)
+            i_marker = self._marker(i_body, f"{word}_{k}_i", i_frame)
+            name = self._connect("revolute", f"{word}_{k}", i_marker, j_marker)
+            self.columns[joint.columns[k - 1]] = (name, i_marker, j_marker, True)
+
+    def _connect(self, kind: str, word: str, i_marker: str, j_marker: str, pitch: float | None = None) -> str:
+        name = f"{self.model}.{word}"
+        more = {} if pitch is None else {"pitch": _number(pitch)}
+        self._say(
+            f"constraint create joint {kind}",
+            joint_name=name,
+            i_marker_name=i_marker,
+            j_marker_name=j_marker,
+            **more,
+        )
+        return name
+
+    def _motion(self, drive: tuple[float, float, int]) -> None:
+        speed, end, steps = drive
+        motion = self.pose.motion
+        joint, _, _, turns = self.columns[motion.input]
+        unit = 1.0 if turns else self.scale
+        self._say(
+            "constraint create motion_generator",
+            motion_name=f"{self.model}.drive",
+            type_of_freedom="rotational" if turns else "translational",
+            joint_name=joint,
+            function=f'"{_number(unit * self.pose.input)} + {_number(unit * speed)}*time"',
+        )
+        for column in (motion.input, motion.output):
+            if column not in self.columns:
+                continue
+            _, i, j, turns = self.columns[column]
+            word = _word(column, "joint")
+            for quantity, function, units in (
+                (
+                    "position",
+                    f"AZ({i}, {j})" if turns else f"DZ({i}, {j}, {j})",
+                    "angle" if turns else "length",
+                ),
+                (
+                    "velocity",
+                    f"{'WZ' if turns else 'VZ'}({i}, {j}, {j})",
+                    "angular_velocity" if turns else "velocity",
+                ),
+                (
+                    "acceleration",
+                    f"{'WDTZ' if turns else 'ACCZ'}({i}, {j}, {j})",
+                    "angular_acceleration" if turns else "acceleration",
+                ),
+            ):
+                self._say(
+                    "measure create function",
+                    measure_name=f"{self.model}.{word}_{quantity}",
+                    function=f'"{function}"',
+                    units=f'"{units}"',
+                    create_measure_display="no",
+                )
+        self._say(
+            "simulation single_run transient",
+            type="auto_select",
+            initial_static="no",
+            end_time=_number(end),
+            number_of_steps=str(steps),
+            model_name=self.model,
+        )
+
+    def _place(self, frame: Floats) -> tuple[str, str]:
+        """A frame as location and orientation: turns about z, x and z, each carried by the one before."""
+        turn = frame[:3, :3]
+        first = math.atan2(turn[0, 2], -turn[1, 2]) if math.hypot(turn[0, 2], turn[1, 2]) > 1e-12 else 0.0
+        # what is left after the first, so that the three belong together where it is not defined
+        cosine, sine = math.cos(first), math.sin(first)
+        turn = np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]]) @ turn
+        second = math.atan2(-turn[1, 2], turn[2, 2])
+        third = math.atan2(-turn[0, 1], turn[0, 0])
+        location = ", ".join(map(_number, self.scale * frame[:3, 3]))
+        return location, ", ".join(f"{_number(math.degrees(a))}d" for a in (first, second, third))
+
+
+def _number(value: float) -> str:
+    """A number to its last digit, with the point that makes it a real one."""
+    return repr(float(value) + 0.0).replace("e", "E")
+
+
+def _word(name: str, otherwise: str) -> str:
+    """A name of letters, digits and underscores that begins with a letter."""
+    word = re.sub(r"[^A-Za-z0-9_]+", "_", name).strip("_")
+    return word if re.match(r"[A-Za-z]", word) else f"{otherwise}_{word}".rstrip("_")
+
+
+def _distinct(words: list[str]) -> list[str]:
+    """The words, those that occur before with a number behind."""
+    found: list[str] = []
+    for word in words:
+        lowered = [w.lower() for w in found]
+        tail = ""
+        while (word + tail).lower() in lowered:
+            tail = f"_{int(tail[1:] or 1) + 1}"
+        found.append(word + tail)
+    return found
+
+
+def _ascii(text: str) -> str:
+    return text.encode("ascii", "replace").decode()

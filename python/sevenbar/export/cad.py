@@ -1,0 +1,94 @@
+"""The parts of a linkage as exact solids, in a STEP assembly (build123d, extra `[cad]`)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sevenbar.errors import MissingExtraError, OutputError
+from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid, across
+from sevenbar.motion import Floats
+from sevenbar.units import LENGTHS
+
+
+def write_step(assembly: Assembly, path: Path) -> None:
+    """Writes an assembly of one component for each part, in place in the pose, in millimetres.
+
+    Each component has its part's name and colour, and its own coordinates are those of its link's frame.
+    """
+    library = _build123d()
+    linkage = assembly.pose.linkage
+    scale = LENGTHS[linkage.length_unit] / LENGTHS["mm"]
+    components = []
+    for part in assembly.parts:
+        shape = solid(part, scale)
+        frame = assembly.frames[part.body]
+        shape.label = part.name
+        shape.color = library.Color(*(c / 255 for c in bytes.fromhex(part.colour[1:])))
+        shape.location = library.Location(_plane(library, scale * frame[:3, 3], frame[:3, 0], frame[:3, 2]))
+        components.append(shape)
+    whole = library.Compound(label=linkage.name, children=components)
+    if not library.export_step(whole, path):
+        raise OutputError(f"{path}: the STEP writer of build123d failed; nothing was written")
+
+
+def solid(part: Part, scale: float) -> Any:
+    """The exact solid of a part in its body's frame, lengths times `scale`."""
+    first, *rest = [_primitive(s, scale, part) for s in part.add]
+    whole = first.fuse(*rest) if rest else first
+    if part.cut:
+        whole = whole.cut(*[_primitive(s, scale, part) for s in part.cut])
+    return whole.solids()[0] if len(whole.solids()) == 1 else whole
+
+
+def _primitive(piece: Solid, scale: float, part: Part) -> Any:
+    library = _build123d()
+    if isinstance(piece, Ball):
+        plane = _plane(library, scale * piece.centre, *_free_of_arms(piece, part))
+        return library.Solid.make_sphere(scale * piece.radius, plane)
+    along = piece.end - piece.start
+    length = float(np.linalg.norm(along))
+    along = along / length
+    if isinstance(piece, Bar):
+        other = np.cross(along, piece.side)
+        corner = piece.start - piece.width / 2 * (piece.side + other)
+        plane = _plane(library, scale * corner, piece.side, along)
+        return library.Solid.make_box(scale * piece.width, scale * piece.width, scale * length, plane)
+    plane = _plane(library, scale * piece.start, across(along), along)
+    return library.Solid.make_cylinder(scale * piece.radius, scale * length, plane)
+
+
+def _free_of_arms(ball: Ball, part: Part) -> tuple[Floats, Floats]:
+    """Where a ball's seam and pole are free of the arms that leave it: cut by them, STEP readers go wrong."""
+    arms = [
+        (end - start) / np.linalg.norm(end - start)
+        for rod in part.add
+        if isinstance(rod, Rod)
+        for start, end in ((rod.start, rod.end), (rod.end, rod.start))
+        if np.linalg.norm(start - ball.centre) < 1e-9 * np.linalg.norm(end - start)
+    ]
+    if not arms:
+        return np.eye(3)[0], np.eye(3)[2]
+    seam = -np.sum(arms[:2], axis=0)
+    if np.linalg.norm(seam) < 1e-3:
+        seam = across(arms[0])
+    pole = np.cross(arms[0], seam)
+    if np.linalg.norm(pole) < 1e-3:
+        pole = across(seam / np.linalg.norm(seam))
+    return seam, pole
+
+
+def _plane(library: Any, origin: Floats, x: Floats, z: Floats) -> Any:
+    return library.Plane(origin=tuple(origin), x_dir=tuple(x), z_dir=tuple(z))
+
+
+def _build123d() -> Any:
+    try:
+        import build123d
+    except ImportError:
+        raise MissingExtraError(
+            "step needs build123d; install it with: pip install 'sevenbar[cad]'"
+        ) from None
+    return build123d

@@ -1,0 +1,113 @@
+"""Where hubs sit along their axes: places a joint may have without any effect on the motion.
+
+They are chosen so that links overlap as little as can be found, in several poses of the circuit. A loop whose
+links must cross, as those of many overconstrained ones, keeps overlaps.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from itertools import product
+
+import numpy as np
+
+from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, unit_of
+from sevenbar.export.pose import Pose
+from sevenbar.motion import Floats, Integers
+
+#: Sweeps over all joints; most layouts no longer change after two.
+SWEEPS = 4
+#: How far a hub may be shifted along its axis, and a slide across it, in heights of a hub.
+SHIFTS = (0.0, 1.2, -1.2, 2.4, -2.4, 4.0, -4.0)
+ASIDE = 2.4
+#: What a shift of one hub's height costs, beside the squared overlap in heights of a hub.
+SHIFT_COST = 0.03
+
+
+def arrange(pose: Pose) -> Assembly:
+    """The parts of a linkage in a pose, seated with the least overlap found."""
+    unit = unit_of(pose)
+    kinds = [joint.kind for joint in pose.linkage.joints]
+    # by turns above and below, as in a plane linkage of two layers
+    seats = tuple(Seat(side=1 if i % 2 == 0 else -1) for i in range(len(kinds)))
+
+    @cache
+    def cost(seats: tuple[Seat, ...]) -> float:
+        moved = sum(abs(s.shift) + abs(s.aside[0]) + abs(s.aside[1]) for s in seats)
+        return _overlap(assemble(pose, seats, unit)) + SHIFT_COST * moved
+
+    for _ in range(SWEEPS):
+        start = seats
+        for i, kind in enumerate(kinds):
+            tried = [(*seats[:i], seat, *seats[i + 1 :]) for seat in _choices(kind)]
+            # min keeps the first of equals: what is seated already stays
+            seats = min([seats, *tried], key=cost)
+        if seats == start:
+            break
+    return assemble(pose, seats, unit)
+
+
+def _choices(kind: str) -> list[Seat]:
+    match kind:
+        case "S":
+            return []
+        case "U":
+            return [Seat(a, d, other=b) for a, b, d in product((1, -1), (1, -1), (0.0, 1.0))]
+        case "P":
+            across = [(0.0, 0.0), (ASIDE, 0.0), (-ASIDE, 0.0), (0.0, ASIDE), (0.0, -ASIDE)]
+            return [Seat(side, d, way) for side, d, way in product((1, -1), SHIFTS[:3], across)]
+        case _:
+            return [Seat(side, d) for side, d in product((1, -1), SHIFTS)]
+
+
+def _overlap(assembly: Assembly) -> float:
+    """The squared depth of all overlaps of unlike links [heights of a hub, summed over poses]."""
+    pose, unit = assembly.pose, assembly.unit
+    count = len(pose.frames)
+    starts, ends, radii, bodies = [], [], [], []
+    for part in assembly.parts:
+        if part.body >= count:
+            continue
+        for solid in part.add:
+            if isinstance(solid, Ball):
+                first = last = solid.centre
+                radius = solid.radius
+            else:
+                first, last = solid.start, solid.end
+                radius = 0.6 * solid.width if isinstance(solid, Bar) else solid.radius
+            starts.append(first)
+            ends.append(last)
+            radii.append(radius)
+            bodies.append(part.body)
+    body = np.array(bodies)
+    one, two = _pairs(body)
+    reach = (np.array(radii)[one] + np.array(radii)[two]) / unit
+    total = 0.0
+    for frames in (pose.frames, *pose.others):
+        turn, shift = frames[body, :3, :3], frames[body, :3, 3]
+        a = np.einsum("kij,kj->ki", turn, np.array(starts)) + shift
+        b = np.einsum("kij,kj->ki", turn, np.array(ends)) + shift
+        depth = np.maximum(reach - _distances(a[one], b[one], a[two], b[two]) / unit, 0.0)
+        total += float((depth**2).sum())
+    return total / (1 + len(pose.others))
+
+
+def _pairs(body: Integers) -> tuple[Integers, Integers]:
+    """All pairs of solids on unlike bodies."""
+    one, two = np.triu_indices(len(body), 1)
+    unlike = body[one] != body[two]
+    return one[unlike], two[unlike]
+
+
+def _distances(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
+    """The distances (n,) of segments ab and cd, each end (n, 3): the closest of the lines, clamped."""
+    along, across, between = b - a, d - c, a - c
+    aa, bb = (along**2).sum(axis=1), (across**2).sum(axis=1)
+    ab, a0, b0 = (along * across).sum(axis=1), (along * between).sum(axis=1), (across * between).sum(axis=1)
+    tiny = 1e-300
+    determinant = aa * bb - ab * ab
+    s = np.clip((ab * b0 - bb * a0) / np.where(determinant > 1e-12 * aa * bb, determinant, np.inf), 0, 1)
+    t = np.clip((ab * s + b0) / np.maximum(bb, tiny), 0, 1)
+    s = np.clip((ab * t - a0) / np.maximum(aa, tiny), 0, 1)
+    gap: Floats = np.linalg.norm(between + s[:, None] * along - t[:, None] * across, axis=1)
+    return gap

@@ -1,0 +1,63 @@
+"""Mass and inertia of bodies from the rods, bars and balls they are drawn with."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.export.parts import Assembly, Ball, Rod, Solid
+from sevenbar.motion import Floats
+from sevenbar.units import LENGTHS
+
+#: Of steel [kg/m^3].
+DENSITY = 7850.0
+
+
+@dataclass(frozen=True, eq=False)
+class Mass:
+    """Mass [kg]; its centre (3,) in the body's frame; inertia (3, 3) about the centre [kg length^2]."""
+
+    mass: float
+    centre: Floats
+    inertia: Floats
+
+
+def masses(assembly: Assembly) -> list[Mass]:
+    """The mass of each body, as if its solids of steel did not overlap and had no holes."""
+    scale = LENGTHS[assembly.pose.linkage.length_unit]
+    density = DENSITY * scale**3
+    return [
+        _sum([s for part in assembly.parts if part.body == body for s in part.add], density)
+        for body in range(len(assembly.frames))
+    ]
+
+
+def _sum(solids: Sequence[Solid], density: float) -> Mass:
+    single = [_of(solid, density) for solid in solids]
+    mass = sum(one.mass for one in single)
+    centre: Floats = np.sum([one.mass * one.centre for one in single], axis=0) / mass
+    inertia = np.zeros((3, 3))
+    for one in single:
+        arm = one.centre - centre
+        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return Mass(float(mass), centre, inertia)
+
+
+def _of(solid: Solid, density: float) -> Mass:
+    if isinstance(solid, Ball):
+        mass = density * 4 / 3 * math.pi * solid.radius**3
+        return Mass(mass, solid.centre, 0.4 * mass * solid.radius**2 * np.eye(3))
+    along = solid.end - solid.start
+    length = float(np.linalg.norm(along))
+    axis = along / length
+    if isinstance(solid, Rod):
+        mass = density * math.pi * solid.radius**2 * length
+        about, across = solid.radius**2 / 2, solid.radius**2 / 4 + length**2 / 12
+    else:
+        mass = density * solid.width**2 * length
+        about, across = solid.width**2 / 6, (solid.width**2 + length**2) / 12
+    inertia = mass * (across * np.eye(3) + (about - across) * np.outer(axis, axis))
+    return Mass(mass, (solid.start + solid.end) / 2, inertia)

@@ -1,0 +1,100 @@
+"""Watertight meshes of a linkage's parts, and GLB and STL made of them (trimesh, extra `[export]`)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sevenbar.errors import MissingExtraError
+from sevenbar.export.parts import Assembly, Ball, Part, Rod, Solid, frame_of, length_of
+from sevenbar.units import LENGTHS
+
+#: Flat faces round a rod, and rings of a ball: 0.2 % of the radius from round.
+SECTIONS = 48
+
+#: glTF has y up and lengths in metres; the report frame's z becomes its y.
+TO_GLTF = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+
+
+def write_glb(assembly: Assembly, path: Path) -> None:
+    """Writes the assembly as a scene [m]: a node for each link, in place by its matrix, parts below it."""
+    library = _trimesh()
+    scene = library.Scene(base_frame="world")
+    scale = LENGTHS[assembly.pose.linkage.length_unit]
+    metres = np.diag([scale, scale, scale, 1.0])
+    back = np.diag([1 / scale, 1 / scale, 1 / scale, 1.0])
+    scene.graph.update(frame_to="linkage", frame_from="world", matrix=TO_GLTF)
+    for name, frame in zip(assembly.bodies, assembly.frames, strict=True):
+        scene.graph.update(frame_to=name, frame_from="linkage", matrix=metres @ frame @ back)
+    for part in assembly.parts:
+        solid = mesh(part)
+        solid.apply_transform(metres)
+        solid.visual = library.visual.TextureVisuals(
+            material=library.visual.material.PBRMaterial(
+                name=part.colour,
+                baseColorFactor=_rgba(part.colour),
+                metallicFactor=0.35,
+                roughnessFactor=0.45,
+            )
+        )
+        scene.add_geometry(
+            solid,
+            geom_name=part.name,
+            node_name=f"{part.name}_solid",
+            parent_node_name=assembly.bodies[part.body],
+        )
+    path.write_bytes(scene.export(file_type="glb"))
+
+
+def write_stl(assembly: Assembly, path: Path) -> None:
+    """Writes all parts in the pose into one binary STL, in the linkage's own length unit and report frame."""
+    placed = []
+    for part in assembly.parts:
+        solid = mesh(part)
+        solid.apply_transform(assembly.frames[part.body])
+        placed.append(solid)
+    path.write_bytes(_trimesh().util.concatenate(placed).export(file_type="stl"))
+
+
+def write_stl_parts(assembly: Assembly, folder: Path) -> None:
+    """Writes each part into a binary STL of its own, in its link's frame and the linkage's length unit."""
+    for part in assembly.parts:
+        (folder / f"{part.name}.stl").write_bytes(mesh(part).export(file_type="stl"))
+
+
+def mesh(part: Part) -> Any:
+    """The watertight mesh of a part, in its body's frame and the linkage's length unit."""
+    library = _trimesh()
+    solid = library.boolean.union([_primitive(s) for s in part.add], engine="manifold")
+    if part.cut:
+        solid = library.boolean.difference([solid, *map(_primitive, part.cut)], engine="manifold")
+    return solid
+
+
+def _primitive(solid: Solid) -> Any:
+    creation = _trimesh().creation
+    match solid:
+        case Ball():
+            ball = creation.uv_sphere(solid.radius, count=[SECTIONS // 2, SECTIONS])
+            ball.apply_translation(solid.centre)
+            return ball
+        case Rod():
+            return creation.cylinder(solid.radius, segment=[solid.start, solid.end], sections=SECTIONS)
+    return creation.box((solid.width, solid.width, length_of(solid)), transform=frame_of(solid))
+
+
+def _rgba(colour: str) -> list[int]:
+    return [*bytes.fromhex(colour.removeprefix("#")), 255]
+
+
+def _trimesh() -> Any:
+    try:
+        import manifold3d  # noqa: F401  # what trimesh joins and cuts solids with
+        import trimesh
+    except ImportError:
+        raise MissingExtraError(
+            "meshes need trimesh and manifold3d; install them with: pip install 'sevenbar[export]'"
+        ) from None
+    return trimesh

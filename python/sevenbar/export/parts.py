@@ -1,0 +1,392 @@
+"""The parts of a linkage as it would be built, from rods, bars and balls: what meshes, CAD and others share.
+
+Each turning or sliding joint has a hub with a hole on either link, side by side on the axis, and a shaft
+through both; a universal joint a cross between two hubs; a ball joint a ball in an open socket.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from sevenbar.export.pose import Pose, shortest_link, size_of
+from sevenbar.linkage import inverse
+from sevenbar.motion import Floats
+from sevenbar.scene import GROUND, JOINT, chain_colours
+from sevenbar.skeleton import CYLINDER
+
+#: Sizes as shares of the height of a hub. A hole is wider than its shaft by what a fit would never be, so
+#: that no two parts touch.
+HUB, HOLE, SHAFT, ARM, BALL = 0.72, 0.36, 0.33, 0.30, 0.62
+#: Distance of the middles of two neighbouring hubs; how far a shaft stands out; the thickness of a hub's lid.
+SPACING, STANDS_OUT, LID = 1.06, 0.18, 0.45
+#: A socket's outer radius, and where its mouth is cut, in radii of the ball.
+SOCKET, MOUTH = 1.42, 0.1
+#: The greatest cosine of the mouth's direction and the arm that holds the socket.
+AWAY = -0.35
+#: Distance of a hub of a universal joint from the middle of its cross.
+REACH = 1.5
+#: Below this cosine between an arm and the axis, the arm first goes so far off, round the other hub.
+PAST_THE_OTHER, ELBOW = -0.35, 1.6
+#: Above this cosine between an arm and the axis, the arm leaves through the hub's end, which then has a lid.
+THROUGH_THE_END = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Rod:
+    """A round rod with flat ends, between two places (3,)."""
+
+    start: Floats
+    end: Floats
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """A square bar between two places (3,); `side` (3,) is the unit vector of its width."""
+
+    start: Floats
+    end: Floats
+    width: float
+    side: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """A ball about a place (3,)."""
+
+    centre: Floats
+    radius: float
+
+
+Solid = Rod | Bar | Ball
+
+
+def length_of(solid: Rod | Bar) -> float:
+    """The length of a rod or a bar."""
+    return float(np.linalg.norm(solid.end - solid.start))
+
+
+def frame_of(solid: Rod | Bar) -> Floats:
+    """The frame (4, 4) in the middle of a rod or a bar: z along it, x along a bar's side."""
+    along = (solid.end - solid.start) / length_of(solid)
+    side = solid.side if isinstance(solid, Bar) else across(along)
+    frame = np.eye(4)
+    frame[:3, :3] = np.stack([side, np.cross(along, side), along], axis=1)
+    frame[:3, 3] = (solid.start + solid.end) / 2
+    return frame
+
+
+def across(axis: Floats) -> Floats:
+    """A unit vector at right angles to an axis."""
+    way = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    unit: Floats = way / np.linalg.norm(way)
+    return unit
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One piece: the union of `add` less the union of `cut`, in the frame of the body that carries it.
+
+    `body` counts the links from 0, the ground last; from n on, the crosses of universal joints.
+    """
+
+    name: str
+    body: int
+    add: tuple[Solid, ...]
+    cut: tuple[Solid, ...]
+    colour: str
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """All parts of a linkage, and where their bodies are in the pose: `frames` (bodies, 4, 4)."""
+
+    pose: Pose
+    parts: tuple[Part, ...]
+    frames: Floats
+    bodies: tuple[str, ...]
+    #: The height of a hub [length].
+    unit: float
+
+
+@dataclass(frozen=True)
+class Seat:
+    """Where a joint's hubs sit, in heights of a hub.
+
+    `side` is that of the axis on which the sleeve lies, as seen from what carries the shaft; `shift` goes
+    along the axis, `aside` across it. A universal joint has `side` and `other`, one for each of its axes.
+    """
+
+    side: int = 1
+    shift: float = 0.0
+    aside: tuple[float, float] = (0.0, 0.0)
+    other: int = 1
+
+
+def unit_of(pose: Pose) -> float:
+    """The height of a hub [length]: as the figures draw it, less where links are short."""
+    return min(CYLINDER * size_of(pose), 0.25 * shortest_link(pose))
+
+
+def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
+    """All parts in a pose, each joint seated as told."""
+    linkage = pose.linkage
+    count = len(linkage.joints)
+    colours = _link_colours(pose)
+    lines = pose.polylines()
+    builds = [
+        _Build(f"link_{k + 1}" if k < count - 1 else "ground", k, colours[k] if k < count - 1 else GROUND)
+        for k in range(count)
+    ]
+    frames, bodies = list(pose.frames), [build.name for build in builds]
+    extra: list[Part] = []
+    feet = [(lines[i - 1][-1], lines[i][0]) for i in range(count)]
+    ends: list[list[Floats]] = [[line[0], line[-1]] for line in lines]
+    for i, joint in enumerate(linkage.joints):
+        before, after, seat = builds[i - 1], builds[i], seats[i]
+        near, far = feet[i]
+        if joint.kind == "S":
+            continue
+        if joint.kind == "U":
+            frame, cross, middles = _universal(before, after, pose, i, seat, unit)
+            extra.append(replace(cross, body=len(frames), name=f"cross_{_word(joint.name)}"))
+            frames.append(frame)
+            bodies.append(f"cross_{_word(joint.name)}")
+            ends[i - 1][1], ends[i][0] = middles
+        else:
+            # what is long stands on the ground where it can
+            carrier_is_near = i != count - 1
+            shaft, middles = _axial(before, after, pose, i, (near, far), seat, unit, carrier_is_near)
+            extra.append(
+                Part(
+                    f"shaft_{_word(joint.name)}",
+                    (i - 1) % count if carrier_is_near else i,
+                    (shaft,),
+                    (),
+                    JOINT,
+                )
+            )
+            ends[i - 1][1], ends[i][0] = middles
+    arms = [
+        np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last])
+        for line, (first, last) in zip(lines, ends, strict=True)
+    ]
+    for i in (i for i, joint in enumerate(linkage.joints) if joint.kind == "S"):
+        _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
+    for build, arm in zip(builds, arms, strict=True):
+        build.arm(arm, unit)
+    parts = [build.part() for build in builds]
+    local = tuple(_moved(part, inverse(frames[part.body])) for part in (*parts, *extra))
+    return Assembly(pose, local, np.stack(frames), tuple(bodies), unit)
+
+
+class _Build:
+    """A link while it is put together, in the report frame."""
+
+    def __init__(self, name: str, body: int, colour: str) -> None:
+        self.name, self.body, self.colour = name, body, colour
+        self.add: list[Solid] = []
+        self.cut: list[Solid] = []
+        self._hubs: list[tuple[Floats, Floats, bool, Floats | None]] = []
+
+    def hub(self, middle: Floats, outward: Floats, may_close: bool, side: Floats | None) -> None:
+        """A hub about its middle; `outward` is the direction along the axis away from the other hub.
+
+        With a `side`, the direction of its width, hub and hole are square.
+        """
+        self._hubs.append((middle, outward, may_close, side))
+
+    def arm(self, line: Floats, unit: float) -> None:
+        """The body along a polyline, whose ends lie in hubs or balls; then the hubs with their holes."""
+        line = self._round_the_others(line, unit)
+        steps = [(a, b) for a, b in pairwise(line) if np.linalg.norm(b - a) > 1e-3 * unit]
+        self.add += [Rod(a, b, ARM * unit) for a, b in steps]
+        self.add += [Ball(a, 1.04 * ARM * unit) for a, _ in steps[1:]]
+        for middle, outward, may_close, side in self._hubs:
+            leaves = [
+                (b - a if np.allclose(a, middle) else a - b)
+                for a, b in steps
+                if np.allclose(a, middle) or np.allclose(b, middle)
+            ]
+            closed = may_close and any(
+                way @ outward > THROUGH_THE_END * np.linalg.norm(way) for way in leaves
+            )
+            inner, outer = middle - 0.5 * unit * outward, middle + 0.5 * unit * outward
+            end = outer + LID * unit * outward if closed else outer
+            # the hole ends at the lid, or runs clear of both faces
+            start, stop = inner - 0.25 * unit * outward, outer if closed else outer + 0.25 * unit * outward
+            if side is not None:
+                self.add.append(Bar(inner, end, 1.6 * HUB * unit, side))
+                self.cut.append(Bar(start, stop, 1.7 * HOLE * unit, side))
+            else:
+                self.add.append(Rod(inner, end, HUB * unit))
+                self.cut.append(Rod(start, stop, HOLE * unit))
+
+    def _round_the_others(self, line: Floats, unit: float) -> Floats:
+        """The polyline with an elbow where it would run into the hub beside its own."""
+        places = list(line)
+        for middle, outward, _, _ in self._hubs:
+            for at_end in (False, True):
+                here, ahead = (places[-1], places[-2]) if at_end else (places[0], places[1])
+                way = ahead - here
+                aslant = way @ outward < PAST_THE_OTHER * np.linalg.norm(way)
+                if not np.allclose(here, middle) or not aslant:
+                    continue
+                off = way - (way @ outward) * outward
+                length = float(np.linalg.norm(off))
+                off = off / length if length > 1e-3 * float(np.linalg.norm(way)) else across(outward)
+                places.insert(len(places) - 1 if at_end else 1, here + ELBOW * unit * off)
+        return np.array(places)
+
+    def part(self) -> Part:
+        """What has been put together."""
+        return Part(self.name, self.body, tuple(self.add), tuple(self.cut), self.colour)
+
+
+def _bent(line: Floats, first: Floats, last: Floats, centre: Floats) -> Floats:
+    """The inner places of a link whose ends have moved; an arc on a sphere moves in or out with them."""
+    inner = line[1:-1]
+    if len(inner) < 2:
+        return inner
+    low, high = (
+        np.linalg.norm(end - centre) / np.linalg.norm(foot - centre)
+        for end, foot in ((first, line[0]), (last, line[-1]))
+    )
+    ratios = np.linspace(low, high, len(line))[1:-1, None]
+    moved: Floats = centre + ratios * (inner - centre)
+    return moved
+
+
+def _axial(
+    before: _Build,
+    after: _Build,
+    pose: Pose,
+    i: int,
+    feet: tuple[Floats, Floats],
+    seat: Seat,
+    unit: float,
+    carrier_is_near: bool,
+) -> tuple[Solid, tuple[Floats, Floats]]:
+    """Hubs and shaft of a joint R, P, C or H; returns the shaft and the middles of both hubs."""
+    # each hub by the frame on its own link, so that the two are in line only as far as the loop closes
+    frames = (pose.near[i], pose.far[i]) if carrier_is_near else (pose.far[i], pose.near[i])
+    bases = [
+        foot + unit * (seat.aside[0] * frame[:3, 0] + seat.aside[1] * frame[:3, 1])
+        for foot, frame in zip(feet if carrier_is_near else feet[::-1], frames, strict=True)
+    ]
+    axis, side_way = frames[0][:3, 2], frames[0][:3, 0]
+    # measured along the axis from the carrier's foot
+    low, high = pose.travel[i] if carrier_is_near else -pose.travel[i][::-1]
+    shift = (seat.shift + seat.side * SPACING / 2) * unit
+    stand = (low + shift - SPACING * unit) if seat.side > 0 else (high + shift + SPACING * unit)
+    carrier = bases[0] + stand * axis
+    sleeve = bases[1] + shift * frames[1][:3, 2]
+    way = seat.side * axis
+    travels = high - low > 1e-9 * unit
+    square = pose.linkage.joints[i].kind == "P"
+    near, far = (before, after) if carrier_is_near else (after, before)
+    near.hub(carrier, -way, True, frames[0][:3, 0] if square else None)
+    far.hub(sleeve, seat.side * frames[1][:3, 2], not travels, frames[1][:3, 0] if square else None)
+    reach = (0.5 + (STANDS_OUT if travels else -0.04)) * unit
+    last = bases[0] + ((high if seat.side > 0 else low) + shift) * axis + reach * way
+    first = carrier - 0.46 * unit * way
+    if square:
+        shaft: Solid = Bar(first, last, 1.7 * SHAFT * unit, side_way)
+    else:
+        shaft = Rod(first, last, SHAFT * unit)
+    return shaft, ((carrier, sleeve) if carrier_is_near else (sleeve, carrier))
+
+
+def _universal(
+    before: _Build, after: _Build, pose: Pose, i: int, seat: Seat, unit: float
+) -> tuple[Floats, Part, tuple[Floats, Floats]]:
+    """Hubs and cross of a universal joint; returns the cross's frame, the cross, and both middles."""
+    pins: list[Solid] = []
+    middles = []
+    centre = pose.near[i, :3, 3]
+    axes = (pose.near[i, :3, 2], pose.far[i, :3, 2])
+    for build, frame, side in zip(
+        (before, after), (pose.near[i], pose.far[i]), (seat.side, seat.other), strict=True
+    ):
+        way = side * frame[:3, 2]
+        middle = frame[:3, 3] + (REACH + seat.shift) * unit * way
+        build.hub(middle, way, True, None)
+        pins.append(Rod(pose.near[i, :3, 3], middle + 0.46 * unit * way, SHAFT * unit))
+        middles.append(middle)
+    square = np.cross(axes[0], axes[1])
+    square /= np.linalg.norm(square)
+    frame = np.eye(4)
+    frame[:3, :3] = np.stack([square, np.cross(axes[0], square), axes[0]], axis=1)
+    frame[:3, 3] = centre
+    cross = Part("", 0, (*pins, Ball(centre, 1.5 * SHAFT * unit)), (), JOINT)
+    return frame, cross, (middles[0], middles[1])
+
+
+def _ball_joint(
+    before: _Build, after: _Build, pose: Pose, i: int, arms: tuple[Floats, Floats], unit: float
+) -> None:
+    """The ball on the link before; on the link after a socket, open to the ball's arm as it is on average."""
+    radius = BALL * unit
+    centre = arms[1][0]
+    before.add.append(Ball(centre, radius))
+    mouth = _mean_arm(pose, i, arms[0][-2] - arms[0][-1])
+    own = arms[1][1] - arms[1][0]
+    own = own / max(float(np.linalg.norm(own)), 1e-300)
+    # the socket's own arm must hold on to it
+    held = min(float(mouth @ own), AWAY)
+    mouth = mouth - (mouth @ own) * own
+    if np.linalg.norm(mouth) > 1e-6:
+        mouth = mouth / np.linalg.norm(mouth) * np.sqrt(1 - held * held)
+    mouth = mouth + held * own
+    mouth = mouth / np.linalg.norm(mouth)
+    after.add.append(Ball(centre, SOCKET * radius))
+    # a little wider than the ball, so that the two do not touch
+    after.cut.append(Ball(centre, 1.03 * radius))
+    after.cut.append(Rod(centre + MOUTH * radius * mouth, centre + 2 * radius * mouth, 2 * radius))
+
+
+def _mean_arm(pose: Pose, i: int, arm: Floats) -> Floats:
+    """The mean direction (3,) of the arm before ball i as seen from the link after it, in this pose."""
+    count = len(pose.frames)
+    before, after = (i - 1) % count, i
+    here = pose.frames[after, :3, :3]
+    local = pose.frames[before, :3, :3].T @ arm
+    seen = pose.others[:, before, :3, :3] @ local
+    mean = np.einsum("mji,mj->i", pose.others[:, after, :3, :3], seen)
+    length = float(np.linalg.norm(mean))
+    # arms that go all the way round have no mean
+    direction: Floats = here @ mean / length if length > 1e-3 * float(np.linalg.norm(seen)) else arm
+    return direction / float(np.linalg.norm(direction))
+
+
+def _moved(part: Part, frame: Floats) -> Part:
+    """A part with all its places taken through a rigid motion."""
+    turn, shift = frame[:3, :3], frame[:3, 3]
+
+    def moved(solid: Solid) -> Solid:
+        match solid:
+            case Ball():
+                return Ball(turn @ solid.centre + shift, solid.radius)
+            case Rod():
+                return Rod(turn @ solid.start + shift, turn @ solid.end + shift, solid.radius)
+        return Bar(turn @ solid.start + shift, turn @ solid.end + shift, solid.width, turn @ solid.side)
+
+    return replace(part, add=tuple(map(moved, part.add)), cut=tuple(map(moved, part.cut)))
+
+
+def _link_colours(pose: Pose) -> list[str]:
+    """The figures' colours of the moving links; neighbours of one colour are told apart by a lighter one."""
+    colours, _ = chain_colours(pose.linkage, (pose.motion.input, pose.motion.output))
+    for k in range(1, len(colours)):
+        if colours[k] == colours[k - 1]:
+            lighter = [round(0.55 * c + 0.45 * 255) for c in bytes.fromhex(colours[k][1:])]
+            colours[k] = "#" + bytes(lighter).hex().upper()
+    return colours
+
+
+def _word(name: str) -> str:
+    """A joint's name as a part of a part's name."""
+    return "".join(c if c.isalnum() or c in "_-" else "_" for c in name)

@@ -1,0 +1,160 @@
+"""One pose of a circuit, with what a drawing of it must leave room for: the frames of all links."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.figure import chosen_circuit
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Circuit, Floats, Law, Motion
+from sevenbar.skeleton import Chain, chain, frames_along
+
+#: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
+SAMPLED = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """A pose of a linkage on one of its circuits; lengths in the linkage's unit, report frame.
+
+    `frames` (n, 4, 4) are those of the links in it, the ground's last (the identity), and `others`
+    (m, n, 4, 4) those of further poses of the circuit. `near` and `far` (n, 4, 4) are the frames of each
+    joint on the link before it and on the link after it. `travel` (n, 2) is how far each joint slides along
+    its axis on the circuit, and `slide` (n,) how far it has in this pose. `places` is what the figures draw.
+    """
+
+    motion: Motion
+    circuit: Circuit
+    branch: int
+    q: Floats
+    frames: Floats
+    others: Floats
+    near: Floats
+    far: Floats
+    travel: Floats
+    slide: Floats
+    places: Chain
+
+    @property
+    def linkage(self) -> Linkage:
+        """The linkage in this pose."""
+        return self.motion.linkage
+
+    @property
+    def input(self) -> float:
+        """The input [rad, or length]."""
+        return float(self.q[self.circuit.input_column])
+
+    def polylines(self) -> list[Floats]:
+        """The places (k, 3) along each link, the ground's last, from the joint before it to the one after."""
+        return [self.places.places[0, list(link)] for link in self.places.links]
+
+
+def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int | None = None) -> Pose:
+    """The pose of a circuit at an input `at` [rad, or length] on its pass `branch`, the first by default.
+
+    Without `at`: the first row of a circuit whose input turns fully, the middle of the input's range for
+    one that rocks. Raises `RequestError` where the circuit has no pose there.
+    """
+    chosen = chosen_circuit(motion, circuit)
+    linkage = motion.linkage
+    if at is None:
+        ends = chosen.input_range
+        at = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
+    passes = sorted({int(b) for b in chosen.branch})
+    if branch is not None and branch not in passes:
+        known = "0" if passes == [0] else f"0 to {passes[-1]}"
+        raise RequestError(f"branch: {shown(branch)} is not a pass of circuit {circuit}; give {known}")
+    exact = linkage.motion(
+        samples=motion.samples,
+        input=motion.input,
+        output=motion.output,
+        law=Law.of([0.0], [at], 0.0, 0.0),
+    ).circuits[circuit]
+    rows = np.flatnonzero(exact.branch == (branch or 0))
+    frames = frames_along(linkage, exact, rows[:1])
+    q = exact.q[rows[0]] if rows.size else np.array([math.nan])
+    if np.isnan(frames).any() or np.isnan(q).any():
+        raise _no_pose(linkage, chosen, circuit, at)
+    valid = frames_along(linkage, chosen, np.arange(len(chosen.time)))
+    # this pose among them, so that there is one at least
+    valid = np.concatenate([frames, valid[~np.isnan(valid).any(axis=(1, 2, 3))]])
+    picked = np.unique(np.linspace(0, len(valid) - 1, SAMPLED).astype(int))
+    near, far = _joint_frames(linkage, frames)
+    return Pose(
+        motion=motion,
+        circuit=chosen,
+        branch=branch or 0,
+        q=q,
+        frames=np.concatenate([frames[0], [np.eye(4)]]),
+        others=_with_ground(valid[picked]),
+        near=near,
+        far=far,
+        travel=_travel(linkage, np.vstack([chosen.q, q])),
+        slide=_slides(linkage, q[None])[0],
+        places=chain(linkage, frames),
+    )
+
+
+def size_of(pose: Pose) -> float:
+    """The size [length] that drawn parts are shares of: the extent of all places along the circuit."""
+    return max(pose.places.span, chain(pose.linkage, pose.others[:, :-1]).span)
+
+
+def _with_ground(frames: Floats) -> Floats:
+    return np.concatenate([frames, np.broadcast_to(np.eye(4), (len(frames), 1, 4, 4))], axis=1)
+
+
+def _joint_frames(linkage: Linkage, frames: Floats) -> tuple[Floats, Floats]:
+    after = np.concatenate([frames[0], [linkage.ground]])
+    before = [linkage.base, *(frame @ link for frame, link in zip(frames[0], linkage.links, strict=True))]
+    return np.stack(before), after
+
+
+def _slides(linkage: Linkage, q: Floats) -> Floats:
+    """How far each joint has slid along its axis, (rows, joints) [length]."""
+    slid = np.zeros((len(q), len(linkage.joints)))
+    column = 0
+    for i, joint in enumerate(linkage.joints):
+        if joint.kind == "P":
+            slid[:, i] = q[:, column]
+        elif joint.kind == "C":
+            slid[:, i] = q[:, column + 1]
+        elif joint.kind == "H":
+            slid[:, i] = joint.pitch * q[:, column] / math.tau
+        column += len(joint.columns)
+    return slid
+
+
+def _travel(linkage: Linkage, q: Floats) -> Floats:
+    slid = _slides(linkage, q)
+    return np.stack([np.nanmin(slid, axis=0), np.nanmax(slid, axis=0)], axis=1)
+
+
+def _no_pose(linkage: Linkage, circuit: Circuit, index: int, at: float) -> RequestError:
+    turns = linkage.column_kinds[circuit.input_column] == "turn"
+    name = linkage.columns[circuit.input_column]
+
+    def told(value: float) -> str:
+        return f"{math.degrees(value):.6g} deg" if turns else f"{value:.6g} {linkage.length_unit}"
+
+    if circuit.input_range is None:
+        allowed = "another value"
+    else:
+        low, high = circuit.input_range
+        allowed = f"a value from {told(low)} to {told(high)}"
+    return RequestError(
+        f"at: circuit {index} has no pose of definite joint values at {name} = {told(at)}; give {allowed}"
+    )
+
+
+def shortest_link(pose: Pose) -> float:
+    """The length of the shortest link that has one [length]; links of no length aside."""
+    lengths = [sum(float(np.linalg.norm(b - a)) for a, b in pairwise(line)) for line in pose.polylines()]
+    small = 1e-6 * max(lengths, default=0.0)
+    return min((length for length in lengths if length > small), default=1.0)

@@ -1,0 +1,223 @@
+"""The whole motion as numbers: every circuit's rows for spreadsheets, pandas, NumPy, MATLAB and the like.
+
+CSV and Parquet hold one flat table, a unit in every column's name. NPZ, MAT and JSON hold arrays as Python
+has them, `q (rows, columns)` with its derivatives, beside a note of units and names.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from sevenbar.errors import MissingExtraError
+from sevenbar.folder import write_csv as write_own_csv
+from sevenbar.motion import Circuit, Motion
+from sevenbar.units import LENGTHS
+
+#: "file": lengths in the linkage's own unit, and angles of flat tables in degrees; "si": metres and radians.
+Units = Literal["file", "si"]
+
+
+def write_csv(motion: Motion, path: Path, units: Units) -> None:
+    """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
+    if units == "file":
+        write_own_csv(motion, path)
+        return
+    columns = flat_columns(motion, units)
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        cells = [["" if v != v else v for v in column.tolist()] for column in columns.values()]
+        writer.writerows(zip(*cells, strict=True))
+
+
+def write_parquet(motion: Motion, path: Path, units: Units) -> None:
+    """Writes the flat table as Parquet, with the note as JSON under `sevenbar` in its schema's metadata."""
+    try:
+        import pyarrow as arrow
+        from pyarrow import parquet
+    except ImportError:
+        raise _missing("parquet", "pyarrow") from None
+    columns = {name: np.asarray(values) for name, values in flat_columns(motion, units).items()}
+    arrays = [
+        arrow.array(values.tolist() if values.dtype.kind == "U" else values) for values in columns.values()
+    ]
+    table = arrow.table(arrays, names=list(columns))
+    table = table.replace_schema_metadata({"sevenbar": json.dumps(note(motion, units, flat=True))})
+    parquet.write_table(table, path)
+
+
+def write_npz(motion: Motion, path: Path, units: Units) -> None:
+    """Writes the rows of all circuits, one under the other, as NumPy arrays; `note` is JSON text."""
+    parts = [circuit_arrays(motion, circuit, units) for circuit in motion.circuits]
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    arrays: dict[str, Any] = {
+        "note": np.array(json.dumps(note(motion, units))),
+        "columns": np.array(motion.linkage.columns),
+        "circuit": np.repeat([c.index for c in motion.circuits], [len(c.time) for c in motion.circuits]),
+    } | joined
+    with path.open("wb") as file:
+        np.savez_compressed(file, **arrays)
+
+
+def write_mat(motion: Motion, path: Path, units: Units) -> None:
+    """Writes a MATLAB 5 file: `note` (JSON text), `columns` (cells), `circuits` (an array of structures)."""
+    try:
+        from scipy.io import savemat
+    except ImportError:
+        raise _missing("mat", "scipy") from None
+    records = []
+    for circuit in motion.circuits:
+        arrays = circuit_arrays(motion, circuit, units)
+        record: dict[str, Any] = {"index": circuit.index, "motion_type": circuit.motion_type} | arrays
+        for name, values in arrays.items():
+            if values.ndim == 1:
+                # MATLAB's own way: time runs down
+                record[name] = _cells(values) if values.dtype.kind == "U" else values[:, None]
+        records.append(record)
+    circuits = np.empty(len(records), dtype=[(name, object) for name in records[0]])
+    for i, record in enumerate(records):
+        circuits[i] = tuple(record.values())
+    content = {
+        "note": json.dumps(note(motion, units)),
+        "columns": _cells(np.array(motion.linkage.columns)),
+        "circuits": circuits,
+    }
+    with path.open("wb") as file:
+        savemat(file, content, do_compression=True)
+
+
+def write_json(motion: Motion, path: Path, units: Units) -> None:
+    """Writes one JSON object: the note, and `circuits` with their rows; null stands for no value."""
+    whole = note(motion, units) | {
+        "circuits": [
+            {
+                "index": circuit.index,
+                "motion_type": circuit.motion_type,
+                "closed": circuit.closed,
+                "turns": circuit.turns,
+                "rows": len(circuit.time),
+            }
+            | {name: _plain(values) for name, values in circuit_arrays(motion, circuit, units).items()}
+            for circuit in motion.circuits
+        ]
+    }
+    path.write_text(json.dumps(whole, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
+    """What the numbers mean: the linkage, the drive, the columns and the units.
+
+    In a `flat` table each column's name tells its unit, and angles are in degrees with units "file".
+    """
+    linkage = motion.linkage
+    length = "m" if units == "si" else linkage.length_unit
+    sliding = dict(zip(linkage.columns, linkage.column_kinds, strict=True))[motion.input] == "slide"
+    speed = motion.speed * (_scale(motion, units) if sliding else 1.0)
+    return {
+        "format": 1,
+        "linkage": {"name": linkage.name, "kind": linkage.kind},
+        "units": {
+            "length": length,
+            "angle": "deg" if flat and units == "file" else "rad",
+            "time": "s",
+            "rates": f"rad/s, rad/s^2, rad/s^3 of turns; {length}/s, {length}/s^2, {length}/s^3 of slides",
+        },
+        "columns": [
+            {"name": name, "kind": kind}
+            for name, kind in zip(linkage.columns, linkage.column_kinds, strict=True)
+        ],
+        "input": motion.input,
+        "output": motion.output,
+        "speed": None if motion.law is not None else speed,
+        "motion_type": motion.motion_type,
+        "samples": motion.samples,
+    }
+
+
+def flat_columns(motion: Motion, units: Units) -> Mapping[str, Any]:
+    """Every row of every circuit, column by column; each name ends in its unit."""
+    if units == "file":
+        return motion.columns()
+    parts = [_si_columns(motion, circuit) for circuit in motion.circuits]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _si_columns(motion: Motion, circuit: Circuit) -> dict[str, Any]:
+    arrays = circuit_arrays(motion, circuit, "si")
+    linkage = motion.linkage
+    columns: dict[str, Any] = {
+        "circuit": np.full(len(circuit.time), circuit.index),
+        "branch": arrays["branch"],
+        "sample": np.arange(len(circuit.time)),
+        "status": arrays["status"],
+        "time_s": arrays["time"],
+    }
+    signs = ["m" if kind == "slide" else "rad" for kind in linkage.column_kinds]
+    for array, suffix in (("q", ""), ("dq", "_s"), ("ddq", "_s2"), ("dddq", "_s3")):
+        for k, (name, sign) in enumerate(zip(linkage.columns, signs, strict=True)):
+            columns[f"{name}_{sign}{suffix}"] = arrays[array][:, k]
+    for point in linkage.points:
+        for quantity, letter, suffix in (
+            ("position", "", "m"),
+            ("velocity", "v", "m_s"),
+            ("acceleration", "a", "m_s2"),
+        ):
+            for axis, name in enumerate("xyz"):
+                values = arrays[f"point_{point.name}_{quantity}"][:, axis]
+                columns[f"{point.name}_{letter}{name}_{suffix}"] = values
+    columns["residual_m"] = arrays["residual"]
+    return columns
+
+
+def circuit_arrays(motion: Motion, circuit: Circuit, units: Units) -> dict[str, Any]:
+    """The rows of a circuit: time, status, pass, input, output, joints and rates, points, closure error."""
+    scale = _scale(motion, units)
+    slides = [kind == "slide" for kind in motion.linkage.column_kinds]
+    factors = np.where(slides, scale, 1.0)
+    arrays: dict[str, Any] = {
+        "time": circuit.time,
+        "status": circuit.status,
+        "branch": circuit.branch,
+        "input": circuit.input * factors[circuit.input_column],
+        "output": circuit.output * factors[circuit.output_column],
+        "q": circuit.q * factors,
+        "dq": circuit.dq * factors,
+        "ddq": circuit.ddq * factors,
+        "dddq": circuit.dddq * factors,
+        "residual": circuit.residual * scale,
+    }
+    for point in motion.linkage.points:
+        trace = circuit.point(point.link, point.at)
+        for quantity in ("position", "velocity", "acceleration"):
+            arrays[f"point_{point.name}_{quantity}"] = getattr(trace, quantity) * scale
+    return arrays
+
+
+def _scale(motion: Motion, units: Units) -> float:
+    return LENGTHS[motion.linkage.length_unit] if units == "si" else 1.0
+
+
+def _plain(values: Any) -> Any:
+    """An array as lists, None for what is not finite."""
+    if values.dtype.kind != "f":
+        return values.tolist()
+    plain = values.astype(object)
+    plain[~np.isfinite(values)] = None
+    return plain.tolist()
+
+
+def _cells(words: Any) -> Any:
+    """Words as a column of MATLAB cells."""
+    cells = np.empty((len(words), 1), dtype=object)
+    cells[:, 0] = [str(word) for word in words]
+    return cells
+
+
+def _missing(to: str, package: str) -> MissingExtraError:
+    return MissingExtraError(f"{to} needs {package}; install it with: pip install 'sevenbar[export]'")

@@ -1,0 +1,215 @@
+"""A linkage as URDF: the tree of its links, and in a file beside it the joint that closes the loop."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+
+from sevenbar.export.mass import Mass, masses
+from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
+from sevenbar.linkage import Joint
+from sevenbar.motion import Floats
+from sevenbar.units import LENGTHS
+
+#: The mass of a link that only joins the freedoms of one joint, as a share of the next link's.
+JOINING = 1e-6
+#: The axis of a freedom in its own frame.
+Z = "0 0 1"
+#: What `limit` must tell of a slide and and a linkage does not know [N, m/s].
+EFFORT, VELOCITY = 1e6, 1e3
+
+
+def write_urdf(assembly: Assembly, path: Path) -> None:
+    """Writes the tree to `path` and the loop joint to `loop_file(path)`; metres and radians.
+
+    The tree begins with `ground`, whose frame is the report frame, and ends with the last moving link. Each
+    freedom is a joint named as its column, at zero where the column is. A screw is a turn and a slide that
+    mimics it.
+    """
+    linkage = assembly.pose.linkage
+    scale = LENGTHS[linkage.length_unit]
+    count = len(linkage.joints)
+    robot = Xml.Element("robot", name=linkage.name)
+    robot.append(
+        Xml.Comment(
+            f" The tree of a closed loop: the joint '{linkage.joints[-1].name}' between "
+            f"{assembly.bodies[count - 2]} and ground closes it and is in '{loop_file(path).name}'. "
+            "Lengths in metres, angles in radians. ".replace("--", "-")
+        )
+    )
+    for colour in dict.fromkeys(part.colour for part in assembly.parts):
+        channels = " ".join(f"{c / 255:.6g}" for c in bytes.fromhex(colour[1:]))
+        Xml.SubElement(Xml.SubElement(robot, "material", name=colour), "color", rgba=f"{channels} 1")
+    weights = masses(assembly)
+    _add_link(robot, assembly, assembly.bodies.index("ground"), "ground", None, scale)
+    parent, mount = "ground", linkage.base
+    cross = count
+    for i, joint in enumerate(linkage.joints[:-1]):
+        name = assembly.bodies[i]
+        steps = _steps(joint)
+        for k, (column, kind, axis, before) in enumerate(steps):
+            last = k == len(steps) - 1
+            child = name if last else f"{name}_{k + 1}"
+            attributes = {"name": column, "type": "prismatic" if kind == "slide" else "continuous"}
+            element = Xml.SubElement(robot, "joint", attributes)
+            _origin(element, mount @ before, scale)
+            Xml.SubElement(element, "parent", link=parent)
+            Xml.SubElement(element, "child", link=child)
+            Xml.SubElement(element, "axis", xyz=axis)
+            if kind == "slide":
+                low, high = scale * assembly.pose.travel[i]
+                Xml.SubElement(
+                    element, "limit", lower=_number(low), upper=_number(high),
+                    effort=_number(EFFORT), velocity=_number(VELOCITY),
+                )  # fmt: skip
+            if column.endswith(".slide") and joint.kind == "H":
+                Xml.SubElement(
+                    element, "mimic", joint=joint.name, multiplier=_number(scale * joint.pitch / math.tau)
+                )
+            if last:
+                _add_link(robot, assembly, i, name, weights[i], scale)
+            elif joint.kind == "U":
+                _add_link(robot, assembly, cross, child, weights[cross], scale)
+            else:
+                light = Mass(JOINING * weights[i].mass, np.zeros(3), JOINING * weights[i].inertia)
+                _add_link(robot, assembly, None, child, light, scale)
+            parent, mount = child, np.eye(4)
+        cross += joint.kind == "U"
+        if i < count - 2:
+            mount = linkage.links[i]
+    Xml.indent(robot)
+    path.write_text(
+        '<?xml version="1.0" encoding="utf-8"?>\n' + Xml.tostring(robot, encoding="unicode") + "\n",
+        encoding="utf-8",
+    )
+    loop_file(path).write_text(json.dumps(loop(assembly, path), indent=2) + "\n", encoding="utf-8")
+
+
+def loop_file(path: Path) -> Path:
+    """The file of the loop joint beside a URDF file."""
+    return path.with_suffix(".loop.json")
+
+
+def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
+    """The joint that closes the loop, and a pose in which it does; lengths in metres, angles in radians."""
+    linkage = assembly.pose.linkage
+    scale = LENGTHS[linkage.length_unit]
+    joint = linkage.joints[-1]
+    count = len(linkage.joints)
+    factors = np.where([kind == "slide" for kind in linkage.column_kinds], scale, 1.0)
+    own: dict[str, Any] = {"name": joint.name, "kind": joint.kind, "columns": list(joint.columns)}
+    if joint.kind == "H":
+        own["pitch"] = scale * joint.pitch
+    if joint.kind == "U":
+        own["angle"] = joint.angle
+    return {
+        "format": 1,
+        "tree": path.name,
+        "about": "The joint that closes the loop. With the pose T of the parent link and the joint's motion "
+        "Z(q), T parent.frame Z(q) = child.frame; pose holds values of all columns for which it does.",
+        "units": {"length": "m", "angle": "rad"},
+        "loop_joint": own
+        | {
+            "parent": {
+                "link": assembly.bodies[count - 2],
+                "frame": _scaled(linkage.links[-1], scale).tolist(),
+            },
+            "child": {"link": "ground", "frame": _scaled(linkage.ground, scale).tolist()},
+        },
+        "pose": {
+            "circuit": assembly.pose.circuit.index,
+            "input": assembly.pose.motion.input,
+            "q": dict(zip(linkage.columns, (factors * assembly.pose.q).tolist(), strict=True)),
+        },
+    }
+
+
+def _steps(joint: Joint) -> list[tuple[str, str, str, Floats]]:
+    """The freedoms of a joint as URDF joints: name, kind, axis, and the transform that stands before each."""
+    still = np.eye(4)
+    match joint.kind:
+        case "R":
+            return [(joint.name, "turn", Z, still)]
+        case "P":
+            return [(joint.name, "slide", Z, still)]
+        case "H":
+            return [(joint.name, "turn", Z, still), (f"{joint.name}.slide", "slide", Z, still)]
+        case "C":
+            return [(joint.columns[0], "turn", Z, still), (joint.columns[1], "slide", Z, still)]
+        case "U":
+            cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
+            tilt = np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
+            return [(joint.columns[0], "turn", Z, still), (joint.columns[1], "turn", Z, tilt)]
+    axes = (Z, "0 1 0", "1 0 0")
+    return [(column, "turn", axis, still) for column, axis in zip(joint.columns, axes, strict=True)]
+
+
+def _add_link(
+    robot: Xml.Element, assembly: Assembly, body: int | None, name: str, mass: Mass | None, scale: float
+) -> None:
+    """A link with what is drawn of it; one that only joins two freedoms has no body."""
+    link = Xml.SubElement(robot, "link", name=name)
+    if mass is not None:
+        inertial = Xml.SubElement(link, "inertial")
+        frame = np.eye(4)
+        frame[:3, 3] = mass.centre
+        _origin(inertial, frame, scale)
+        Xml.SubElement(inertial, "mass", value=_number(mass.mass))
+        moments = scale**2 * mass.inertia
+        names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+        Xml.SubElement(inertial, "inertia", {key: _number(moments[at]) for key, at in names.items()})
+    for part in assembly.parts:
+        if part.body != body:
+            continue
+        for solid in part.add:
+            visual = Xml.SubElement(link, "visual")
+            _geometry(visual, solid, scale)
+            Xml.SubElement(visual, "material", name=part.colour)
+
+
+def _geometry(visual: Xml.Element, solid: Solid, scale: float) -> None:
+    frame = np.eye(4)
+    if isinstance(solid, Ball):
+        frame[:3, 3] = solid.centre
+        attributes = {"radius": _number(scale * solid.radius)}
+        kind = "sphere"
+    elif isinstance(solid, Rod):
+        frame = frame_of(solid)
+        attributes = {"radius": _number(scale * solid.radius), "length": _number(scale * length_of(solid))}
+        kind = "cylinder"
+    else:
+        frame = frame_of(solid)
+        width = _number(scale * solid.width)
+        attributes = {"size": f"{width} {width} {_number(scale * length_of(solid))}"}
+        kind = "box"
+    _origin(visual, frame, scale)
+    Xml.SubElement(Xml.SubElement(visual, "geometry"), kind, attributes)
+
+
+def _origin(element: Xml.Element, frame: Floats, scale: float) -> None:
+    """The frame as URDF writes it: turns about fixed x, y and z, so `Rz(yaw) Ry(pitch) Rx(roll)`."""
+    turn = frame[:3, :3]
+    yaw = math.atan2(turn[1, 0], turn[0, 0])
+    # what is left after the yaw, so that the three belong together where the yaw is not defined
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    turn = np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]]) @ turn
+    pitch = math.atan2(-turn[2, 0], turn[0, 0])
+    roll = math.atan2(-turn[1, 2], turn[1, 1])
+    xyz = " ".join(_number(x) for x in scale * frame[:3, 3])
+    Xml.SubElement(element, "origin", xyz=xyz, rpy=" ".join(map(_number, (roll, pitch, yaw))))
+
+
+def _number(value: float) -> str:
+    """A number to its last digit."""
+    return repr(float(value) + 0.0)
+
+
+def _scaled(frame: Floats, scale: float) -> Floats:
+    scaled = frame.copy()
+    scaled[:3, 3] *= scale
+    return scaled
