@@ -1,17 +1,18 @@
 """The dimensions of a real linkage from its measured curve: least squares with exact sensitivities.
 
-With r the differences of measured and computed values in parts of their noise and J their exact derivatives by
-the dimensions (`sensitivity`), `|r|^2` is least by scipy's trust-region steps; then
+With r the differences of measured and computed values in parts of their noise and J their exact derivatives
+by the dimensions (`sensitivity`), `|r|^2` is least by scipy's trust-region steps; then
 
-    s^2 = |r|^2 / (n - k),        covariance s^2 (J^T J)^-1,        value +- t(n - k) sqrt(covariance)        (1)
+    s^2 = |r|^2 / (n - k),      covariance s^2 (J^T J)^-1,      value +- t(n - k) sqrt(covariance)         (1)
 
-with Student's t. Where several quantities were measured, the noise of each is taken from its own differences.
+with Student's t. Where several quantities were measured, the noise of each is taken from its differences.
 
-What data cannot tell is held, not guessed. A direction v in the space of the dimensions (J v = 0 to rounding, or so
-small that the standard error along v exceeds `UNTOLD` of the linkage's size) changes the curve by nothing that could
-be seen: of an RSSR measured by its angles, making all lengths twice as long. For each such direction one dimension
-stays at its nominal value, and the report names it and those that undo its change; intervals of the others then hold
-for that value. A dimension whose change alone would open an overconstrained loop is held too.
+What data cannot tell is held, not guessed. A direction v in the space of the dimensions (J v = 0 to rounding,
+or so small that the standard error along v exceeds `UNTOLD` of the linkage's size) changes the curve by
+nothing that could be seen: of an RSSR measured by its angles, making all lengths twice as long. For each such
+direction one dimension stays at its nominal value, and the report names it and those that undo its change;
+intervals of the others then hold for that value. A dimension whose change alone would open an overconstrained
+loop is held too.
 """
 
 from __future__ import annotations
@@ -78,9 +79,10 @@ class Parameter:
 class Calibration:
     """What a measured curve tells of a linkage's dimensions.
 
-    Arrays (n,) hold the rows that were used: `input` [rad, or length] as calibrated, `measured` and `computed`
-    with the output's offset in both, `nominal` computed with the nominal dimensions. `noise` is the standard
-    deviation of each quantity's differences, `covariance` (k, k) that of the calibrated parameters in their order.
+    Arrays (n,) hold the rows that were used: `input` [rad, or length] as calibrated, `measured` as in the
+    file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of the
+    output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of the
+    calibrated parameters in their order.
     """
 
     linkage: Linkage
@@ -134,10 +136,11 @@ def calibrate(
 ) -> Calibration:
     """The dimensions that explain measured rows best, with their intervals.
 
-    `free` names the dimensions to be found and `hold` those to be kept, by names or patterns ("length_*"): M, N, L1, L2,
-    L3, D of an RSSR, length_1, offset_1, twist_1 .. of Denavit-Hartenberg rows. `offsets` of "input" and "output" frees
-    the zeros of the two measured joints. The others are as for `compare`. Raises `RequestError` for a wrong argument and
-    too few rows, `NotCoveredError` for a linkage without dimensions, `MissingExtraError` without scipy.
+    `free` names the dimensions to be found and `hold` those to be kept, by names or patterns ("length_*"):
+    M, N, L1, L2, L3, D of an RSSR, length_1, offset_1, twist_1 .. of Denavit-Hartenberg rows. `offsets` of
+    "input" and "output" frees the zeros of the two measured joints. The others are as for `compare`. Raises
+    `RequestError` for a wrong argument and too few rows, `NotCoveredError` for a linkage without dimensions,
+    `MissingExtraError` without scipy.
     """
     _need_scipy()
     if not 0 < confidence < 1:
@@ -171,9 +174,7 @@ def _need_scipy() -> None:
 class _Model:
     """The measured quantities as functions of all parameters, in units of the linkage's size and radians."""
 
-    def __init__(
-        self, closure: Closure, before: Comparison, inputs: Floats, offsets: Sequence[str]
-    ) -> None:
+    def __init__(self, closure: Closure, before: Comparison, inputs: Floats, offsets: Sequence[str]) -> None:
         chosen, ends = before.chosen, before.ends
         self.closure, self.before, self.offsets = closure, before, tuple(offsets)
         self.slides = ends.output_slides
@@ -347,16 +348,19 @@ class _Fit:
         free, scales = self.free, self.model.scales
         if self.count <= len(free):
             raise RequestError(
-                f"{self.model.before.source}: {self.count} measured values cannot tell {len(free)} dimensions; "
-                "measure more rows, or free fewer with --free or --hold"
+                f"{self.model.before.source}: {self.count} measured values cannot tell {len(free)} "
+                "dimensions; measure more rows, or free fewer with --free or --hold"
             )
         if not free:
             return
 
         def spread(part: Floats) -> Floats:
-            z = self.z.copy()
+            z: Floats = self.z.copy()
             z[free] = part * scales[free]
             return z
+
+        def errors(part: Floats) -> Floats:
+            return self.residual(spread(part))
 
         def slopes(part: Floats) -> Floats:
             z = spread(part)
@@ -364,7 +368,7 @@ class _Fit:
             return np.concatenate([found[q][:, free] / self.noise[q] for q in found])
 
         result: Any = least_squares(
-            lambda part: self.residual(spread(part)),
+            errors,
             self.z[free] / scales[free],
             jac=slopes,
             method="trf",
@@ -382,7 +386,7 @@ class _Fit:
         return math.sqrt(float(residual @ residual) / max(self.count - len(self.free), 1))
 
     def _untold(self, deviation: float) -> dict[int, tuple[int, ...]]:
-        """Which wanted parameters the data cannot tell, given the residual's deviation, and what undoes each."""
+        """What the data cannot tell, given the residual's deviation, and what undoes a change of each."""
         jacobian = self.jacobian(self.wanted)
         _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
         values = np.concatenate([values, np.zeros(len(self.wanted) - len(values))])
@@ -473,8 +477,8 @@ def _notes(before: Comparison, model: _Model, fit: _Fit, computed: Mapping[str, 
     lost = len(before.line) - len(model.rows)
     if lost:
         notes.append(
-            f"{lost} of {len(before.line)} rows have inputs at which the nominal linkage does not close, or stands at "
-            "a dead centre; they are left out"
+            f"{lost} of {len(before.line)} rows have inputs at which the nominal linkage does not close, or "
+            "stands at a dead centre; they are left out"
         )
     for quantity, measured in model.values.items():
         residual = measured - computed[quantity]
@@ -485,13 +489,14 @@ def _notes(before: Comparison, model: _Model, fit: _Fit, computed: Mapping[str, 
         follows = float(residual[1:] @ residual[:-1]) / power
         if follows > FOLLOWS / math.sqrt(len(residual)):
             notes.append(
-                f"neighbouring differences of the {quantity} follow each other (correlation {follows:.2f}): what is left "
-                "is not random, so something beside these dimensions is at work and the intervals are too narrow"
+                f"neighbouring differences of the {quantity} follow each other (correlation {follows:.2f}): "
+                "what is left is not random, so something beside these dimensions is at work and the "
+                "intervals are too narrow"
             )
     if len(model.values) > 1:
         notes.append(
-            "the intervals take the noise of angle, velocity and acceleration for independent; where one was computed "
-            "from another they are too narrow"
+            "the intervals take the noise of angle, velocity and acceleration for independent; where one was "
+            "computed from another they are too narrow"
         )
     if not fit.free:
         notes.append("the data tell none of the dimensions that were to be found")

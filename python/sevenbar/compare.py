@@ -28,6 +28,9 @@ ALIGN = ("phase", "offset")
 #: Inputs of the first look at a phase over a turn, and how many shifts are tried there.
 GRID, SHIFTS = 1440, 360
 
+#: Points of the computed curve that figures show.
+CURVE = 721
+
 #: Candidates whose misfit at the first look is within this factor of the least are aligned exactly.
 NEAR = 4.0
 
@@ -112,6 +115,9 @@ class Comparison:
     input: Floats
     measured: Mapping[str, Floats]
     computed: Mapping[str, Floats]
+    #: The computed curve over the inputs, for figures: input (m,), and each quantity (m,).
+    curve_input: Floats
+    curve: Mapping[str, Floats]
     notes: tuple[str, ...]
 
     @property
@@ -156,8 +162,9 @@ def ends_of(linkage: Linkage, input: str | None = None, output: str | None = Non
             f"output: joint '{linkage.columns[first]}' is the input; "
             f"give another: {', '.join(linkage.drivable(first))}"
         )
-    slides = [linkage.column_kinds[column] == "slide" for column in (first, second)]
-    return Ends(linkage.columns[first], linkage.columns[second], *slides, linkage.length_unit)
+    first_slides, second_slides = (linkage.column_kinds[column] == "slide" for column in (first, second))
+    names = linkage.columns[first], linkage.columns[second]
+    return Ends(*names, first_slides, second_slides, linkage.length_unit)
 
 
 def compare(
@@ -184,7 +191,9 @@ def compare(
         if word not in ALIGN:
             raise RequestError(f"align: {shown(word)} is not offered; give {' or '.join(ALIGN)}")
     if "offset" in aligned and "angle" not in measured.values:
-        raise RequestError("align: an offset of the output needs its angle, and the table has none; leave it out")
+        raise RequestError(
+            "align: an offset of the output needs its angle, and the table has none; leave it out"
+        )
     rate, notes = _speed(linkage, ends, measured, speed)
     inputs = inputs_of(measured, rate, start)
     problem = _Problem(linkage, ends, measured, inputs, rate)
@@ -217,8 +226,14 @@ def compare(
         input=inputs + best.phase,
         measured=values,
         computed=computed,
+        curve_input=np.linspace(*_ends(inputs + best.phase), CURVE),
+        curve=problem.curve(best, _ends(inputs), values, computed),
         notes=tuple(notes),
     )
+
+
+def _ends(values: Floats) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
 
 
 def inputs_of(measured: Measured, speed: float, start: float) -> Floats:
@@ -239,7 +254,9 @@ def _speed(
         except RequestError as error:
             raise RequestError(f"speed: {error}") from None
     else:
-        same = linkage.column_kinds[linkage.columns.index(linkage.drive.joint)] == linkage.column_kinds[column]
+        same = (
+            linkage.column_kinds[linkage.columns.index(linkage.drive.joint)] == linkage.column_kinds[column]
+        )
         rate = linkage.drive.speed if same else 1.0
     notes: list[str] = []
     values = measured.values
@@ -249,7 +266,9 @@ def _speed(
         apart = float(np.max(np.abs(travel - start - slope * values["time"])))
         if slope != 0 and apart <= UNIFORM * np.ptp(travel):
             if abs(slope - rate) > UNIFORM * abs(rate):
-                notes.append(f"the measured input moves at {slope:.6g}, the drive at {rate:.6g}: the former is taken")
+                notes.append(
+                    f"the measured input moves at {slope:.6g}, the drive at {rate:.6g}: the former is taken"
+                )
             return float(slope), notes
         if set(measured.outputs) - {"angle"}:
             notes.append(
@@ -262,7 +281,9 @@ def _speed(
 class _Problem:
     """One measurement against one linkage: candidates, misfits, alignment."""
 
-    def __init__(self, linkage: Linkage, ends: Ends, measured: Measured, inputs: Floats, speed: float) -> None:
+    def __init__(
+        self, linkage: Linkage, ends: Ends, measured: Measured, inputs: Floats, speed: float
+    ) -> None:
         self.linkage, self.ends, self.speed, self.inputs = linkage, ends, speed, inputs
         self.values = {quantity: measured.values[quantity] for quantity in measured.outputs}
         if not ends.output_slides and "angle" in self.values:
@@ -286,7 +307,9 @@ class _Problem:
             for branch in range(len(circuit.time) // inputs.size):
                 part = slice(branch * inputs.size, (branch + 1) * inputs.size)
                 found[circuit.index, branch] = [
-                    np.where(circuit.status[part] == "no-solution", np.nan, rates[part, circuit.output_column])
+                    np.where(
+                        circuit.status[part] == "no-solution", np.nan, rates[part, circuit.output_column]
+                    )
                     for rates in (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
                 ]
         return found
@@ -334,7 +357,9 @@ class _Problem:
             ("branch", branch, sorted({key[1] for key in here})),
         ):
             if value is not None and value not in known:
-                raise RequestError(f"{name}: {value} is none of this motion; it has {', '.join(map(str, known))}")
+                raise RequestError(
+                    f"{name}: {value} is none of this motion; it has {', '.join(map(str, known))}"
+                )
         wanted = [
             (*key, turn)
             for key in here
@@ -347,15 +372,13 @@ class _Problem:
         looked = [self._judged(key, starts[key], offset) for key in wanted]
         least = min(candidate.misfit for candidate in looked)
         if phase:
-            looked = [
-                self._refined(c, offset) if c.misfit <= max(NEAR * least, 1e-3) else c for c in looked
-            ]
+            looked = [self._refined(c, offset) if c.misfit <= max(NEAR * least, 1e-3) else c for c in looked]
         # misfits that differ by rounding are the same
         looked.sort(key=lambda c: (float(f"{max(c.misfit, 1e-12):.6g}"), c.circuit, c.branch, c.turn))
         if looked[0].open_rows == len(self.inputs):
             raise RequestError(
-                f"{self.source}: at none of its inputs does the linkage close; check the units of the input and "
-                "its zero, or let it be aligned with --align phase"
+                f"{self.source}: at none of its inputs does the linkage close; check the units of the input "
+                "and its zero, or let it be aligned with --align phase"
             )
         return looked
 
@@ -368,7 +391,9 @@ class _Problem:
         misfit, open_rows = self.misfit(rates, moved)
         return Candidate(*key, misfit, open_rows, phase, moved)
 
-    def _first_look(self, wanted: Sequence[tuple[int, int, int]], offset: bool) -> dict[tuple[int, int, int], float]:
+    def _first_look(
+        self, wanted: Sequence[tuple[int, int, int]], offset: bool
+    ) -> dict[tuple[int, int, int], float]:
         """A phase for each pass from curves read off a grid of the input, shifted step by step."""
         turns = max(self.turns.values())
         if self.ends.input_slides:
@@ -439,6 +464,27 @@ class _Problem:
                 known = raw[np.isfinite(raw)]
                 measured["angle"] = measured["angle"] - math.tau * round(float(np.median(known)) / math.tau)
         return {quantity: measured[quantity] - apart[quantity] for quantity in measured}, measured
+
+    def curve(
+        self,
+        chosen: Candidate,
+        ends: tuple[float, float],
+        measured: Mapping[str, Floats],
+        computed: Mapping[str, Floats],
+    ) -> dict[str, Floats]:
+        """Each quantity over the inputs between two ends, (m,); an angle near the computed ones."""
+        at = np.linspace(*ends, CURVE) + chosen.phase + math.tau * chosen.turn
+        rates = self.passes(at)[chosen.circuit, chosen.branch]
+        found = {q: rates[OUTPUTS.index(q)] * self.speed ** OUTPUTS.index(q) for q in measured}
+        if "angle" in found and not self.ends.output_slides:
+            angle = _unwrapped(found["angle"])
+            known = np.flatnonzero(np.isfinite(angle))
+            nearest = known[
+                np.argmin(np.abs(at[known] - chosen.phase - math.tau * chosen.turn - self.inputs[0]))
+            ]
+            turns = round((computed["angle"][0] - angle[nearest]) / math.tau) if known.size else 0
+            found["angle"] = angle + math.tau * turns
+        return found
 
 
 def _unwrapped(angles: Floats) -> Floats:

@@ -239,8 +239,8 @@ def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, i
             names = " and ".join(table.labels[place] for place in found[:2])
             different = len({measured_unit(_unit_text(table, place)) for place in found}) > 1
             raise MeasurementError(
-                f"{table.source}: line {table.header_line}: {'mixed units: ' if different else ''}{names} both "
-                f"hold the {quantity}; choose with --column {quantity}=NAME"
+                f"{table.source}: line {table.header_line}: {'mixed units: ' if different else ''}{names} "
+                f"both hold the {quantity}; choose with --column {quantity}=NAME"
             )
     return places | {quantity: found[0] for quantity, found in candidates.items()}
 
@@ -286,8 +286,8 @@ def _size(table: Table, ends: Ends, quantity: str, place: int, units: Mapping[st
         )
     if not (written or asked):
         raise MeasurementError(
-            f"{table.source}: column {label} has no unit; write it as in '{quantity} [{ends.example(quantity)}]', "
-            f"or give --unit {quantity}={ends.example(quantity)}"
+            f"{table.source}: column {label} has no unit; write it as in '{quantity} "
+            f"[{ends.example(quantity)}]', or give --unit {quantity}={ends.example(quantity)}"
         )
     return unit_size(f"{table.source}: column {label}", ends, quantity, written or asked)
 
@@ -339,8 +339,8 @@ def _refuse_unsorted(source: str, time: Floats, lines: Integers) -> None:
         again = "again" if time[i + 1] == time[i] else f"after {time[i]:g}"
         more = f" (and so {back.size - 1} more times)" if back.size > 1 else ""
         raise MeasurementError(
-            f"{source}: line {lines[i + 1]}: time {time[i + 1]:g} {again} in line {lines[i]}{more}; times must "
-            "rise: sort the rows, and keep one run only"
+            f"{source}: line {lines[i + 1]}: time {time[i + 1]:g} {again} in line {lines[i]}{more}; times "
+            "must rise: sort the rows, and keep one run only"
         )
 
 
@@ -375,5 +375,7 @@ def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> Measured
             raise MeasurementError(f"{where}: lowest and highest are not two rising numbers; mend the line")
         values[name] = (low, high)
     if not values:
-        raise MeasurementError(f"{path}: has a header but no row; give a line for each of {', '.join(OUTPUTS)}")
+        raise MeasurementError(
+            f"{path}: has a header but no row; give a line for each of {', '.join(OUTPUTS)}"
+        )
     return MeasuredExtremes(str(path), values)

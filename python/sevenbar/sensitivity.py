@@ -4,10 +4,10 @@ A closure `F(p, x, u) = 0` ties dimensions p, the input x and the passive joints
 
     F_u du/dp = -F_p,        F_u du/dx = -F_x                                                            (1)
 
-For Denavit-Hartenberg rows every dimension is a joint that is held: the derivative of the loop's product by a
-joint value or by a dimension is a screw (a twist of the base), offset and length sliding screws along z and x of
-their row, twist a turning one about that x. F_u and F_p are then matrices of screws, and with S the screws of the
-moving joints in loop order, [.,.] the bracket of two screws,
+For Denavit-Hartenberg rows every dimension is a joint that is held: the derivative of the loop's product by
+a joint value or by a dimension is a screw (a twist of the base), that of offset and length a sliding one
+along z and x of their row, that of twist a turning one about that x. F_u and F_p are then matrices of screws,
+and with S the screws of the moving joints in loop order, [.,.] the bracket of two screws,
 
     sum S_i u_i' = 0,        sum S_i u_i'' + sum over i < j of [S_i, S_j] u_i' u_j' = 0                   (2)
 
@@ -37,7 +37,7 @@ Numbers = npt.NDArray[Any]
 #: The complex step: its square is nothing beside 1.
 STEP = 1e-30
 
-#: Newton's steps on the closure: the most, the longest [rad, or parts of the size], and the error that ends them.
+#: Newton's steps on the closure: the most, the longest [rad, or parts of the size], the error that ends them.
 MOST_STEPS, LONGEST, CLOSED = 20, 0.3, 1e-13
 
 #: An error [rad, or parts of the size] that rounding leaves where the loop is ill conditioned.
@@ -52,7 +52,7 @@ OPENING = 1e-9
 
 @dataclass(frozen=True)
 class Dimension:
-    """A dimension of a linkage's form: its name, "length", "angle" [rad] or "pitch", and its nominal value."""
+    """A dimension of a form: its name, its kind ("length", "angle" [rad], "pitch"), its nominal value."""
 
     name: str
     kind: str
@@ -63,8 +63,8 @@ class Dimension:
 class Response:
     """The output and its rates by the input on n rows, each with its derivatives by dimensions and input.
 
-    `rates` holds y, y', y'' (n,) up to the order asked for; `by_dimension` (n, dimensions) and `by_input` (n,)
-    of each.
+    `rates` holds y, y', y'' (n,) up to the order asked for; `by_dimension` (n, dimensions) and `by_input`
+    (n,) of each.
     """
 
     rates: tuple[Floats, ...]
@@ -106,8 +106,8 @@ def closure_of(linkage: Linkage, input: str, output: str) -> Closure:
     if "twist_1_deg" in linkage.dimensions:
         return RowsClosure(linkage, first, second)
     raise NotCoveredError(
-        "calibrate: a linkage drawn as [[joint]] has places and directions, not dimensions that a measurement "
-        "could be told by; write it as [rssr] or as Denavit-Hartenberg rows, [[link]]"
+        "calibrate: a linkage drawn as [[joint]] has places and directions, not dimensions that a "
+        "measurement could tell; write it as [rssr] or as Denavit-Hartenberg rows, [[link]]"
     )
 
 
@@ -192,6 +192,7 @@ class RssrClosure:
         self._crank_drives = input_column == 0
 
     def passive(self, q: Floats) -> Floats:
+        """The passive joints of rows of all joint values."""
         return q[:, -1:] if self._crank_drives else q[:, :1]
 
     def _balls(self, p: Numbers, x: Numbers, u: Numbers) -> tuple[Numbers, list[Numbers], list[Numbers]]:
@@ -206,10 +207,12 @@ class RssrClosure:
         return apart, a, b
 
     def error(self, p: Floats, x: Floats, u: Floats) -> Floats:
+        """F (n, equations)."""
         apart, _, _ = self._balls(p, x, u)
         return np.asarray(((apart**2).sum(axis=1) - (p[3] / self.size) ** 2)[:, None] / 2)
 
     def jacobians(self, p: Numbers, x: Numbers, u: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        """F_u, F_x and F_p."""
         apart, a, b = self._balls(p, x, u)
         by_alpha, by_beta = (apart * a[0]).sum(axis=1), (apart * b[0]).sum(axis=1)
         by_x, by_u = (by_alpha, by_beta) if self._crank_drives else (by_beta, by_alpha)
@@ -228,6 +231,7 @@ class RssrClosure:
         return by_u[:, None, None], by_x[:, None], by_p[:, None, :] / self.size
 
     def rates(self, p: Numbers, x: Numbers, u: Numbers, order: int) -> tuple[Numbers, ...]:
+        """y, y', y'' up to an order."""
         apart, a, b = self._balls(p, x, u)
         drives, follows = (a, b) if self._crank_drives else (b, a)
         f_x, f_u = ((apart * side[0]).sum(axis=1) for side in (drives, follows))
@@ -240,7 +244,7 @@ class RssrClosure:
 
 
 class RowsClosure:
-    """Denavit-Hartenberg rows: the product `Rz(theta) Tz(offset) Tx(length) Rx(twist)` of all is the identity.
+    """Denavit-Hartenberg rows: all `Rz(theta) Tz(offset) Tx(length) Rx(twist)` multiply to the identity.
 
     Lengths are in parts of the size here, the slides in u and x too being lengths. `NotCoveredError` for a
     loop whose passive joints are not determined by its closure.
@@ -268,11 +272,12 @@ class RowsClosure:
         self.output = self._passive.index(output_column)
         if len(self._passive) > 6:
             raise NotCoveredError(
-                f"calibrate: {len(self._passive)} joints follow one input and six equations tie them, so not all "
-                "are determined; leave out what moves no other link"
+                f"calibrate: {len(self._passive)} joints follow one input and six equations tie them, so not "
+                "all are determined; leave out what moves no other link"
             )
 
     def passive(self, q: Floats) -> Floats:
+        """The passive joints of rows of all joint values."""
         return q[:, self._passive]
 
     def _walked(
@@ -305,10 +310,13 @@ class RowsClosure:
             dimensions[f"length_{number}"] = _sliding(frame, 0) / self.size
             dimensions[f"twist_{number}"] = _turning(frame, 0)
         # a slide's value is a length, and screws are by parts of the size
-        joints = [s / self.size if letter == "P" else s for s, letter in zip(joints, self._kinds, strict=True)]
+        joints = [
+            s / self.size if letter == "P" else s for s, letter in zip(joints, self._kinds, strict=True)
+        ]
         return frame, joints, dimensions
 
     def error(self, p: Floats, x: Floats, u: Floats) -> Floats:
+        """F (n, equations)."""
         frame = self._walked(p, x, u)[0]
         r = frame[:, :3, :3]
         skew = np.stack([r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]], axis=1)
@@ -317,12 +325,14 @@ class RowsClosure:
         return np.concatenate([np.where(far, 1.0, skew / 2), frame[:, :3, 3]], axis=1)
 
     def jacobians(self, p: Numbers, x: Numbers, u: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        """F_u, F_x and F_p."""
         _, joints, dimensions = self._walked(p, x, u)
         by_u = np.stack([joints[k] for k in self._passive], axis=2)
         by_p = np.stack([dimensions[d.name] for d in self.dimensions], axis=2)
         return by_u, joints[self._input], by_p
 
     def rates(self, p: Numbers, x: Numbers, u: Numbers, order: int) -> tuple[Numbers, ...]:
+        """y, y', y'' up to an order."""
         joints = self._walked(p, x, u)[1]
         by_u = np.stack([joints[k] for k in self._passive], axis=2)
         first = -solve(by_u, joints[self._input][:, :, None])[:, :, 0]

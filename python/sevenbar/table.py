@@ -22,7 +22,9 @@ from sevenbar.units import is_unit
 LARGEST_FILE = 200_000_000
 
 #: What programs write where there is no number.
-NO_NUMBER = frozenset({"", "-", "nan", "+nan", "-nan", "na", "n/a", "#n/a", "null", "none", "inf", "-inf", "+inf"})
+NO_NUMBER = frozenset(
+    {"", "-", "nan", "+nan", "-nan", "na", "n/a", "#n/a", "null", "none", "inf", "-inf", "+inf"}
+)
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
 _COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
@@ -31,7 +33,7 @@ _NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
 @dataclass(frozen=True)
 class Table:
-    """A table of text cells: `names` and `units` of its columns ("" where not given), rows with their lines."""
+    """Text cells: `names` and `units` of the columns ("" where not given), rows with their lines."""
 
     source: str
     names: tuple[str, ...]
@@ -128,7 +130,8 @@ def read_table(path: Path) -> Table:
             else:
                 what = f"{len(cells)} cell{'s' * (len(cells) != 1)} where line {first + 1} has {width}"
             raise MeasurementError(
-                f"{source}: line {i}: {what}; the file is cut or damaged there, or holds a second table: mend it"
+                f"{source}: line {i}: {what}; the file is cut or damaged there, or holds a second table: "
+                "mend it"
             )
         rows.append(tuple(cells))
         numbers.append(i)
@@ -137,7 +140,9 @@ def read_table(path: Path) -> Table:
 
 def _begins_with_number(line: str) -> bool:
     cells = re.split(r"[\t;, ]+", line.strip().strip('"'), maxsplit=1)
-    return bool(cells[0]) and (_NUMBER.fullmatch(cells[0].strip('"')) is not None or cells[0].lower() == "nan")
+    return bool(cells[0]) and (
+        _NUMBER.fullmatch(cells[0].strip('"')) is not None or cells[0].lower() == "nan"
+    )
 
 
 def _separation(line: str) -> tuple[str, bool]:

@@ -107,7 +107,7 @@ TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
 
 @dataclass(frozen=True)
 class MeasuredUnit:
-    """A unit of a measured column: "time", "turn" or "slide", how often by time (0 to 3), size in s, rad, m."""
+    """A unit of a column: "time", "turn" or "slide", how often by time (0 to 3), size in s, rad, m."""
 
     kind: str
     order: int
