@@ -45,7 +45,7 @@ UNTOLD = 0.03
 ROUNDING = 1e-9
 
 #: A share in a direction below which a dimension does not take part in it.
-TAKES_PART = 1e-3
+TAKES_PART = 1e-2
 
 #: Correlation of neighbouring residuals, in standard deviations of that of random ones, that is told of.
 FOLLOWS = 4.0
@@ -80,9 +80,9 @@ class Calibration:
     """What a measured curve tells of a linkage's dimensions.
 
     Arrays (n,) hold the rows that were used: `input` [rad, or length] as calibrated, `measured` as in the
-    file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of the
-    output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of the
-    calibrated parameters in their order.
+    file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of
+    the output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of
+    the calibrated parameters in their order.
     """
 
     linkage: Linkage
@@ -387,11 +387,10 @@ class _Fit:
 
     def _untold(self, deviation: float) -> dict[int, tuple[int, ...]]:
         """What the data cannot tell, given the residual's deviation, and what undoes a change of each."""
-        jacobian = self.jacobian(self.wanted)
-        _, values, rows = np.linalg.svd(jacobian, full_matrices=True)
+        triangle = np.linalg.qr(self.jacobian(self.wanted), mode="r")
+        _, values, rows = np.linalg.svd(triangle, full_matrices=True)
         values = np.concatenate([values, np.zeros(len(self.wanted) - len(values))])
-        with np.errstate(divide="ignore"):
-            blind = (values <= ROUNDING * values.max(initial=0.0)) | (deviation / values > UNTOLD)
+        blind = (values <= ROUNDING * values.max(initial=0.0)) | (deviation > UNTOLD * values)
         directions = rows[blind].T
         held: list[int] = []
         left = directions.copy()

@@ -15,7 +15,8 @@ def calibrated_toml(text: str, calibration: Calibration) -> str:
     """The TOML text of a linkage with its calibrated dimensions in place of the nominal ones.
 
     L2 of an RSSR is written out, since left out it would follow from the others. What the form has no key
-    for, the zeros of the measured joints, stands in the comment above. Raises `MissingExtraError` without tomlkit.
+    for, the zeros of the measured joints, stands in the comment above. Raises `MissingExtraError` without
+    tomlkit.
     """
     try:
         import tomlkit
