@@ -141,6 +141,16 @@ def calibrate(
     "input" and "output" frees the zeros of the two measured joints. The others are as for `compare`. Raises
     `RequestError` for a wrong argument and too few rows, `NotCoveredError` for a linkage without dimensions,
     `MissingExtraError` without scipy.
+
+        >>> import sevenbar as sb
+        >>> real = sb.rssr(M=700, N=700, L1=251, L3=550, L2=998)
+        >>> inputs = np.linspace(0.0, 6.0, 50)
+        >>> measured = Measured(
+        ...     "by hand", np.arange(50), {"input": inputs, "angle": real.output(inputs).position[0]}
+        ... )
+        >>> found = calibrate(sb.load("rssr"), measured, free=["L1", "L2"])
+        >>> [(p.name, round(p.value, 6)) for p in found.calibrated]
+        [('L1', 251.0), ('L2', 998.0)]
     """
     _need_scipy()
     if not 0 < confidence < 1:

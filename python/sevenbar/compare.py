@@ -40,6 +40,9 @@ UNIFORM = 0.01
 #: The second best candidate within this factor of the best: the data hardly tell the two apart.
 CLOSE_CALL = 1.2
 
+#: Differences of this share of the measured range are no small ones: something else is wrong.
+UNEXPLAINED = 0.1
+
 #: Misfits below this are rounding.
 SAME_MISFIT = 1e-12
 
@@ -187,6 +190,16 @@ def compare(
     `speed`, the drive's where none is given; where the table has time but no input, it is at `start` [rad,
     or length] at time 0. `circuit` and `branch` (the pass) are found by the least misfit where not given.
     Raises `RequestError` for a wrong argument, and where no circuit closes at any of the inputs.
+
+        >>> import numpy as np
+        >>> import sevenbar as sb
+        >>> linkage = sb.load("rssr")
+        >>> inputs = np.linspace(0.0, 6.0, 50)
+        >>> angle = linkage.output(inputs).position[0] + 0.01
+        >>> measured = Measured("by hand", np.arange(50), {"input": inputs, "angle": angle})
+        >>> found = compare(linkage, measured, align=["offset"])
+        >>> found.chosen.circuit, round(found.chosen.offset, 6)
+        (0, 0.01)
     """
     ends = ends_of(linkage) if ends is None else ends
     aligned = tuple(dict.fromkeys(align))
@@ -209,6 +222,11 @@ def compare(
         notes.append(
             f"circuit {other.circuit}, branch {other.branch} explains the data nearly as well (misfit "
             f"{other.misfit:.3g} against {best.misfit:.3g}): these data hardly tell the two apart"
+        )
+    if best.misfit > UNEXPLAINED:
+        notes.append(
+            f"the differences are {100 * best.misfit:.2g} % of the measured range: no circuit explains "
+            "these data; check units, zeros (--align), speed and which joint was measured"
         )
     computed, values = problem.side_by_side(best)
     if best.open_rows:
@@ -542,9 +560,13 @@ def compare_extremes(
         if circuit in (None, c.index) and (extents := _extents(c, measured, ends)) is not None
     }
     if not tables:
-        which = "no circuit" if circuit is None else f"no circuit {circuit}, or it"
+        who = (
+            "no circuit of this motion has"
+            if circuit is None
+            else f"{circuit} is none of this motion, or lacks"
+        )
         raise RequestError(
-            f"circuit: {which} has a lowest and a highest value of {', '.join(measured.outputs)}; "
+            f"circuit: {who} a lowest and a highest value of {', '.join(measured.outputs)}; "
             "`sevenbar analyze` tells what each circuit has"
         )
     misfits = sorted(((_misfit(extents), index) for index, extents in tables.items()))

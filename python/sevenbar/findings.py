@@ -35,8 +35,10 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     if isinstance(comparison, ExtremesComparison):
         facts.add("measured", f"{comparison.source}, lowest and highest values")
         facts.add("drive", speed)
-        others = [f"circuit {i} ({_part(m)})" for i, m in comparison.misfits]
-        facts.add("explained by", "; ".join([f"{others[0]}", *others[1:MOST_CANDIDATES]]))
+        first, *others = (f"circuit {i} (misfit {_part(m)})" for i, m in comparison.misfits)
+        facts.add("explained by", first, style="bold")
+        if others:
+            facts.add("not by", "; ".join(others[:MOST_CANDIDATES]))
         facts.add("", "misfit: root mean square of the errors in parts of the measured range")
         return Group(*parts, Text(), _extents_table(comparison.table, ends))
     chosen = comparison.chosen
@@ -109,7 +111,7 @@ def untold_sentence(parameter: Parameter, calibration: Calibration) -> str:
     if not parameter.undone_by:
         return f"{parameter.name}, held at {at}: a change of it does not show in these data"
     others = ", ".join(parameter.undone_by)
-    return f"{parameter.name}, held at {at}: what a change of it does, changes of {others} undo"
+    return f"{parameter.name}, held at {at}: changes of {others} would hide a change of it"
 
 
 def print_comparison(comparison: Comparison | ExtremesComparison, console: Console | None = None) -> None:
