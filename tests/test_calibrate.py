@@ -25,7 +25,7 @@ PAPER = Dimensions(700.0, 700.0, 250.0, 550.0, 0.0, math.sqrt(450**2 + 550**2 + 
 SKEW = Dimensions(700.0, 650.0, 250.0, 550.0, 150.0, 980.0)
 
 #: How improbable a count of intervals that hold may be before it is taken for a fault.
-DOUBT = 1e-4
+DOUBT = 0.01
 
 
 def table(**values):

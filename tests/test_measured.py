@@ -154,6 +154,46 @@ def test_each_broken_table_has_its_own_message(tmp_path, text, message):
     assert str(caught.value) == f"{tmp_path / 'measured.csv'}: {message}"
 
 
+def test_whatever_is_done_to_a_table_it_is_read_or_told(tmp_path):
+    rng = np.random.default_rng(7)
+    whole = "time [s],angle [deg],velocity [rad/s]\n" + "".join(
+        f"{i / 10},{i},{-i / 7:.3e}\n" for i in range(12)
+    )
+    marks = [
+        *list(',;\t \n\r"#%-+.eE[]()/x0na°²'),
+        "1e999",
+        "nan",
+        "deg",
+        ",,",
+        "lowest",
+        "quantity,lowest,highest\n",
+    ]
+    read_well = 0
+    for _ in range(1500):
+        text = whole
+        for _ in range(rng.integers(1, 5)):
+            at, cut = rng.integers(0, len(text) + 1), rng.integers(0, 6)
+            text = (
+                text[:at] + (marks[rng.integers(len(marks))] if rng.random() < 0.7 else "") + text[at + cut :]
+            )
+        try:
+            measured = read(tmp_path, text)
+        except MeasurementError as error:
+            assert str(error).startswith(str(tmp_path / "measured.csv"))
+            continue
+        assert isinstance(measured, Measured)
+        assert all(
+            np.isfinite(values).all() and len(values) == len(measured) for values in measured.values.values()
+        )
+        read_well += 1
+    assert 0 < read_well < 1500
+
+
+def test_a_line_without_end_is_no_row(tmp_path):
+    with pytest.raises(MeasurementError, match="line 2 has 400000 characters, so it is no row of a table"):
+        read(tmp_path, "time [s],angle [deg]\n" + "1," * 200_000)
+
+
 def test_a_unit_of_the_caller_must_not_contradict_the_header(tmp_path):
     with pytest.raises(
         MeasurementError, match=r"mixed units: .* is in 'deg' by its header and in 'rad' by --unit"

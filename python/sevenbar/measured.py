@@ -357,6 +357,9 @@ def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> Measured
     values: dict[str, tuple[float, float]] = {}
     for i, cells in lines[1:]:
         where = f"{path}: line {i}"
+        if len(cells) < len(header):
+            count = f"{len(cells)} cell{'s' * (len(cells) != 1)}"
+            raise MeasurementError(f"{where}: {count} where the header has {len(header)}; mend the line")
         row = dict(zip(header, cells, strict=False))
         name, unit = _split(row["quantity"])
         name = name.lower()

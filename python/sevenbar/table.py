@@ -21,6 +21,9 @@ from sevenbar.units import is_unit
 #: A measured table of a million rows has some 50 MB; a larger file [bytes] is a mistake of the name.
 LARGEST_FILE = 200_000_000
 
+#: A row of a table has some dozen cells; a longer line [characters] is something else.
+LONGEST_LINE = 100_000
+
 #: What programs write where there is no number.
 NO_NUMBER = frozenset(
     {"", "-", "nan", "+nan", "-nan", "na", "n/a", "#n/a", "null", "none", "inf", "-inf", "+inf"}
@@ -112,6 +115,11 @@ def read_table(path: Path) -> Table:
     """The table of a file; `MeasurementError` with the line where it is none."""
     source = str(path)
     lines = read_text(path).splitlines()
+    for i, line in enumerate(lines, 1):
+        if len(line) > LONGEST_LINE:
+            raise MeasurementError(
+                f"{source}: line {i} has {len(line)} characters, so it is no row of a table; export it as CSV"
+            )
     first = next((i for i, line in enumerate(lines) if _begins_with_number(line)), None)
     if first is None:
         what = "has text but no row of numbers" if any(line.strip() for line in lines) else "is empty"
