@@ -359,3 +359,18 @@ def test_a_missing_scipy_is_named_with_its_extra(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(MissingExtraError, match=r"pip install 'sevenbar\[calibrate\]'"):
         calibrate(sb.load("rssr"), table(input=[0.0, 1.0], angle=[0.0, 1.0]))
+
+
+def test_a_missing_tomlkit_is_named_with_its_extra(monkeypatch):
+    real = builtins.__import__
+
+    def without(name, *arguments, **keywords):
+        if name == "tomlkit":
+            raise ImportError(name)
+        return real(name, *arguments, **keywords)
+
+    inputs, angle = measured_rssr(PAPER, count=30)
+    found = calibrate(sb.load("rssr"), table(input=inputs, angle=angle), free=["L1"])
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(MissingExtraError, match=r"pip install 'sevenbar\[calibrate\]'"):
+        calibrated_toml("", found)

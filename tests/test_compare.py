@@ -13,8 +13,9 @@ from scipy.optimize import minimize_scalar
 import reference_rssr
 import sevenbar as sb
 from random_linkages import Dimensions
-from sevenbar.compare import Extent, compare, compare_extremes, ends_of
+from sevenbar.compare import compare, ends_of
 from sevenbar.errors import RequestError
+from sevenbar.extremes import Extent, compare_extremes
 from sevenbar.measured import Measured, MeasuredExtremes
 
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
@@ -54,7 +55,7 @@ def test_the_paper_s_errors_and_per_cents_follow_from_its_own_values(quantity):
 
 def test_table_1_comes_out_of_the_linkage_with_the_paper_s_measured_values():
     measured = MeasuredExtremes("table 1", {q: tuple(TABLE_1["measured"][q]) for q in QUANTITIES})
-    found = compare_extremes(sb.load("rssr"), measured)
+    found = compare_extremes(sb.load("rssr"), measured, ends_of(sb.load("rssr")))
     assert found.circuit == 0
     assert found.misfits[0][1] < 0.03 < 0.5 < found.misfits[1][1]
     for extent in found.table:
@@ -242,8 +243,9 @@ def test_no_single_dimension_and_no_speed_explains_the_paper_s_measured_values()
     measured = MeasuredExtremes("table 1", {q: tuple(TABLE_1["measured"][q]) for q in QUANTITIES})
 
     def misfit(speed=10.0, **changed):
+        linkage = replace(PAPER, **changed).linkage()
         try:
-            found = compare_extremes(replace(PAPER, **changed).linkage(), measured, speed=speed, circuit=0)
+            found = compare_extremes(linkage, measured, ends_of(linkage), speed=speed, circuit=0)
         except RequestError:  # with this dimension the crank does not turn, so rates have no extremes
             return math.inf
         return found.misfits[0][1]

@@ -258,7 +258,8 @@ def compare_(
 ) -> None:
     """Compare measured values with the computed motion: differences, and the paper's Table 1."""
     from sevenbar import findings
-    from sevenbar.compare import Comparison, ExtremesComparison, compare, compare_extremes
+    from sevenbar.compare import Comparison, compare
+    from sevenbar.extremes import ExtremesComparison, compare_extremes
     from sevenbar.measured import MeasuredExtremes
 
     endings = _figure_formats(figures)

@@ -17,10 +17,12 @@ from rich.text import Text
 
 from sevenbar.beside import calibration_figure, comparison_figure, turns, word
 from sevenbar.calibrate import Calibration, Parameter
-from sevenbar.compare import Comparison, Extent, ExtremesComparison
+from sevenbar.compare import Comparison
+from sevenbar.extremes import Extent, ExtremesComparison
 from sevenbar.figure import save
 from sevenbar.folder import fill_folder
 from sevenbar.measured import Ends
+from sevenbar.report import without_nan
 
 #: Candidates and notes are told in full in the JSON; of candidates the page has as many.
 MOST_CANDIDATES = 4
@@ -389,17 +391,7 @@ def _units(ends: Ends) -> dict[str, str]:
 
 
 def _json(value: dict[str, Any]) -> str:
-    return json.dumps(_without_nan(value), indent=2, allow_nan=False)
-
-
-def _without_nan(value: Any) -> Any:
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: _without_nan(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_nan(v) for v in value]
-    return value
+    return json.dumps(without_nan(value), indent=2, allow_nan=False)
 
 
 def _write_rows(
