@@ -16,7 +16,8 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
-    "name", ["errors", "files", "forms", "gallery", "linkage", "mobility", "motion", "schema", "units"]
+    "name",
+    ["calibrate", "compare", "errors", "files", "forms", "gallery", "linkage", "mobility", "motion", "schema", "units"],
 )
 def test_docstring_examples_give_what_they_show(name):
     assert doctest.testmod(importlib.import_module(f"sevenbar.{name}")).failed == 0
@@ -45,6 +46,36 @@ def test_the_report_in_the_readme_is_the_report_of_today():
     lines = [numbers_of_rounding.sub("~", line.rstrip()) for line in report.splitlines()]
     shown = numbers_of_rounding.sub("~", README)
     assert all(f"    {line}\n" in shown for line in lines if line)
+
+
+def test_what_the_page_on_measured_values_prints_is_what_its_commands_print_today(tmp_path):
+    page = (ROOT / "docs" / "measured.md").read_text(encoding="utf-8")
+    # a mean of differences that is zero but for rounding, and numbers beside it
+    rounding = re.compile(r"[-+]?\d\.?\d*e-1\d")
+    shown = re.sub(r" +", " ", rounding.sub("~", page))
+    commands = re.findall(r"^    \$ sevenbar (.*)$", page, flags=re.MULTILINE)
+    assert len(commands) == 4
+    for index, command in enumerate(commands):
+        words = command.replace("DIR", str(tmp_path / str(index))).split()
+        run = [sys.executable, "-m", "sevenbar.cli", *words]
+        printed = subprocess.run(run, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        for line in printed.partition("\nwritten:")[0].splitlines():
+            told = re.sub(r" +", " ", rounding.sub("~", line)).strip()
+            assert not told.strip("─") or f" {told}\n" in shown, line
+
+
+def test_the_example_of_the_page_on_measured_values_prints_what_its_comments_say(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    (code,) = re.findall(
+        r"```python\n(.*?)```", (ROOT / "docs" / "measured.md").read_text(encoding="utf-8"), flags=re.DOTALL
+    )
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    rms, names, inside = printed.getvalue().splitlines()
+    promised = re.findall(r"print\(.*\)  # (.*)", code)
+    assert float(rms) == pytest.approx(float(promised[0]), abs=1e-6)
+    assert [names, inside] == promised[1:]
 
 
 def test_links_of_the_documentation_lead_somewhere():

@@ -19,6 +19,10 @@ class NotCoveredError(SevenbarError):
     """A linkage that is well described but that this version does not analyse."""
 
 
+class MeasurementError(SevenbarError):
+    """A measured table that cannot be read: the file, the line, and what is wrong there."""
+
+
 class OutputError(SevenbarError):
     """A file or folder that cannot be written; nothing was changed."""
 

@@ -28,10 +28,15 @@ def load(source: str | os.PathLike[str]) -> Linkage:
         >>> sb.load("rssr").kind
         'RSSR'
     """
+    return loads(text_of(source), str(source))
+
+
+def text_of(source: str | os.PathLike[str]) -> str:
+    """The TOML text of a file, or of a linkage of the gallery by its name; raises as `load` does."""
     path = Path(source)
     if isinstance(source, str) and source in names() and not path.exists():
-        return loads(text(source), source)
-    return loads(_read(path), str(source))
+        return text(source)
+    return _read(path)
 
 
 def loads(content: str, source: str = "text") -> Linkage:

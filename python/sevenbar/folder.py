@@ -19,8 +19,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def fill_folder(folder: Path, fill: Callable[[Path], None]) -> list[Path]:
-    """Lets `fill` write into a folder aside, then moves its files into `folder`: whole, or not at all."""
+def fill_folder(folder: Path, fill: Callable[[Path], None], *, force: bool = True) -> list[Path]:
+    """Lets `fill` write into a folder aside, then moves its files into `folder`: whole, or not at all.
+
+    Without `force` a file that is there already is an `OutputError`, and nothing is changed.
+    """
     made = [p for p in (folder, *folder.parents) if not p.exists()]
     staging = None
     try:
@@ -32,6 +35,10 @@ def fill_folder(folder: Path, fill: Callable[[Path], None]) -> list[Path]:
             if (folder / file.name).is_dir():
                 raise OutputError(
                     f"{folder / file.name}: is a folder where a file should go; give another folder"
+                )
+            if not force and (folder / file.name).exists():
+                raise OutputError(
+                    f"{folder / file.name}: exists already; give another folder, or --force to replace it"
                 )
         return [file.replace(folder / file.name) for file in files]
     except OSError as error:

@@ -44,6 +44,7 @@ __all__ = [
     "posed_circuit",
     "print_modes",
     "print_text",
+    "without_nan",
     "write",
     "write_figures",
 ]
@@ -91,7 +92,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),
     }
-    return _without_nan(report)  # type: ignore[no-any-return]
+    return without_nan(report)  # type: ignore[no-any-return]
 
 
 def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
@@ -128,13 +129,14 @@ def _extremes_dict(extremes: Extremes | None, otherwise: str) -> dict[str, Any]:
     return {"status": "ok", **vars(extremes)}
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
+    """Plain values with null in place of each number that is not finite, as JSON needs it."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):
-        return {key: _without_nan(v) for key, v in value.items()}
+        return {key: without_nan(v) for key, v in value.items()}
     if isinstance(value, list | tuple):
-        return [_without_nan(v) for v in value]
+        return [without_nan(v) for v in value]
     return value
 
 
@@ -269,7 +271,7 @@ def modes_json(linkage: Linkage, modes: Modes, column: int) -> str:
             for q, residual in zip(modes.q, modes.residual, strict=True)
         ],
     }
-    return json.dumps(_without_nan(report), indent=2, allow_nan=False)
+    return json.dumps(without_nan(report), indent=2, allow_nan=False)
 
 
 def print_modes(linkage: Linkage, modes: Modes, column: int, console: Console | None = None) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from sevenbar.errors import RequestError, shown, suggestion
 
@@ -81,3 +82,60 @@ def _no_such_speed(value: str, unit: str, sizes: Mapping[str, float], motion: st
     if motion == "sliding" and unit in TURNING_SPEEDS:
         return f"{shown(value)} is a turning speed, and the input slides; {hint}"
     return unknown_unit(unit, sizes)
+
+
+#: Other spellings of what stands in units of measured tables.
+_SPELLINGS = (
+    (r"\s+|·", ""),
+    (r"\*\*|\^", ""),
+    ("²", "2"),
+    (r"°|degrees?", "deg"),
+    (r"radians?", "rad"),
+    (r"seconds?|sec(?=[23]?$)", "s"),
+    (r"millis\b|msec\b", "ms"),
+    (r"minutes?", "min"),
+    (r"(?:1|revs?|r)/min|u/min", "rpm"),
+    (r"millimet(?:er|re)s?", "mm"),
+    (r"met(?:er|re)s?", "m"),
+    (r"inch(?:es)?", "in"),
+    (r"/s/s", "/s2"),
+)
+
+#: Units of time and their size in seconds.
+TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
+
+
+@dataclass(frozen=True)
+class MeasuredUnit:
+    """A unit of a column: "time", "turn" or "slide", how often by time (0 to 3), size in s, rad, m."""
+
+    kind: str
+    order: int
+    size: float
+
+
+def measured_unit(text: str) -> MeasuredUnit | None:
+    """What a unit means as programs write it: `deg/sec**2`, `rad/s²`, `rpm`, `mm`; `None` where unknown.
+
+    >>> measured_unit("rad/sec**2")
+    MeasuredUnit(kind='turn', order=2, size=1.0)
+    """
+    word = text.strip().lower()
+    for pattern, spelling in _SPELLINGS:
+        word = re.sub(pattern, spelling, word)
+    if word in TIMES:
+        return MeasuredUnit("time", 0, TIMES[word])
+    if word in TURNING_SPEEDS:
+        return MeasuredUnit("turn", 1, TURNING_SPEEDS[word])
+    base, _, per = word.partition("/")
+    order = {"": 0, "s": 1, "s2": 2, "s3": 3}.get(per)
+    if order is None:
+        return None
+    if base in ANGLES:
+        return MeasuredUnit("turn", order, ANGLES[base])
+    return MeasuredUnit("slide", order, LENGTHS[base]) if base in LENGTHS else None
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of measured values."""
+    return measured_unit(text) is not None

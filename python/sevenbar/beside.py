@@ -1,0 +1,140 @@
+"""Figures of measured values beside computed ones: curves, and below them the differences alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.calibrate import Calibration
+from sevenbar.compare import Comparison
+from sevenbar.figure import STYLE, new_figure
+from sevenbar.measured import Ends
+from sevenbar.motion import Floats
+from sevenbar.skeleton import short
+
+COMPUTED: dict[str, Any] = {"color": "#0072B2", "lw": 1.6, "zorder": 2}
+NOMINAL: dict[str, Any] = {"color": "#8a8a8a", "lw": 1.3, "ls": (0, (4, 2)), "zorder": 1}
+MEASURED: dict[str, Any] = {
+    "color": "#D55E00",
+    "ls": "",
+    "marker": "o",
+    "mfc": "none",
+    "mew": 0.9,
+    "zorder": 3,
+}
+
+#: Markers [points] of few rows and of many, and how many rows are many.
+LARGE, SMALL, MANY = 4.2, 2.2, 120
+
+#: Width of a column of panels and height of the figure [inch].
+WIDE, NARROW, TALL = 6.4, 4.3, 6.2
+
+
+def shown(ends: Ends, quantity: str, values: Floats) -> Floats:
+    """Values of a quantity as they are drawn: positions that turn in degrees, all else as it is."""
+    return np.degrees(values) if quantity in ("input", "angle") and turns(ends, quantity) else values
+
+
+def turns(ends: Ends, quantity: str) -> bool:
+    """Whether a quantity is that of a joint that turns."""
+    return ends.kind(quantity)[0] == "turn"
+
+
+def unit(ends: Ends, quantity: str) -> str:
+    """The unit of `shown` values."""
+    return "deg" if quantity in ("input", "angle") and turns(ends, quantity) else ends.unit(quantity)
+
+
+def word(ends: Ends, quantity: str) -> str:
+    """A quantity of the output by its name."""
+    if quantity == "angle":
+        return "angle" if turns(ends, quantity) else "position"
+    return quantity
+
+
+def comparison_figure(comparison: Comparison) -> Figure:
+    """The computed curve with the measured points, and their differences, a column for each quantity."""
+    ends = comparison.ends
+    with rc_context(STYLE):
+        figure, grid = _grid(len(comparison.outputs), (3.0, 1.4))
+        for column, quantity in enumerate(comparison.outputs):
+            x = shown(ends, "input", comparison.input)
+            top, below = grid[:, column]
+            curve = shown(ends, quantity, comparison.curve[quantity])
+            top.plot(shown(ends, "input", comparison.curve_input), curve, label="computed", **COMPUTED)
+            _points(top, x, shown(ends, quantity, comparison.measured[quantity]), "measured")
+            _points(below, x, shown(ends, quantity, comparison.difference(quantity)), "difference")
+            _labels(grid[:, column], ends, quantity, ["measured less\ncomputed"])
+        title = (
+            f"{short(comparison.linkage.name, 60)}\ncircuit {comparison.chosen.circuit} and measured values"
+        )
+        _finish(figure, grid, title)
+    return figure
+
+
+def calibration_figure(calibration: Calibration) -> Figure:
+    """Measured points on the calibrated and the nominal curve; below, the differences before and after."""
+    ends = calibration.ends
+    with rc_context(STYLE):
+        figure, grid = _grid(len(calibration.outputs), (3.0, 1.2, 1.2))
+        x = shown(ends, "input", calibration.input)
+        order = np.argsort(x, kind="stable")
+        for column, quantity in enumerate(calibration.outputs):
+            top, before, after = grid[:, column]
+            sides: Mapping[str, Mapping[str, Floats]] = {
+                "nominal": calibration.nominal,
+                "calibrated": calibration.computed,
+            }
+            for name, look in (("nominal", NOMINAL), ("calibrated", COMPUTED)):
+                values = shown(ends, quantity, sides[name][quantity])
+                top.plot(x[order], values[order], label=name, **look)
+            measured = shown(ends, quantity, calibration.measured[quantity])
+            _points(top, x, measured, "measured")
+            for axes, name in ((before, "nominal"), (after, "calibrated")):
+                _points(axes, x, measured - shown(ends, quantity, sides[name][quantity]), "difference")
+            _labels(grid[:, column], ends, quantity, ["measured less\nnominal", "measured less\ncalibrated"])
+        _finish(figure, grid, f"{short(calibration.linkage.name, 60)}\nbefore and after calibration")
+    return figure
+
+
+def _grid(columns: int, heights: tuple[float, ...]) -> tuple[Figure, Any]:
+    figure = new_figure(WIDE if columns == 1 else NARROW * columns, TALL)
+    figure.set_layout_engine("constrained", h_pad=0.04, w_pad=0.06)
+    grid = figure.subplots(
+        len(heights), columns, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights}
+    )
+    return figure, grid
+
+
+def _points(axes: Axes, x: Floats, y: Floats, label: str) -> None:
+    axes.plot(x, y, ms=SMALL if len(x) > MANY else LARGE, label=label, **MEASURED)
+    if label == "difference":
+        axes.axhline(0.0, color="#505050", lw=0.8, zorder=1)
+
+
+def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> None:
+    top, *below = column
+    name = word(ends, quantity)
+    # with several columns the quantity must stand at each
+    top.set_ylabel(f"{'output ' if quantity == 'angle' else ''}{name} [{unit(ends, quantity)}]")
+    for axes, text in zip(below, differences, strict=True):
+        axes.set_ylabel(f"{text} [{unit(ends, quantity)}]")
+        axes.yaxis.set_major_locator(MaxNLocator(4))
+    below[-1].set_xlabel(f"input: {short(ends.input, 40)} [{unit(ends, 'input')}]")
+    for axes in column:
+        axes.grid(lw=0.6)
+        if turns(ends, "input"):
+            axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+
+
+def _finish(figure: Figure, grid: Any, title: str) -> None:
+    figure.align_ylabels()
+    figure.suptitle(title, fontsize=11)
+    handles, labels = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
