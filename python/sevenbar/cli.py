@@ -1,4 +1,4 @@
-"""The command line: `sevenbar analyze`, `modes`, `plot` with FILE|NAME, and `sevenbar gallery`."""
+"""The command line: `sevenbar analyze`, `modes`, `plot`, `simulate` with FILE|NAME; `gallery`."""
 
 from __future__ import annotations
 
@@ -198,6 +198,64 @@ def _points(
     if not all(math.isfinite(value) for value in (u, v, w)):
         raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
+
+
+@app.command()
+def simulate(
+    linkage: Source,
+    engine: Annotated[str, typer.Option(help="exudyn (hard constraints) or mujoco (soft ones).")] = "exudyn",
+    steps: Annotated[int, typer.Option(help="Steps in a full turn of the input.")] = 3600,
+    circuit: Annotated[int, typer.Option(help="The circuit that is followed.")] = 0,
+    input_joint: Annotated[
+        str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option("--output", help="The joint whose rates are compared; the file's by default."),
+    ] = None,
+    speed: Annotated[
+        str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the JSON, the CSV and the figures.")] = None,
+    figures: Annotated[
+        list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over files that exist.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the result as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """Build the linkage in another program, drive it, and compare (extra 'simulate')."""
+    from sevenbar import simulation_report
+    from sevenbar.simulate import ready
+    from sevenbar.simulate import simulate as run_engine
+
+    endings = _figure_formats(figures)
+    ready(engine)
+    loaded = sb.load(linkage)
+    if out is not None and not force:
+        # before the long run
+        simulation_report.refuse_existing(
+            simulation_report.targets(engine, out, endings, bool(loaded.points))
+        )
+    with _progress_bar(f"{engine}: {loaded.name}") as progress:
+        run = run_engine(
+            loaded,
+            engine,
+            steps=steps,
+            circuit=circuit,
+            input=input_joint,
+            output=output,
+            speed=speed,
+            progress=progress,
+        )
+    written = simulation_report.write(run, out, endings, force=force) if out is not None else []
+    if json:
+        typer.echo(simulation_report.as_json(run))
+        return
+    simulation_report.print_text(run)
+    if written:
+        typer.echo("\nwritten: " + "\n         ".join(str(path) for path in written))
 
 
 @app.command()

@@ -294,7 +294,7 @@ def _slide(distance: Floats) -> Floats:
     return matrices
 
 
-def _frames_along(linkage: Linkage, circuit: Circuit, rows: Integers) -> Floats:
+def frames_along(linkage: Linkage, circuit: Circuit, rows: Integers) -> Floats:
     """The frames (n, moving links, 4, 4) of the links along rows of a circuit."""
     frames = np.tile(np.eye(4), (len(rows), len(linkage.links), 1, 1))
     for i in range(len(linkage.links)):
@@ -309,7 +309,7 @@ def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
     linkage: Linkage = motion.linkage
     if linkage.kind != "RSSR":
         rows = walk(motion, circuit).rows
-        poses = _frames_along(linkage, circuit, rows)
+        poses = frames_along(linkage, circuit, rows)
         if np.isnan(poses).any(axis=(1, 2, 3)).all():
             raise _nothing(circuit)
         return chain(
