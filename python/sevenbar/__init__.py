@@ -42,7 +42,7 @@ __all__ = [
 ]
 
 #: Modules that bring large libraries with them, imported at their first use.
-_ON_DEMAND = ("plot", "report")
+_ON_DEMAND = ("plot", "report", "simulate")
 
 
 def __getattr__(name: str) -> ModuleType:

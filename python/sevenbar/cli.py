@@ -227,8 +227,7 @@ def simulate(
 ) -> None:
     """Build the linkage in another program, drive it, and compare (extra 'simulate')."""
     from sevenbar import simulation_report
-    from sevenbar.simulate import ready
-    from sevenbar.simulate import simulate as run_engine
+    from sevenbar.simulate import moved, prepared, ready
 
     endings = _figure_formats(figures)
     ready(engine)
@@ -238,17 +237,9 @@ def simulate(
         simulation_report.refuse_existing(
             simulation_report.targets(engine, out, endings, bool(loaded.points))
         )
+    way, model = prepared(loaded, steps=steps, circuit=circuit, input=input_joint, output=output, speed=speed)
     with _progress_bar(f"{engine}: {loaded.name}") as progress:
-        run = run_engine(
-            loaded,
-            engine,
-            steps=steps,
-            circuit=circuit,
-            input=input_joint,
-            output=output,
-            speed=speed,
-            progress=progress,
-        )
+        run = moved(way, model, engine, progress)
     written = simulation_report.write(run, out, endings, force=force) if out is not None else []
     if json:
         typer.echo(simulation_report.as_json(run))

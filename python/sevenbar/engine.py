@@ -37,11 +37,13 @@ class Record:
 
 def imported(module: str) -> Any:
     """A module of an engine, or `MissingExtraError` naming the extra that brings it."""
+    engine = module.partition(".")[0]
+    advice = "install it with: pip install 'sevenbar[simulate]'"
     try:
         return importlib.import_module(module)
-    except ImportError:
-        engine = module.partition(".")[0]
-        raise MissingExtraError(
-            f"simulate needs {engine}, which is not installed; "
-            "install it with: pip install 'sevenbar[simulate]'"
-        ) from None
+    except ModuleNotFoundError as error:
+        if error.name != engine:
+            raise MissingExtraError(f"simulate: {engine} lacks {error.name}; {advice}") from None
+        raise MissingExtraError(f"simulate needs {engine}, which is not installed; {advice}") from None
+    except ImportError as error:
+        raise MissingExtraError(f"simulate: {engine} cannot be loaded: {error}; {advice}") from None

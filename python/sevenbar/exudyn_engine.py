@@ -10,6 +10,7 @@ import numpy as np
 from sevenbar.engine import Progress, Record, imported
 from sevenbar.errors import EngineError
 from sevenbar.exudyn_screw import ScrewConstraint
+from sevenbar.linkage import pose
 from sevenbar.motion import Floats
 from sevenbar.prototype import FREEDOMS, GROUND, GYRATION, Body, Connection, Prototype, SpinRule
 
@@ -43,11 +44,12 @@ def run(
     aside. Raises `MissingExtraError` without Exudyn and `EngineError` where its solver fails.
     """
     exu = imported("exudyn")
-    exu.SetWriteToConsole(False)
+    # its messages come back as errors of ours
+    printed, exu.config.printToConsole = exu.config.printToConsole, False
     try:
         return _run(exu, model, steps, step, progress)
     finally:
-        exu.SetWriteToConsole(True)
+        exu.config.printToConsole = printed
 
 
 def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress | None) -> Record:
@@ -81,7 +83,10 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
     try:
         solved = system.SolveDynamic(_settings(exu, model, steps, step), showHints=False)
     except (RuntimeError, ValueError, exu.SolverError) as error:
-        raise EngineError(_failure(str(error))) from None
+        reason = str(error)
+        if model.redundant:
+            reason += ", perhaps as constraints repeat each other only for dimensions exact to all digits"
+        raise EngineError(_failure(reason)) from None
     if not solved:
         raise EngineError(_failure("its solver stopped"))
     if progress is not None:
@@ -124,7 +129,7 @@ class _Assembly:
         self.nodes = [self._add_node(body) for body in model.bodies]
         inertia = [MASS * GYRATION**2] * 3 + [0.0] * 3
         self.bodies = [
-            system.AddObject(items.ObjectRigidBody(nodeNumber=node, physicsMass=MASS, physicsInertia=inertia))
+            system.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=MASS, inertia=inertia))
             for node in self.nodes
         ]
 
@@ -143,7 +148,7 @@ class _Assembly:
         return self.system.AddMarker(
             self.items.MarkerBodyRigid(
                 bodyNumber=self.ground if body == GROUND else self.bodies[body],
-                localPosition=frame[:3, 3] / self.model.size,
+                localHT=pose(frame[:3, :3], frame[:3, 3] / self.model.size),
             )
         )
 
@@ -157,8 +162,6 @@ class _Assembly:
                     self._marker(joint.after, joint.frame_after),
                 ],
                 constrainedAxes=held,
-                rotationMarker0=joint.frame_before[:3, :3],
-                rotationMarker1=joint.frame_after[:3, :3],
                 **({} if offset is None else {"offsetUserFunction": offset}),
             )
         )
@@ -207,10 +210,11 @@ class _Assembly:
         # of a turn about z alone held, x of the first frame and y of the second stay at right angles
         self.system.AddObject(
             self.items.ObjectJointGeneric(
-                markerNumbers=[self._marker(rule.before, np.eye(4)), self._marker(rule.after, np.eye(4))],
+                markerNumbers=[
+                    self._marker(rule.before, pose(_axes_with(rule.axis_before, 0), np.zeros(3))),
+                    self._marker(rule.after, pose(_axes_with(rule.axis_after, 1), np.zeros(3))),
+                ],
                 constrainedAxes=[0, 0, 0, 0, 0, 1],
-                rotationMarker0=_axes_with(rule.axis_before, 0),
-                rotationMarker1=_axes_with(rule.axis_after, 1),
             )
         )
 
@@ -259,13 +263,13 @@ def _settings(exu: Any, model: Prototype, steps: int, step: float) -> Any:
     settings.timeIntegration.newton.absoluteTolerance = TOLERANCE
     settings.timeIntegration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
     if model.redundant:
-        settings.linearSolverType = exu.LinearSolverType.EigenDense
-        settings.linearSolverSettings.ignoreSingularJacobian = True
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenDense
+        settings.linearSolver.ignoreSingularJacobian = True
     else:
-        settings.linearSolverType = exu.LinearSolverType.EXUdense
-    settings.solutionSettings.writeSolutionToFile = False
+        settings.linearSolver.solverType = exu.LinearSolverType.EXUdense
+    settings.solution.file.write = False
     # half a step: each step is kept, whatever its rounding
-    settings.solutionSettings.sensorsWritePeriod = 0.5 * step
+    settings.solution.sensors.writePeriod = 0.5 * step
     return settings
 
 

@@ -29,7 +29,7 @@ class ScrewConstraint:
         self, _system: Any, _time: float, _item: int, q: Any, _rates: Any, _velocity_level: bool
     ) -> list[float]:
         """The constraint's value at Exudyn's coordinates."""
-        (_, first), (_, second) = self._placed(q)
+        first, second = (placed for placed, _ in self._placed(q))
         sine, cosine = first[:3, 1] @ second[:3, 0], first[:3, 0] @ second[:3, 0]
         turn = math.atan2(sine, cosine)
         self._turn = turn + math.tau * round((self._turn - turn) / math.tau)
@@ -40,55 +40,51 @@ class ScrewConstraint:
         self, _system: Any, _time: float, _item: int, q: Any, _rates: Any, _velocity_level: bool
     ) -> Floats:
         """The derivatives (1, coordinates) of the value by the coordinates."""
-        (first_slopes, first), (second_slopes, second) = self._placed(q)
+        (first, own_first), (second, own_second) = self._placed(q)
         sine, cosine = first[:3, 1] @ second[:3, 0], first[:3, 0] @ second[:3, 0]
-        square = sine * sine + cosine * cosine
-        found = []
-        for d_first, d_second in [(d, np.zeros((4, 4))) for d in first_slopes] + [
-            (np.zeros((4, 4)), d) for d in second_slopes
-        ]:
-            d_sine = d_first[:3, 1] @ second[:3, 0] + first[:3, 1] @ d_second[:3, 0]
-            d_cosine = d_first[:3, 0] @ second[:3, 0] + first[:3, 0] @ d_second[:3, 0]
-            d_turn = (cosine * d_sine - sine * d_cosine) / square
-            d_slide = d_first[:3, 2] @ (second[:3, 3] - first[:3, 3]) + first[:3, 2] @ (
-                d_second[:3, 3] - d_first[:3, 3]
-            )
-            found.append(d_slide - self._advance * d_turn)
+        way = second[:3, 3] - first[:3, 3]
+        # by the numbers of each frame: the value's linear parts, and those of the turn's tangent
+        by_first, by_second = np.zeros((3, 4)), np.zeros((3, 4))
+        share = self._advance / (sine * sine + cosine * cosine)
+        by_first[:, 0] = share * sine * second[:3, 0]
+        by_first[:, 1] = -share * cosine * second[:3, 0]
+        by_first[:, 2] = way
+        by_first[:, 3] = -first[:3, 2]
+        by_second[:, 0] = share * (sine * first[:3, 0] - cosine * first[:3, 1])
+        by_second[:, 3] = first[:3, 2]
+        found: list[float] = []
+        for moves, frame, own, by in zip(
+            self._moves, self._frames, (own_first, own_second), (by_first, by_second), strict=True
+        ):
+            if moves:
+                # a frame is R(p) frame + place
+                found += list(by[:, 3])
+                found += [float(np.vdot(by, _rotation(own[3:], d) @ frame[:3, :])) for d in np.eye(4)]
         return np.array([found])
 
-    def _placed(self, q: Any) -> list[tuple[list[Floats], Floats]]:
-        """The joint's frame in each body, after its derivatives by that body's coordinates."""
+    def _placed(self, q: Any) -> list[tuple[Floats, Floats]]:
+        """The joint's frame in each body, and that body's own coordinates, none of the ground."""
         coordinates = np.asarray(q)
-        found: list[tuple[list[Floats], Floats]] = []
+        found: list[tuple[Floats, Floats]] = []
         for moves, frame in zip(self._moves, self._frames, strict=True):
-            if not moves:
-                found.append(([], frame))
-                continue
-            own, coordinates = coordinates[:7], coordinates[7:]
-            slopes = []
-            for k in range(3):
-                slope = np.zeros((4, 4))
-                slope[k, 3] = 1.0
-                slopes.append(slope)
-            for k in range(4):
-                slope = np.zeros((4, 4))
-                slope[:3, :] = _rotation(own[3:], np.eye(4)[k]) @ frame[:3, :]
-                slopes.append(slope)
-            placed = pose(0.5 * _rotation(own[3:], own[3:]), own[:3]) @ frame
-            found.append((slopes, placed))
+            if moves:
+                own, coordinates = coordinates[:7], coordinates[7:]
+                found.append((pose(0.5 * _rotation(own[3:], own[3:]), own[:3]) @ frame, own))
+            else:
+                found.append((frame, coordinates[:0]))
         return found
 
 
 def _rotation(p: Floats, d: Floats) -> Floats:
     """The derivative in the direction d of the rotation matrix of Euler parameters p; at d = p, twice it."""
-    scalar, vector = p[0], p[1:]
-    d_scalar, d_vector = d[0], d[1:]
-    return np.asarray(
-        2.0 * (scalar * d_scalar - vector @ d_vector) * np.eye(3)
-        + 2.0 * (np.outer(vector, d_vector) + np.outer(d_vector, vector))
-        + 2.0 * (d_scalar * _skew(vector) + scalar * _skew(d_vector))
+    (a, b, c, e), (da, db, dc, de) = p.tolist(), d.tolist()
+    even = a * da - b * db - c * dc - e * de
+    xy, xz, yz = b * dc + c * db, b * de + e * db, c * de + e * dc
+    x, y, z = a * db + b * da, a * dc + c * da, a * de + e * da
+    return 2.0 * np.array(
+        [
+            [even + 2 * b * db, xy - z, xz + y],
+            [xy + z, even + 2 * c * dc, yz - x],
+            [xz - y, yz + x, even + 2 * e * de],
+        ]
     )
-
-
-def _skew(v: Floats) -> Floats:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])

@@ -105,7 +105,7 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     where = cut(model)
     forward = model.connections[: where.connection + where.weld]
     backward = model.connections[where.connection + 1 :]
-    parent = world
+    tree.elements[GROUND] = parent = world
     for number, joint in enumerate(forward):
         parent = tree.add_forward(parent, joint, number)
     parent = world

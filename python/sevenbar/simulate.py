@@ -45,10 +45,23 @@ def simulate(
     and `EngineError` where the engine loses the motion.
     """
     ready(engine)
+    way, model = prepared(linkage, steps=steps, circuit=circuit, input=input, output=output, speed=speed)
+    return moved(way, model, engine, progress)
+
+
+def prepared(
+    linkage: Linkage,
+    *,
+    steps: int = STEPS,
+    circuit: int = 0,
+    input: str | None = None,
+    output: str | None = None,
+    speed: float | str | None = None,
+) -> tuple[Course, Prototype]:
+    """What an engine will be asked for, and the prototype it is given; raises as `simulate` does."""
     motion = linkage.motion(steps, input=input, output=output, speed=speed)
     way = course(motion, circuit)
-    model = prototype(linkage, way.circuit, way.start, motion.speed)
-    return moved(way, model, engine, progress)
+    return way, prototype(linkage, way.circuit, way.start, motion.speed)
 
 
 def ready(engine: str) -> None:
