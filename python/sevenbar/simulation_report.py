@@ -21,6 +21,7 @@ from sevenbar.agreement import Difference, Simulation
 from sevenbar.errors import OutputError
 from sevenbar.folder import fill_folder
 from sevenbar.simulate import as_dict
+from sevenbar.skeleton import short
 
 #: The names of figures that a run may have.
 FIGURES = ("output", "joints", "points")
@@ -63,8 +64,8 @@ def text(run: Simulation) -> RenderableType:
             f"misses its first pose by {_sized(run.returned[0], unit)} and {_sized(run.returned[1], 'rad')}",
         )
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.add_column(f"{record.engine} against Sevenbar")
-    for heading in ("greatest difference", f"at {motion.input}", "median", "of values up to"):
+    table.add_column(f"{record.engine} less Sevenbar", no_wrap=True)
+    for heading in ("greatest", f"at {short(motion.input, 12)}", "median", "values up to"):
         table.add_column(heading, justify="right")
     for found in run.differences:
         table.add_row(*_cells(found, slide, unit))
