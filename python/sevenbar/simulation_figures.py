@@ -19,6 +19,9 @@ from sevenbar.skeleton import short
 #: Marks of the engine along a curve.
 MARKS = 40
 
+#: In so many stretches a course is cut where the greatest difference of each is drawn.
+STRETCHES = 180
+
 #: A logarithmic panel ends at this part of its greatest difference, or at this number: below is rounding.
 SPAN, FLOOR = 1e-6, 1e-17
 
@@ -142,7 +145,11 @@ def _compared(axes: Axes, run: Simulation, theory: Floats, engine: Floats, colou
 
 
 def _logarithmic(axes: Axes, run: Simulation, values: Floats, colour: str, name: str) -> None:
-    axes.plot(_across(run), np.maximum(values, FLOOR), color=colour, lw=0.8, label=name)
+    """Draws the greatest value of each stretch: of rounding, its size and not its noise."""
+    count = min(STRETCHES, len(values))
+    greatest = [np.fmax.reduce(part) for part in np.array_split(np.maximum(values, FLOOR), count)]
+    middles = [part[len(part) // 2] for part in np.array_split(_across(run), count)]
+    axes.plot(middles, greatest, color=colour, lw=1.0, label=name)
     axes.set_yscale("log")
     axes.yaxis.set_major_locator(LogLocator(numticks=7))
     # mathematical text is off, so powers are written as numbers are
