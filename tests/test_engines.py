@@ -234,3 +234,25 @@ def test_the_constraint_of_a_screw_has_the_slope_of_its_value():
         step = 1e-6
         differences = [(value(q + step * e) - value(q - step * e)) / (2 * step) for e in np.eye(count)]
         assert screw.slope(None, 0.0, 0, q, None, False)[0] == pytest.approx(differences, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor", "speed"),
+    [("um", 1e-3, 10.0), ("ft", 100.0, 10.0), ("mm", 1.0, 1e4), ("mm", 1.0, -1e-6)],
+)
+def test_exudyn_agrees_as_well_in_any_unit_and_at_any_speed(unit, factor, speed):
+    lengths = {name: factor * length for name, length in {"M": 700, "N": 700, "L1": 250, "L3": 550}.items()}
+    run = simulate(sb.rssr(**lengths, length_unit=unit, speed=speed), "exudyn", steps=3600)
+    angle, velocity, acceleration = (found.greatest for found in run.differences[:3])
+    assert angle < 1e-10
+    assert velocity < 1e-5 * abs(speed)
+    assert acceleration < 1e-4 * speed**2
+    assert run.gap < 1e-11 * run.course.circuit.size
+    assert run.time[-1] == pytest.approx(2 * np.pi / abs(speed))
+
+
+def test_a_linkage_too_small_for_mujoco_is_refused():
+    with pytest.raises(
+        EngineError, match=r"mujoco cannot move a linkage of 5\.0e-07 m: it reckons in metres"
+    ):
+        simulate(sb.rssr(M=0.7, N=0.7, L1=0.25, L3=0.55, length_unit="um"), "mujoco", steps=FEW)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -58,7 +58,7 @@ class Simulation:
     theory: JointValues
     points: dict[str, tuple[PointValues, PointValues]]
     returned: tuple[float, float] | None
-    differences: tuple[Difference, ...] = field(default=())
+    differences: tuple[Difference, ...] = ()
 
     @property
     def linkage(self) -> Linkage:
@@ -123,7 +123,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         askew = np.linalg.norm(turn - np.eye(3), axis=(-1, -2)).max() / math.sqrt(2)
         returned = (float(apart), float(askew))
     found = Simulation(course, model, record, values, theory, points, returned)
-    return Simulation(course, model, record, values, theory, points, returned, tuple(_differences(found)))
+    return replace(found, differences=tuple(_differences(found)))
 
 
 def _links(linkage: Linkage, model: Prototype, record: Record, first: int) -> Bodies:

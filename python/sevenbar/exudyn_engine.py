@@ -18,8 +18,8 @@ from sevenbar.prototype import FREEDOMS, GROUND, GYRATION, Body, Connection, Pro
 #: an error of the accelerations at the start shrinks by about this factor a step.
 SPECTRAL_RADIUS = 0.6
 
-#: Newton's iterations end where the residual, lengths in parts of the size, falls below this, or below this
-#: part of the step's first residual.
+#: Newton's iterations end where the residual falls below this, or below this part of the step's first one:
+#: lengths in parts of the size, times in the input's time for a radian (or a size, where it slides).
 TOLERANCE, SHARE = 1e-12, 1e-10
 
 #: A body's mass. Small against lengths of size one, so that constraints weigh most in the residual.
@@ -56,7 +56,8 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
     items = imported("exudyn.itemInterface")
     container = exu.SystemContainer()
     system = container.AddSystem()
-    assembly = _Assembly(items, system, model)
+    pace = _pace(model)
+    assembly = _Assembly(items, system, model, pace)
     notes = []
     for joint in model.connections:
         assembly.add_joint(joint)
@@ -78,10 +79,10 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
         )
     sensors = assembly.add_sensors(exu.OutputVariableType)
     if progress is not None:
-        system.SetPreStepUserFunction(_ticking(progress, steps, step))
+        system.SetPreStepUserFunction(_ticking(progress, steps, step * pace))
     system.Assemble()
     try:
-        solved = system.SolveDynamic(_settings(exu, model, steps, step), showHints=False)
+        solved = system.SolveDynamic(_settings(exu, model, steps, step * pace), showHints=False)
     except (RuntimeError, ValueError, exu.SolverError) as error:
         reason = str(error)
         if model.redundant:
@@ -105,15 +106,21 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
     return Record(
         engine="Exudyn",
         version=str(exu.__version__),
-        time=time,
+        time=time / pace,
         frames=frames,
-        velocity=stored("Velocity") * model.size,
-        acceleration=stored("Acceleration") * model.size,
-        spin=stored("AngularVelocity"),
-        spin_rate=stored("AngularAcceleration"),
+        velocity=stored("Velocity") * model.size * pace,
+        acceleration=stored("Acceleration") * model.size * pace**2,
+        spin=stored("AngularVelocity") * pace,
+        spin_rate=stored("AngularAcceleration") * pace**2,
         method=f"hard constraints (index 3), generalized-alpha, spectral radius {SPECTRAL_RADIUS}",
         notes=tuple(notes),
     )
+
+
+def _pace(model: Prototype) -> float:
+    """How many of Exudyn's units of time make a second."""
+    drive = model.drive
+    return abs(drive.speed) / (1.0 if drive.freedom == 5 else model.size)
 
 
 def _failure(reason: str) -> str:
@@ -121,10 +128,10 @@ def _failure(reason: str) -> str:
 
 
 class _Assembly:
-    """A prototype put together in an Exudyn system, lengths in parts of the prototype's size."""
+    """A prototype put together in an Exudyn system; a length of 1 is its size, a second has `pace` units."""
 
-    def __init__(self, items: Any, system: Any, model: Prototype) -> None:
-        self.items, self.system, self.model = items, system, model
+    def __init__(self, items: Any, system: Any, model: Prototype, pace: float) -> None:
+        self.items, self.system, self.model, self.pace = items, system, model, pace
         self.ground = system.AddObject(items.ObjectGround())
         self.nodes = [self._add_node(body) for body in model.bodies]
         inertia = [MASS * GYRATION**2] * 3 + [0.0] * 3
@@ -136,8 +143,8 @@ class _Assembly:
     def _add_node(self, body: Body) -> Any:
         rigid = imported("exudyn.rigidBodyUtilities")
         parameters = rigid.RotationMatrix2EulerParameters(body.frame[:3, :3])
-        rates = rigid.AngularVelocity2EulerParameters_t(body.spin, parameters)
-        place, velocity = body.frame[:3, 3] / self.model.size, body.velocity / self.model.size
+        rates = rigid.AngularVelocity2EulerParameters_t(body.spin / self.pace, parameters)
+        place, velocity = body.frame[:3, 3] / self.model.size, body.velocity / (self.model.size * self.pace)
         return self.system.AddNode(
             self.items.NodeRigidBodyEP(
                 referenceCoordinates=[*place, *parameters], initialVelocities=[*velocity, *rates]
@@ -200,7 +207,7 @@ class _Assembly:
 
         def offset(_system: Any, time: float, _item: int, _parameters: Any) -> list[float]:
             values = [0.0] * 6
-            values[drive.freedom] = drive.at(time) / unit
+            values[drive.freedom] = drive.at(time / self.pace) / unit
             return values
 
         held = [int(row == drive.freedom) for row in range(6)]

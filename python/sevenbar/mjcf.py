@@ -68,9 +68,9 @@ class _State:
 def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     """The MJCF of a prototype: a text that MuJoCo loads.
 
-    Bodies are `link_1` .. and the crosses of universal joints; the turn and the slide of a joint are
-    `<joint>` and `<joint>_slide`. `loop` is the equality that closes the loop between two sites, `time_step`
-    [s] also sets how fast it comes back.
+    Bodies are `link_1` .. and the crosses of universal joints; joints are named as Sevenbar's columns, a
+    ball by its own name, the slide of a screw `<joint>.slide`. `loop` is the equality that closes the loop
+    between two sites, `time_step` [s] also sets how fast it comes back.
     """
     metre = LENGTHS[model.length_unit]
     root = Element("mujoco", model=model.name)
@@ -193,18 +193,22 @@ class _Tree:
         """The joints of MuJoCo that make up one of ours, at `frame` of the body, and their start."""
         turn, slide = self._model.values[number]
         turn_rate, slide_rate = self._model.rates[number]
+        turn_name, slide_name = {
+            "C": (f"{joint.name}.1", f"{joint.name}.2"),
+            "H": (joint.name, f"{joint.name}.slide"),
+        }.get(joint.kind, (joint.name, joint.name))
         place = {"pos": _numbers(frame[:3, 3] * self._metre)}
         axis = {"axis": _numbers(way * frame[:3, 2])}
         if joint.kind in "PCH":
             wheel = self._flywheel(number, 2)
-            _add(body, "joint", name=f"{joint.name}_slide", type="slide", **axis, **wheel)
+            _add(body, "joint", name=slide_name, type="slide", **axis, **wheel)
             value = turn * joint.advance if joint.kind == "H" else slide
             rate = turn_rate * joint.advance if joint.kind == "H" else slide_rate
             self._state.qpos.append(value * self._metre)
             self._state.qvel.append(rate * self._metre)
         if joint.kind in "RCH":
             wheel = self._flywheel(number, 5)
-            _add(body, "joint", name=joint.name, type="hinge", **place, **axis, **wheel)
+            _add(body, "joint", name=turn_name, type="hinge", **place, **axis, **wheel)
             self._state.qpos.append(turn)
             self._state.qvel.append(turn_rate)
         if joint.kind == "H":
@@ -212,8 +216,8 @@ class _Tree:
                 self._equality,
                 "joint",
                 name=f"{joint.name}_screw",
-                joint1=f"{joint.name}_slide",
-                joint2=joint.name,
+                joint1=slide_name,
+                joint2=turn_name,
                 polycoef=_numbers([0, joint.advance * self._metre, 0, 0, 0]),
             )
         if joint.kind == "S":

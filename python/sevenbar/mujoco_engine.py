@@ -10,6 +10,9 @@ from sevenbar.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
 from sevenbar.prototype import Prototype
 from sevenbar.units import LENGTHS
 
+#: Linkages below this size [m] have forces and inertias that MuJoCo takes for none.
+SMALLEST = 1e-4
+
 #: A bar is moved at most so often.
 TICKS = 200
 
@@ -21,10 +24,18 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
     `EngineError` where the motion is lost.
     """
     mujoco = imported("mujoco")
-    own = mujoco.MjModel.from_xml_string(mjcf(model, time_step=step))
+    metre = LENGTHS[model.length_unit]
+    if model.size * metre < SMALLEST:
+        raise EngineError(
+            f"mujoco cannot move a linkage of {model.size * metre:.1e} m: it reckons in metres, and needs "
+            f"{SMALLEST:g} m; give another length_unit, or --engine exudyn"
+        )
+    try:
+        own = mujoco.MjModel.from_xml_string(mjcf(model, time_step=step))
+    except ValueError as error:
+        raise EngineError(f"mujoco does not take the model: {error}") from None
     data = mujoco.MjData(own)
     mujoco.mj_resetDataKeyframe(own, data, 0)
-    metre = LENGTHS[model.length_unit]
     bodies = [own.body(body.name).id for body in model.bodies]
     rows, count = steps + 1, len(bodies)
     frames = np.tile(np.eye(4), (rows, count, 1, 1))

@@ -98,8 +98,8 @@ class PrescribedMotion:
 class Prototype:
     """Bodies, joints and drive; joint k lies between body k - 1 and body k, the ground before and after all.
 
-    `size` [length] is that of the linkage. `values` holds the start's turn and slide of each joint, (k, 2),
-    NaN where it has none, or, of a ball, where they are no joint's.
+    `size` [length] is that of the linkage. `values` (k, 2) holds each joint's turn [rad] and slide [length]
+    at the start and `rates` (k, 2) how fast they grow; NaN where a joint has none, or is a ball.
     """
 
     name: str
