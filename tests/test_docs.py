@@ -65,8 +65,8 @@ def test_the_tables_on_the_engines_are_those_of_today():
             if not re.fullmatch(number, cell):
                 assert cell == other
                 continue
-            # differences near rounding vary with the machine
-            one, two = (float(text.strip().removeprefix("< ")) for text in (cell, other))
+            # what is left of rounding varies with the machine
+            one, two = (max(float(text.strip().removeprefix("< ")), 1e-9) for text in (cell, other))
             assert 1 / 3 < one / two < 3, (there, here)
 
 

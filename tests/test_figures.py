@@ -30,7 +30,7 @@ def test_the_joints_values_lead_to_the_links_places(motions: dict[str, sb.Motion
     motion = motions[name]
     for circuit in motion:
         rows = np.flatnonzero(~np.isnan(circuit.q).any(axis=1))
-        along = skeleton._frames_along(motion.linkage, circuit, rows)
+        along = skeleton.frames_along(motion.linkage, circuit, rows)
         given = skeleton.frames_of(motion.linkage, circuit.q[rows])
         np.testing.assert_allclose(given, along, atol=1e-9 * max(circuit.size, 1.0))
 
