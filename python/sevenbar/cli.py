@@ -414,6 +414,55 @@ def _start(linkage: sb.Linkage, input_joint: str, start: str) -> float:
 
 
 @app.command()
+def simulate(
+    linkage: Source,
+    engine: Annotated[str, typer.Option(help="exudyn (hard constraints) or mujoco (soft ones).")] = "exudyn",
+    steps: Annotated[int, typer.Option(help="Steps in a full turn of the input.")] = 3600,
+    circuit: Annotated[int, typer.Option(help="The circuit that is followed.")] = 0,
+    input_joint: Annotated[
+        str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
+    ] = None,
+    output: Annotated[
+        str | None,
+        typer.Option("--output", help="The joint whose rates are compared; the file's by default."),
+    ] = None,
+    speed: Annotated[
+        str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the JSON, the CSV and the figures.")] = None,
+    figures: Annotated[
+        list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over files that exist.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the result as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """Build the linkage in another program, drive it, and compare (extra 'simulate')."""
+    from sevenbar import simulation_report
+    from sevenbar.simulate import moved, prepared, ready
+
+    endings = _figure_formats(figures)
+    ready(engine)
+    loaded = sb.load(linkage)
+    if out is not None and not force:
+        # before the long run
+        simulation_report.refuse_existing(
+            simulation_report.targets(engine, out, endings, bool(loaded.points))
+        )
+    way, model = prepared(loaded, steps=steps, circuit=circuit, input=input_joint, output=output, speed=speed)
+    with _progress_bar(f"{engine}: {loaded.name}") as progress:
+        run = moved(way, model, engine, progress)
+    written = simulation_report.write(run, out, endings, force=force) if out is not None else []
+    if json:
+        typer.echo(simulation_report.as_json(run))
+        return
+    simulation_report.print_text(run)
+    if written:
+        typer.echo("\nwritten: " + "\n         ".join(str(path) for path in written))
+
+
+@app.command()
 def export(
     linkage: Source,
     to: Annotated[

@@ -31,6 +31,10 @@ class MissingExtraError(SevenbarError, ImportError):
     """An optional package that is asked for but not installed."""
 
 
+class EngineError(SevenbarError):
+    """A motion that another program could not follow; the text says what to try."""
+
+
 @dataclass(frozen=True)
 class Problem:
     """One thing that is wrong in a description: where it stands and what is the matter."""

@@ -1,0 +1,201 @@
+"""An engine's record beside Sevenbar's rows: joints, named points, closure errors, differences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sevenbar.course import Course
+from sevenbar.engine import Record
+from sevenbar.joint_values import Bodies, JointValues, joint_values
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Floats
+from sevenbar.prototype import Prototype
+
+
+@dataclass(frozen=True)
+class Difference:
+    """How far the engine is from Sevenbar in one quantity: greatest and median, absolute.
+
+    `at` is the input [rad, or length] where it is greatest; `scale` the greatest absolute value that
+    Sevenbar gives. All NaN where no row has a value.
+    """
+
+    quantity: str
+    unit: str
+    greatest: float
+    at: float
+    median: float
+    scale: float
+
+
+@dataclass(frozen=True, eq=False)
+class PointValues:
+    """A named point at n times, each (n, 3): position, velocity, acceleration."""
+
+    position: Floats
+    velocity: Floats
+    acceleration: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """One run of an engine, row by row beside Sevenbar's.
+
+    `input` (n,) and `time` (n,) [s] of the rows; `engine` and `theory` hold the joints' values, the theory's
+    without closure errors; `points` holds each named point as the engine and as Sevenbar has it. `returned`
+    is by how much the engine's links miss their first places [length] and attitudes [rad] at the end of a
+    cycle; None where the course is no cycle.
+    """
+
+    course: Course
+    model: Prototype
+    record: Record
+    engine: JointValues
+    theory: JointValues
+    points: dict[str, tuple[PointValues, PointValues]]
+    returned: tuple[float, float] | None
+    differences: tuple[Difference, ...] = ()
+
+    @property
+    def linkage(self) -> Linkage:
+        """The linkage that was simulated."""
+        return self.course.motion.linkage
+
+    @property
+    def time(self) -> Floats:
+        """The time [s] of the rows."""
+        return self.course.time
+
+    @property
+    def input(self) -> Floats:
+        """Sevenbar's input [rad, or length] of the rows."""
+        return self.theory.q[:, self.course.circuit.input_column]
+
+    @property
+    def gap(self) -> float:
+        """The engine's greatest closure error [length]."""
+        return float(self.engine.gap.max())
+
+    @property
+    def tilt(self) -> float:
+        """The engine's greatest closure error [rad]."""
+        return float(self.engine.tilt.max())
+
+    def difference(self, quantity: str) -> Difference:
+        """The difference of this name; `KeyError` where there is none."""
+        return {found.quantity: found for found in self.differences}[quantity]
+
+
+def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
+    """What an engine made of a course, beside what Sevenbar says."""
+    linkage, circuit = course.motion.linkage, course.circuit
+    bodies = _links(linkage, model, record, len(course.lead))
+    values = joint_values(linkage, bodies)
+    theory = JointValues(
+        course.q,
+        circuit.dq[course.rows],
+        circuit.ddq[course.rows],
+        np.zeros_like(values.gap),
+        np.zeros_like(values.tilt),
+    )
+    _unwind(values, theory, [kind == "turn" for kind in linkage.column_kinds])
+    points = {}
+    for point in linkage.points:
+        frame = linkage.point_frames[point.link - 1]
+        place = frame[:3, :3] @ np.array(point.at) + frame[:3, 3]
+        trace = circuit.point(point.link, point.at)
+        points[point.name] = (
+            PointValues(*bodies.point(point.link - 1, place)),
+            PointValues(
+                trace.position[course.rows], trace.velocity[course.rows], trace.acceleration[course.rows]
+            ),
+        )
+    returned = None
+    if course.closes:
+        ends = bodies.frames[[0, -1]]
+        apart = np.linalg.norm(ends[1, :, :3, 3] - ends[0, :, :3, 3], axis=-1).max()
+        turn = np.swapaxes(ends[0, :, :3, :3], -1, -2) @ ends[1, :, :3, :3]
+        # of a small turn the matrix less the unit matrix has a norm of sqrt 2 times its angle
+        askew = np.linalg.norm(turn - np.eye(3), axis=(-1, -2)).max() / math.sqrt(2)
+        returned = (float(apart), float(askew))
+    found = Simulation(course, model, record, values, theory, points, returned)
+    return replace(found, differences=tuple(_differences(found)))
+
+
+def _links(linkage: Linkage, model: Prototype, record: Record, first: int) -> Bodies:
+    """The links of a record from one row on, the ground last; crosses left out."""
+    kept = [number for number, body in enumerate(model.bodies) if body.link]
+    rows = len(record.time) - first
+
+    def with_ground(values: Floats, ground: Floats) -> Floats:
+        own = np.broadcast_to(ground, (rows, 1, *ground.shape))
+        return np.concatenate([values[first:, kept], own], axis=1)
+
+    still = np.zeros(3)
+    return Bodies(
+        with_ground(record.frames, linkage.ground),
+        with_ground(record.velocity, still),
+        with_ground(record.acceleration, still),
+        with_ground(record.spin, still),
+        with_ground(record.spin_rate, still),
+    )
+
+
+def _unwind(values: JointValues, theory: JointValues, turns: list[bool]) -> None:
+    """Puts the engine's angles on the same whole turns as Sevenbar's, by their first rows with a value."""
+    for column in np.flatnonzero(turns):
+        apart = (theory.q[:, column] - values.q[:, column]) / math.tau
+        known = apart[np.isfinite(apart)]
+        if known.size:
+            values.q[:, column] += math.tau * np.round(known[0])
+
+
+def _differences(run: Simulation) -> Iterator[Difference]:
+    linkage, circuit = run.linkage, run.course.circuit
+    unit = linkage.length_unit
+    output = circuit.output_column
+    order = [output, *(c for c in range(len(linkage.columns)) if c != output)]
+    slides = [kind == "slide" for kind in linkage.column_kinds]
+    for column in order:
+        name = linkage.columns[column]
+        own = unit if slides[column] else "rad"
+        word = "position" if slides[column] else "angle"
+        rows = (
+            (word, own, run.engine.q, run.theory.q),
+            ("velocity", f"{own}/s", run.engine.dq, run.theory.dq),
+            ("acceleration", f"{own}/s²", run.engine.ddq, run.theory.ddq),
+        )
+        for what, units, engine, theory in rows if column == output else rows[:1]:
+            yield _difference(run, f"{name} {what}", units, engine[:, column], theory[:, column])
+    for name, (engine_point, theory_point) in run.points.items():
+        for what, units in (("position", unit), ("velocity", f"{unit}/s"), ("acceleration", f"{unit}/s²")):
+            apart = getattr(engine_point, what) - getattr(theory_point, what)
+            yield _difference(
+                run,
+                f"{name} {what}",
+                units,
+                np.linalg.norm(apart, axis=1),
+                np.zeros(len(apart)),
+                float(np.nanmax(np.linalg.norm(getattr(theory_point, what), axis=1), initial=0.0)),
+            )
+
+
+def _difference(
+    run: Simulation, name: str, unit: str, engine: Floats, theory: Floats, scale: float | None = None
+) -> Difference:
+    apart = np.abs(engine - theory)
+    if np.isnan(apart).all():
+        return Difference(name, unit, math.nan, math.nan, math.nan, math.nan)
+    worst = int(np.nanargmax(apart))
+    return Difference(
+        quantity=name,
+        unit=unit,
+        greatest=float(apart[worst]),
+        at=float(run.input[worst]),
+        median=float(np.nanmedian(apart)),
+        scale=float(np.nanmax(np.abs(theory))) if scale is None else scale,
+    )

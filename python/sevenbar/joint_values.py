@@ -1,0 +1,195 @@
+"""What joints do, read off the frames and the velocities of bodies: geometry alone, no closure.
+
+Frames are those of links after their joints, as `Linkage` has them; the ground comes last.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.linkage import Joint, Linkage
+from sevenbar.motion import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Links at n times, the ground last: frames (n, links, 4, 4), the rest (n, links, 3) as in a record."""
+
+    frames: Floats
+    velocity: Floats
+    acceleration: Floats
+    spin: Floats
+    spin_rate: Floats
+
+    def point(self, link: int, place: Floats) -> tuple[Floats, Floats, Floats]:
+        """Position, velocity and acceleration (n, 3) of a place in the frame of a link, counted from 0."""
+        arm = self.frames[:, link, :3, :3] @ place
+        spin = self.spin[:, link]
+        turning = np.cross(spin, arm)
+        return (
+            self.frames[:, link, :3, 3] + arm,
+            self.velocity[:, link] + turning,
+            self.acceleration[:, link] + np.cross(self.spin_rate[:, link], arm) + np.cross(spin, turning),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class JointValues:
+    """Joint values and rates (n, columns), unwrapped; rates of a ball's turns are not formed and are NaN.
+
+    `gap` (n, joints) [length] and `tilt` (n, joints) [rad] are by how much the two sides of each joint stand
+    apart in the directions that it holds: the closure error.
+    """
+
+    q: Floats
+    dq: Floats
+    ddq: Floats
+    gap: Floats
+    tilt: Floats
+
+
+def joint_values(linkage: Linkage, bodies: Bodies) -> JointValues:
+    """The values of all joints of a linkage whose links stand and move so."""
+    rows = len(bodies.frames)
+    still = np.zeros((rows, 3))
+    parts: list[tuple[Floats, Floats, Floats]] = []
+    gaps: list[Floats] = []
+    tilts: list[Floats] = []
+    for i, joint in enumerate(linkage.joints):
+        if i == 0:
+            before = np.broadcast_to(linkage.base, (rows, 4, 4))
+            motion = (still, still)
+            spin, spin_rate = still, still
+        else:
+            before = bodies.frames[:, i - 1] @ linkage.links[i - 1]
+            motion = bodies.point(i - 1, linkage.links[i - 1][:3, 3])[1:]
+            spin, spin_rate = bodies.spin[:, i - 1], bodies.spin_rate[:, i - 1]
+        after = bodies.frames[:, i]
+        turn = np.swapaxes(before[:, :3, :3], 1, 2) @ after[:, :3, :3]
+        way = after[:, :3, 3] - before[:, :3, 3]
+        local = np.einsum("nji,nj->ni", before[:, :3, :3], way)
+        axis = before[:, :3, 2]
+        columns: list[tuple[Floats, Floats, Floats]] = []
+        if joint.kind in "RCH":
+            columns.append(
+                (
+                    np.arctan2(turn[:, 1, 0], turn[:, 0, 0]),
+                    _dot(bodies.spin[:, i] - spin, axis),
+                    _dot(bodies.spin_rate[:, i] - spin_rate, axis)
+                    + _dot(bodies.spin[:, i] - spin, np.cross(spin, axis)),
+                )
+            )
+        if joint.kind in "PC":
+            apart = bodies.velocity[:, i] - motion[0]
+            columns.append(
+                (
+                    local[:, 2],
+                    _dot(apart, axis) + _dot(way, np.cross(spin, axis)),
+                    _slide_acceleration(bodies, i, way, axis, motion, spin, spin_rate),
+                )
+            )
+        if joint.kind == "U":
+            columns += _universal(joint, turn, before, bodies, i, spin, spin_rate)
+        if joint.kind == "S":
+            nothing = np.full(rows, np.nan)
+            columns += [(value, nothing, nothing) for value in _ball(turn)]
+        parts += columns
+        gap, tilt = _apart(joint, turn, local, columns[0][0])
+        gaps.append(gap)
+        tilts.append(tilt)
+    turns = np.array([kind == "turn" for kind in linkage.column_kinds])
+    q = np.stack([part[0] for part in parts], axis=1)
+    q[:, turns] = np.unwrap(q[:, turns], axis=0)
+    return JointValues(
+        q,
+        np.stack([part[1] for part in parts], axis=1),
+        np.stack([part[2] for part in parts], axis=1),
+        np.stack(gaps, axis=1),
+        np.stack(tilts, axis=1),
+    )
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    return np.asarray(np.einsum("ni,ni->n", a, b))
+
+
+def _slide_acceleration(
+    bodies: Bodies,
+    i: int,
+    way: Floats,
+    axis: Floats,
+    motion: tuple[Floats, Floats],
+    spin: Floats,
+    spin_rate: Floats,
+) -> Floats:
+    """The second derivative of `way . axis`, the axis carried by the body before."""
+    turning = np.cross(spin, axis)
+    return (
+        _dot(bodies.acceleration[:, i] - motion[1], axis)
+        + 2 * _dot(bodies.velocity[:, i] - motion[0], turning)
+        + _dot(way, np.cross(spin_rate, axis) + np.cross(spin, turning))
+    )
+
+
+def _universal(
+    joint: Joint, turn: Floats, before: Floats, bodies: Bodies, i: int, spin: Floats, spin_rate: Floats
+) -> list[tuple[Floats, Floats, Floats]]:
+    """Both turns of a universal joint: z of the frame before, then z of the frame after."""
+    c, s = math.cos(joint.angle), math.sin(joint.angle)
+    # Rz(a) Rx(angle) Rz(b): its last column and its last row tell a and b where s is not zero
+    first = np.arctan2(turn[:, 0, 2] / s, -turn[:, 1, 2] / s)
+    second = np.arctan2(turn[:, 2, 0] / s, turn[:, 2, 1] / s)
+    near, far = before[:, :3, 2], bodies.frames[:, i, :3, 2]
+    apart = bodies.spin[:, i] - spin
+
+    def along(vector: Floats) -> tuple[Floats, Floats]:
+        """The shares x, y of a vector x near + y far (+ what is across both)."""
+        one, other = _dot(vector, near), _dot(vector, far)
+        return (one - c * other) / s**2, (other - c * one) / s**2
+
+    rates = along(apart)
+    rest = (
+        bodies.spin_rate[:, i]
+        - spin_rate
+        - rates[0][:, None] * np.cross(spin, near)
+        - rates[1][:, None] * np.cross(bodies.spin[:, i], far)
+    )
+    seconds = along(rest)
+    return [(first, rates[0], seconds[0]), (second, rates[1], seconds[1])]
+
+
+def _ball(turn: Floats) -> list[Floats]:
+    """The turns about z, then y, then x that make a rotation (n, 3, 3)."""
+    return [
+        np.arctan2(turn[:, 1, 0], turn[:, 0, 0]),
+        np.arctan2(-turn[:, 2, 0], np.hypot(turn[:, 0, 0], turn[:, 1, 0])),
+        np.arctan2(turn[:, 2, 1], turn[:, 2, 2]),
+    ]
+
+
+def _apart(joint: Joint, turn: Floats, local: Floats, angle: Floats) -> tuple[Floats, Floats]:
+    """How far apart the sides of a joint stand, and how far askew, in what the joint holds."""
+    across = np.hypot(local[:, 0], local[:, 1])
+    askew = np.hypot(turn[:, 0, 2], turn[:, 1, 2])
+    whole = np.linalg.norm(local, axis=1)
+    match joint.kind:
+        case "R":
+            return whole, askew
+        case "P":
+            odd = 0.5 * (turn - np.swapaxes(turn, 1, 2))
+            return across, np.linalg.norm(odd[:, [2, 0, 1], [1, 2, 0]], axis=1)
+        case "C":
+            return across, askew
+        case "H":
+            # up to whole turns, which the axial place tells
+            advance = joint.pitch / math.tau
+            turns = np.round((local[:, 2] / advance - angle) / math.tau) if advance else 0.0
+            slip = local[:, 2] - advance * (angle + math.tau * turns)
+            return np.hypot(across, slip), askew
+        case "U":
+            return whole, np.abs(turn[:, 2, 2] - math.cos(joint.angle)) / math.sin(joint.angle)
+        case _:
+            return whole, np.zeros(len(local))

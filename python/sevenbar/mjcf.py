@@ -1,0 +1,305 @@
+"""A prototype as MJCF, the XML of MuJoCo: a tree of bodies from the ground, the loop closed by equalities.
+
+    model = prototype(linkage, circuit, row=0, speed=motion.speed)
+    xml = mjcf(model)
+
+Lengths are in metres. A joint's coordinate is Sevenbar's column of it, also where the tree goes through the
+joint backwards. The key frame `start` holds the pose and the velocities of the prototype: gravity is off and
+the driven joint carries a flywheel, so it runs on at its speed without an actuator.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+import numpy as np
+
+from sevenbar.linkage import inverse
+from sevenbar.motion import Floats
+from sevenbar.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
+from sevenbar.units import LENGTHS
+
+#: Mass of every body [kg]. The motion that the drive prescribes does not depend on it.
+MASS = 1.0
+
+#: Least radius of gyration [m]: below, MuJoCo takes a body for none at all.
+LEAST_GYRATION = 0.01
+
+#: The flywheel's inertia, in those of a body: constraints change its speed by about the inverse of this.
+FLYWHEEL = 1e10
+
+#: Constraints come back with this time constant, in time steps: MuJoCo's least, below which it is unstable.
+TIME_CONSTANT = 2.0
+
+#: How much of a constraint's error MuJoCo answers for: its greatest, so that the loop is as hard as can be.
+IMPEDANCE = 0.9999
+
+#: Radius of the drawn bars, as a part of the linkage's size.
+BAR = 0.008
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Where the loop is cut: the joint's number, and whether a weld beyond the last joint closes it."""
+
+    connection: int
+    weld: bool
+
+
+def cut(model: Prototype) -> Cut:
+    """At the far ball of a link between two, else at the first ball, else beyond the last joint."""
+    balls = [number for number, joint in enumerate(model.connections) if joint.kind == "S"]
+    held = {rule.after for rule in model.spin_rules}
+    far = [number for number in balls if model.connections[number].before in held]
+    chosen = (far or balls)[:1]
+    return Cut(chosen[0], False) if chosen else Cut(len(model.connections) - 1, True)
+
+
+@dataclass
+class _State:
+    """Joint coordinates and velocities of the start, in the order of MuJoCo."""
+
+    qpos: list[float] = field(default_factory=list)
+    qvel: list[float] = field(default_factory=list)
+
+
+def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
+    """The MJCF of a prototype: a text that MuJoCo loads.
+
+    Bodies are `link_1` .. and the crosses of universal joints; joints are named as Sevenbar's columns, a
+    ball by its own name, the slide of a screw `<joint>.slide`. `loop` is the equality that closes the loop
+    between two sites, `time_step` [s] also sets how fast it comes back.
+    """
+    metre = LENGTHS[model.length_unit]
+    root = Element("mujoco", model=model.name)
+    root.append(ElementTree.Comment(" made by Sevenbar; lengths in metres, angles in radians "))
+    _add(root, "compiler", angle="radian", autolimits="true")
+    _add(
+        root,
+        "option",
+        timestep=f"{time_step:.17g}",
+        gravity="0 0 0",
+        integrator="Euler",
+        solver="Newton",
+        iterations="100",
+        tolerance="0",
+    )
+    extent = max(model.size * metre / 3, 1e-9)
+    _add(root, "statistic", extent=f"{extent:.6g}", center=_numbers(_middle(model) * metre))
+    default = _add(root, "default")
+    bar = {"contype": "0", "conaffinity": "0", "mass": "0", "rgba": "0.35 0.5 0.7 1"}
+    _add(default, "geom", **bar)
+    _add(
+        default,
+        "equality",
+        solref=f"{TIME_CONSTANT * time_step:.17g} 1",
+        solimp=f"{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2",
+    )
+    world = _add(root, "worldbody")
+    _add(world, "light", pos=_numbers([0, 0, 3 * extent]), dir="0 0 -1", directional="true")
+    equality = _add(root, "equality")
+    state = _State()
+    tree = _Tree(model, metre, equality, state)
+    where = cut(model)
+    forward = model.connections[: where.connection + where.weld]
+    backward = model.connections[where.connection + 1 :]
+    tree.elements[GROUND] = parent = world
+    for number, joint in enumerate(forward):
+        parent = tree.add_forward(parent, joint, number)
+    parent = world
+    for joint in reversed(backward):
+        parent = tree.add_backward(parent, joint, model.connections.index(joint))
+    closing = model.connections[where.connection]
+    if where.weld:
+        tree.mark(world, "ground_side", closing.frame_after)
+        _add(
+            equality,
+            "weld",
+            name="loop",
+            site1="ground_side",
+            site2="loop_end",
+            torquescale=f"{_gyration(model, metre):.17g}",
+        )
+    else:
+        tree.mark(tree.elements[closing.before], f"{closing.name}_before", closing.frame_before)
+        tree.mark(tree.elements[closing.after], f"{closing.name}_after", closing.frame_after)
+        _add(
+            equality,
+            "connect",
+            name="loop",
+            site1=f"{closing.name}_before",
+            site2=f"{closing.name}_after",
+        )
+    frames = _add(root, "keyframe")
+    _add(frames, "key", name="start", qpos=_numbers(state.qpos), qvel=_numbers(state.qvel))
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+class _Tree:
+    """The tree of bodies as it grows: `elements` holds the XML element of each body placed so far."""
+
+    def __init__(self, model: Prototype, metre: float, equality: Element, state: _State) -> None:
+        self._model, self._metre, self._equality, self._state = model, metre, equality, state
+        self.elements: dict[int, Element] = {}
+        self._rules = {rule.after: rule for rule in model.spin_rules}
+
+    def add_forward(self, parent: Element, joint: Connection, number: int) -> Element:
+        """Adds the body after a joint; past the last one a bare body that the ground's frame is welded to."""
+        if joint.after == GROUND:
+            body = self._add_body(parent, "loop_end_body", joint.frame_before, GROUND)
+            self._add_freedoms(body, joint, number, np.eye(4), 1.0)
+            self.mark(body, "loop_end", np.eye(4))
+            return body
+        name = self._model.bodies[joint.after].name
+        rule = self._rules.get(joint.after)
+        if rule is not None:
+            return self._add_held_ball(parent, joint, rule)
+        body = self._add_body(parent, name, joint.frame_before @ inverse(joint.frame_after), joint.after)
+        self._add_freedoms(body, joint, number, joint.frame_after, 1.0)
+        return body
+
+    def add_backward(self, parent: Element, joint: Connection, number: int) -> Element:
+        """Adds the body before a joint, from the one after it: what is read of the joint stays the same."""
+        name = self._model.bodies[joint.before].name
+        body = self._add_body(parent, name, joint.frame_after @ inverse(joint.frame_before), joint.before)
+        self._add_freedoms(body, joint, number, joint.frame_before, -1.0)
+        return body
+
+    def _add_body(self, parent: Element, name: str, frame: Floats, number: int) -> Element:
+        body = _add(parent, "body", name=name, **self._place(frame))
+        inertia = MASS * _gyration(self._model, self._metre) ** 2
+        _add(body, "inertial", pos="0 0 0", mass=f"{MASS:.17g}", diaginertia=_numbers([inertia] * 3))
+        if number != GROUND:
+            self.elements[number] = body
+            self._add_bar(body, number)
+        return body
+
+    def _add_bar(self, body: Element, number: int) -> None:
+        """A bar between the two joints of a body, for the eye."""
+        ends = [joint.frame_after[:3, 3] for joint in self._model.connections if joint.after == number]
+        ends += [joint.frame_before[:3, 3] for joint in self._model.connections if joint.before == number]
+        radius = f"{BAR * self._model.size * self._metre:.6g}"
+        first, second = (end * self._metre for end in ends)
+        if np.linalg.norm(second - first) > BAR * self._model.size * self._metre:
+            line = _numbers([*first, *second])
+            _add(body, "geom", type="capsule", size=radius, fromto=line)
+        else:
+            _add(body, "geom", type="sphere", size=radius, pos=_numbers(first))
+
+    def _add_freedoms(self, body: Element, joint: Connection, number: int, frame: Floats, way: float) -> None:
+        """The joints of MuJoCo that make up one of ours, at `frame` of the body, and their start."""
+        turn, slide = self._model.values[number]
+        turn_rate, slide_rate = self._model.rates[number]
+        turn_name, slide_name = {
+            "C": (f"{joint.name}.1", f"{joint.name}.2"),
+            "H": (joint.name, f"{joint.name}.slide"),
+        }.get(joint.kind, (joint.name, joint.name))
+        place = {"pos": _numbers(frame[:3, 3] * self._metre)}
+        axis = {"axis": _numbers(way * frame[:3, 2])}
+        if joint.kind in "PCH":
+            wheel = self._flywheel(number, 2)
+            _add(body, "joint", name=slide_name, type="slide", **axis, **wheel)
+            value = turn * joint.advance if joint.kind == "H" else slide
+            rate = turn_rate * joint.advance if joint.kind == "H" else slide_rate
+            self._state.qpos.append(value * self._metre)
+            self._state.qvel.append(rate * self._metre)
+        if joint.kind in "RCH":
+            wheel = self._flywheel(number, 5)
+            _add(body, "joint", name=turn_name, type="hinge", **place, **axis, **wheel)
+            self._state.qpos.append(turn)
+            self._state.qvel.append(turn_rate)
+        if joint.kind == "H":
+            _add(
+                self._equality,
+                "joint",
+                name=f"{joint.name}_screw",
+                joint1=slide_name,
+                joint2=turn_name,
+                polycoef=_numbers([0, joint.advance * self._metre, 0, 0, 0]),
+            )
+        if joint.kind == "S":
+            _add(body, "joint", name=joint.name, type="ball", **place)
+            before, after = self._model.frames(number)
+            # of the body against its parent, at the start and where the two frames of the joint agree
+            fixed, moved = (before, after) if way > 0 else (after, before)
+            turn_matrix = frame[:3, :3] @ fixed[:3, :3].T @ moved[:3, :3] @ frame[:3, :3].T
+            self._state.qpos += list(_quaternion(turn_matrix))
+            own, other = (joint.after, joint.before) if way > 0 else (joint.before, joint.after)
+            rotation = self._model.placed(own)[:3, :3]
+            self._state.qvel += list(rotation.T @ (self._spin(own) - self._spin(other)))
+
+    def _add_held_ball(self, parent: Element, joint: Connection, rule: SpinRule) -> Element:
+        """A ball whose link's idle spin is held: two hinges, about the two directions that stay square."""
+        model = self._model
+        above, own = model.placed(joint.before), model.bodies[joint.after].frame
+        body = self._add_body(parent, model.bodies[joint.after].name, inverse(above) @ own, joint.after)
+        place = _numbers(joint.frame_after[:3, 3] * self._metre)
+        first = own[:3, :3].T @ above[:3, :3] @ rule.axis_before
+        for end, axis in (("1", first), ("2", rule.axis_after)):
+            _add(body, "joint", name=f"{joint.name}.{end}", type="hinge", pos=place, axis=_numbers(axis))
+        spin = own[:3, :3].T @ (self._spin(joint.after) - self._spin(joint.before))
+        self._state.qpos += [0.0, 0.0]
+        self._state.qvel += [float(spin @ first), float(spin @ rule.axis_after)]
+        return body
+
+    def _spin(self, body: int) -> Floats:
+        return np.zeros(3) if body == GROUND else self._model.bodies[body].spin
+
+    def _flywheel(self, number: int, freedom: int) -> dict[str, str]:
+        """The inertia that keeps the driven joint at its speed."""
+        drive = self._model.drive
+        if number != drive.connection or freedom != drive.freedom:
+            return {}
+        inertia = MASS * (_gyration(self._model, self._metre) ** 2 if freedom == 5 else 1.0)
+        if self._model.connections[number].kind == "H":
+            inertia = max(inertia, MASS * (self._model.connections[number].advance * self._metre) ** 2)
+        return {"armature": f"{FLYWHEEL * inertia:.17g}"}
+
+    def mark(self, element: Element, name: str, frame: Floats) -> None:
+        """A site at a frame of a body, or of the ground."""
+        size = f"{BAR * self._model.size * self._metre:.6g}"
+        _add(element, "site", name=name, size=size, **self._place(frame))
+
+    def _place(self, frame: Floats) -> dict[str, str]:
+        return {
+            "pos": _numbers(frame[:3, 3] * self._metre),
+            "quat": _numbers(_quaternion(frame[:3, :3])),
+        }
+
+
+def _add(parent: Element, tag: str, **attributes: str) -> Element:
+    return SubElement(parent, tag, attributes)
+
+
+def _gyration(model: Prototype, metre: float) -> float:
+    """The radius of gyration of every body [m]."""
+    return max(LEAST_GYRATION, GYRATION * model.size * metre)
+
+
+def _middle(model: Prototype) -> Floats:
+    places = np.array([model.frames(number)[0][:3, 3] for number in range(len(model.connections))])
+    return np.asarray((places.min(axis=0) + places.max(axis=0)) / 2)
+
+
+def _numbers(values: object) -> str:
+    # a zero without its sign
+    return " ".join(f"{float(value) + 0.0:.17g}" for value in np.asarray(values, dtype=float).reshape(-1))
+
+
+def _quaternion(rotation: Floats) -> Floats:
+    """The quaternion (w, x, y, z) of a rotation matrix, from the eigenvector that is best conditioned."""
+    r = rotation
+    # the symmetric matrix whose greatest eigenvalue's vector is the quaternion
+    matrix = np.array(
+        [
+            [r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
+            [r[2, 1] - r[1, 2], r[0, 0] - r[1, 1] - r[2, 2], r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
+            [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], r[1, 1] - r[0, 0] - r[2, 2], r[1, 2] + r[2, 1]],
+            [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], r[2, 2] - r[0, 0] - r[1, 1]],
+        ]
+    )
+    vector: Floats = np.linalg.eigh(matrix)[1][:, -1]
+    return vector if vector[0] >= 0 else -vector

@@ -1,0 +1,102 @@
+"""The linkage as a virtual prototype: built and moved by another program, beside what Sevenbar says.
+
+    run = simulate(sb.load("rssr"), "exudyn")
+    print(run.difference("rocker angle").greatest)
+
+The engine is given rigid bodies, joints and a drive, and the pose and velocities to start with; nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from sevenbar import exudyn_engine, mujoco_engine
+from sevenbar.agreement import Simulation, agreement
+from sevenbar.course import Course, course
+from sevenbar.engine import Progress, Record, imported
+from sevenbar.errors import RequestError, shown
+from sevenbar.linkage import Linkage
+from sevenbar.prototype import Prototype, prototype
+
+#: The engines by name.
+ENGINES: dict[str, Callable[..., Record]] = {"exudyn": exudyn_engine.run, "mujoco": mujoco_engine.run}
+
+#: Steps for a turn of the input where nothing is said, as in the paper's simulation.
+STEPS = 3600
+
+
+def simulate(
+    linkage: Linkage,
+    engine: str,
+    *,
+    steps: int = STEPS,
+    circuit: int = 0,
+    input: str | None = None,
+    output: str | None = None,
+    speed: float | str | None = None,
+    progress: Progress | None = None,
+) -> Simulation:
+    """Moves a linkage in an engine, "exudyn" or "mujoco", along one circuit, and compares.
+
+    The input turns at constant speed (the drive's where none is given) in `steps` steps a turn, each one a
+    row of Sevenbar's motion: until the circuit closes, or along one pass of an input with dead centres.
+    Raises `RequestError` for what cannot be simulated, `MissingExtraError` where the engine is not installed
+    and `EngineError` where the engine loses the motion.
+    """
+    ready(engine)
+    way, model = prepared(linkage, steps=steps, circuit=circuit, input=input, output=output, speed=speed)
+    return moved(way, model, engine, progress)
+
+
+def prepared(
+    linkage: Linkage,
+    *,
+    steps: int = STEPS,
+    circuit: int = 0,
+    input: str | None = None,
+    output: str | None = None,
+    speed: float | str | None = None,
+) -> tuple[Course, Prototype]:
+    """What an engine will be asked for, and the prototype it is given; raises as `simulate` does."""
+    motion = linkage.motion(steps, input=input, output=output, speed=speed)
+    way = course(motion, circuit)
+    return way, prototype(linkage, way.circuit, way.start, motion.speed)
+
+
+def ready(engine: str) -> None:
+    """Nothing where the engine is known and installed; else `RequestError` or `MissingExtraError`."""
+    if engine not in ENGINES:
+        raise RequestError(f"engine: {shown(engine)} is not an engine; give {' or '.join(ENGINES)}")
+    imported(engine)
+
+
+def moved(way: Course, model: Prototype, engine: str, progress: Progress | None = None) -> Simulation:
+    """A prototype moved along a course by an engine."""
+    record = ENGINES[engine](model, way.steps, way.step, progress=progress)
+    return agreement(way, model, record)
+
+
+def as_dict(run: Simulation) -> dict[str, Any]:
+    """What a run comes to, as plain values: angles in radians, lengths in the linkage's unit."""
+    way = run.course
+    return {
+        "format": 1,
+        "linkage": {"name": run.linkage.name, "kind": run.linkage.kind},
+        "units": {"length": run.linkage.length_unit, "angle": "rad", "time": "s"},
+        "engine": {"name": run.record.engine, "version": run.record.version, "notes": list(run.record.notes)},
+        "drive": {"input": way.motion.input, "output": way.motion.output, "speed": way.motion.speed},
+        "course": {
+            "circuit": way.circuit.index,
+            "closes": way.closes,
+            "rows": len(way.rows),
+            "lead": len(way.lead),
+            "step": way.step,
+        },
+        "differences": [
+            {key: None if value != value else value for key, value in vars(found).items()}
+            for found in run.differences
+        ],
+        "closure_error": {"length": run.gap, "angle": run.tilt},
+        "returned": None if run.returned is None else {"length": run.returned[0], "angle": run.returned[1]},
+    }
