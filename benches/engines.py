@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import sevenbar as sb
-from sevenbar.agreement import Simulation
 from sevenbar.gallery import names
-from sevenbar.simulate import ENGINES, simulate
+from sevenbar.simulation.agreement import Simulation
+from sevenbar.simulation.run import ENGINES, simulate
 
 #: Steps a turn whose errors are set beside each other.
 STEPS = (1800, 3600, 7200)

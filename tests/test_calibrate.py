@@ -14,10 +14,10 @@ import sevenbar as sb
 from random_linkages import Dimensions
 from random_loops import general
 from reference_loops import Loop
-from sevenbar.calibrate import calibrate
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError
-from sevenbar.measured import Measured
-from sevenbar.rewrite import calibrated_toml
+from sevenbar.measuring.calibrate import calibrate
+from sevenbar.measuring.measured import Measured
+from sevenbar.measuring.rewrite import calibrated_toml
 
 PAPER = Dimensions(700.0, 700.0, 250.0, 550.0, 0.0, math.sqrt(450**2 + 550**2 + 700**2))
 

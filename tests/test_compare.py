@@ -13,10 +13,10 @@ from scipy.optimize import minimize_scalar
 import reference_rssr
 import sevenbar as sb
 from random_linkages import Dimensions
-from sevenbar.compare import compare, ends_of
 from sevenbar.errors import RequestError
-from sevenbar.extremes import Extent, compare_extremes
-from sevenbar.measured import Measured, MeasuredExtremes
+from sevenbar.measuring.compare import compare, ends_of
+from sevenbar.measuring.extremes import Extent, compare_extremes
+from sevenbar.measuring.measured import Measured, MeasuredExtremes
 
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
 QUANTITIES = ("angle", "velocity", "acceleration")

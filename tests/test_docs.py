@@ -17,7 +17,10 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 @pytest.mark.parametrize(
     "name",
-    ["calibrate", "compare", "errors", "files", "forms", "gallery", "linkage", "mobility", "motion", "schema", "units"],
+    [
+        *("measuring.calibrate", "measuring.compare", "errors", "files", "forms"),
+        *("gallery", "linkage", "mobility", "motion", "schema", "units"),
+    ],
 )
 def test_docstring_examples_give_what_they_show(name):
     assert doctest.testmod(importlib.import_module(f"sevenbar.{name}")).failed == 0

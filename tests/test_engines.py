@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.agreement import agreement
 from sevenbar.errors import EngineError
-from sevenbar.exudyn_screw import ScrewConstraint
 from sevenbar.gallery import names
-from sevenbar.prototype import GROUND, Connection, prototype
-from sevenbar.simulate import ENGINES, moved, prepared, simulate
+from sevenbar.simulation.agreement import agreement
+from sevenbar.simulation.exudyn_screw import ScrewConstraint
+from sevenbar.simulation.prototype import GROUND, Connection, prototype
+from sevenbar.simulation.run import ENGINES, moved, prepared, simulate
 
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
 

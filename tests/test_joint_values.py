@@ -5,7 +5,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.gallery import names
-from sevenbar.joint_values import Bodies, joint_values
+from sevenbar.simulation.joint_values import Bodies, joint_values
 from sevenbar.skeleton import frames_of
 
 #: Joints of every kind one after another; the loop need not close, for nothing here closes it.

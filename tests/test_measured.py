@@ -5,7 +5,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.errors import MeasurementError, RequestError
-from sevenbar.measured import Ends, Measured, MeasuredExtremes, pairs, read_measured
+from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes, pairs, read_measured
 from sevenbar.units import measured_unit
 
 ENDS = Ends("crank", "rocker")

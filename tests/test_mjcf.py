@@ -8,9 +8,9 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.gallery import names
-from sevenbar.mjcf import mjcf
-from sevenbar.prototype import prototype
-from sevenbar.simulate import prepared
+from sevenbar.simulation.mjcf import mjcf
+from sevenbar.simulation.prototype import prototype
+from sevenbar.simulation.run import prepared
 
 
 def loaded(name, row=5, time_step=1e-3):

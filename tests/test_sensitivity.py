@@ -15,7 +15,7 @@ from random_linkages import Dimensions
 from random_loops import general, prismatic
 from reference_loops import Loop
 from sevenbar.errors import NotCoveredError
-from sevenbar.sensitivity import RowsClosure, closure_of, followed, response
+from sevenbar.measuring.sensitivity import RowsClosure, closure_of, followed, response
 
 #: Change of a dimension in the differences in many digits; their error is its square.
 STEP = mp.mpf(10) ** -9

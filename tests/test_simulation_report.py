@@ -12,11 +12,11 @@ import pytest
 from matplotlib.figure import Figure
 
 import sevenbar as sb
-from sevenbar import simulation_report
 from sevenbar.errors import NotCoveredError, OutputError, RequestError
 from sevenbar.gallery import names
-from sevenbar.simulate import simulate
-from sevenbar.simulation_figures import figures, joints_figure, output_figure, points_figure
+from sevenbar.simulation import report as simulation_report
+from sevenbar.simulation.figures import figures, joints_figure, output_figure, points_figure
+from sevenbar.simulation.run import simulate
 
 
 def sevenbar(*arguments, cwd=None, before=""):

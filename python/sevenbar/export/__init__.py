@@ -104,6 +104,12 @@ def _urdf(assembly: Assembly, path: Path) -> None:
     urdf.write_urdf(assembly, path)
 
 
+def _mjcf(assembly: Assembly, path: Path) -> None:
+    from sevenbar.export import model
+
+    model.write_mjcf(assembly, path)
+
+
 def _cmd(assembly: Assembly, path: Path) -> None:
     from sevenbar.export import adams
 
@@ -121,6 +127,7 @@ FORMATS: dict[str, Format] = {
     "stl": Bodies((".stl",), _stl),
     "step": Bodies((".step", ".stp"), _step),
     "urdf": Bodies((".urdf",), _urdf),
+    "mjcf": Bodies((".xml", ".mjcf"), _mjcf),
     "cmd": Bodies((".cmd",), _cmd),
 }
 

@@ -88,8 +88,7 @@ def write_mat(motion: Motion, path: Path, units: Units) -> None:
         "columns": _cells(np.array(motion.linkage.columns)),
         "circuits": circuits,
     }
-    with path.open("wb") as file:
-        savemat(file, content, do_compression=True)
+    savemat(str(path), content, appendmat=False, do_compression=True)
 
 
 def write_json(motion: Motion, path: Path, units: Units) -> None:

@@ -24,6 +24,9 @@ pub(super) const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
 /// A row nearer than this part of a grid step to a dead centre is that dead centre's.
 const SAME_ROW: f64 = 1e-9;
 
+/// An input of a law nearer than this to a dead centre's is that dead centre's.
+const SAME_LIMIT: f64 = 1e-12;
+
 /// A correction [rad, or parts of the size] after which the next is rounding.
 const SETTLED: f64 = 1e-7;
 
@@ -454,6 +457,15 @@ impl<'a> Passes<'a> {
                 } else {
                     q[0]
                 };
+                let ends = [(pass.from, pass.start), (pass.to, pass.end)];
+                let limit = ends.iter().find(|(node, end)| {
+                    let still = self.curve.nodes[*node].rates[0][self.input].abs() < STILL;
+                    still && (value - end).abs() < SAME_LIMIT
+                });
+                if let Some((node, _)) = limit {
+                    rows.push(self.limit_row(n, &self.curve.nodes[*node]));
+                    continue;
+                }
                 let row = (value >= low && value <= high)
                     .then(|| self.row(n, value, &[q[1], q[2], q[3]]))
                     .flatten();

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.engine import Progress, Record, imported
 from sevenbar.errors import EngineError
-from sevenbar.exudyn_screw import ScrewConstraint
 from sevenbar.linkage import pose
 from sevenbar.motion import Floats
-from sevenbar.prototype import FREEDOMS, GROUND, GYRATION, Body, Connection, Prototype, SpinRule
+from sevenbar.simulation.engine import Progress, Record, imported
+from sevenbar.simulation.exudyn_screw import ScrewConstraint
+from sevenbar.simulation.prototype import FREEDOMS, GROUND, GYRATION, Body, Connection, Prototype, SpinRule
 
 #: Numerical damping of the generalized-alpha method, which needs less than 1 for constraints on positions;
 #: an error of the accelerations at the start shrinks by about this factor a step.

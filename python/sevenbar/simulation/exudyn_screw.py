@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.linkage import pose
 from sevenbar.motion import Floats
-from sevenbar.prototype import GROUND, Connection
+from sevenbar.simulation.prototype import GROUND, Connection
 
 
 class ScrewConstraint:

@@ -15,13 +15,13 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from sevenbar.beside import calibration_figure, comparison_figure, turns, word
-from sevenbar.calibrate import Calibration, Parameter
-from sevenbar.compare import Comparison
-from sevenbar.extremes import Extent, ExtremesComparison
 from sevenbar.figure import save
 from sevenbar.folder import fill_folder
-from sevenbar.measured import Ends
+from sevenbar.measuring.calibrate import Calibration, Parameter
+from sevenbar.measuring.compare import Comparison
+from sevenbar.measuring.extremes import Extent, ExtremesComparison
+from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns, word
+from sevenbar.measuring.measured import Ends
 from sevenbar.report import without_nan
 
 #: Candidates and notes are told in full in the JSON; of candidates the page has as many.

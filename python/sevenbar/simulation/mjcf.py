@@ -18,7 +18,7 @@ import numpy as np
 
 from sevenbar.linkage import inverse
 from sevenbar.motion import Floats
-from sevenbar.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
+from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
 from sevenbar.units import LENGTHS
 
 #: Mass of every body [kg]. The motion that the drive prescribes does not depend on it.

@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from sevenbar.calibrate import Calibration
-from sevenbar.compare import Comparison
 from sevenbar.figure import STYLE, new_figure
-from sevenbar.measured import Ends
+from sevenbar.measuring.calibrate import Calibration
+from sevenbar.measuring.compare import Comparison
+from sevenbar.measuring.measured import Ends
 from sevenbar.motion import Floats
 from sevenbar.skeleton import short
 

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.extremes import Extent
 from sevenbar.linkage import Linkage
-from sevenbar.measured import OUTPUTS, Ends, Measured
+from sevenbar.measuring.extremes import Extent
+from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.motion import Floats, Law
 from sevenbar.units import sliding_speed, turning_speed
 

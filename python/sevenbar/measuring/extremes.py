@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from sevenbar.errors import RequestError
 from sevenbar.linkage import Linkage
-from sevenbar.measured import Ends, MeasuredExtremes
+from sevenbar.measuring.measured import Ends, MeasuredExtremes
 from sevenbar.motion import Circuit
 
 #: Below this share of the range a lowest or highest value has no per cent worth printing.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from sevenbar.engine import Progress, Record, imported
 from sevenbar.errors import EngineError
-from sevenbar.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
-from sevenbar.prototype import Prototype
+from sevenbar.simulation.engine import Progress, Record, imported
+from sevenbar.simulation.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
+from sevenbar.simulation.prototype import Prototype
 from sevenbar.units import LENGTHS
 
 #: Linkages below this size [m] have forces and inertias that MuJoCo takes for none.

@@ -17,10 +17,10 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from sevenbar.agreement import Difference, Simulation
 from sevenbar.errors import OutputError
 from sevenbar.folder import fill_folder
-from sevenbar.simulate import as_dict
+from sevenbar.simulation.agreement import Difference, Simulation
+from sevenbar.simulation.run import as_dict
 from sevenbar.skeleton import short
 
 #: The names of figures that a run may have.
@@ -122,8 +122,8 @@ def write(
     Raises `OutputError` where one of them exists and `force` is not given.
     """
     from sevenbar.figure import save
-    from sevenbar.mjcf import mjcf
-    from sevenbar.simulation_figures import figures as drawn
+    from sevenbar.simulation.figures import figures as drawn
+    from sevenbar.simulation.mjcf import mjcf
 
     engine = run.record.engine.lower()
     if not force:

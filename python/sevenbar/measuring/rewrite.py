@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from sevenbar.calibrate import Calibration, Parameter
 from sevenbar.errors import MissingExtraError
 from sevenbar.files import loads
+from sevenbar.measuring.calibrate import Calibration, Parameter
 from sevenbar.units import ANGLES
 
 

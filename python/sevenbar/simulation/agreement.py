@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.course import Course
-from sevenbar.engine import Record
-from sevenbar.joint_values import Bodies, JointValues, joint_values
 from sevenbar.linkage import Linkage
 from sevenbar.motion import Floats
-from sevenbar.prototype import Prototype
+from sevenbar.simulation.course import Course
+from sevenbar.simulation.engine import Record
+from sevenbar.simulation.joint_values import Bodies, JointValues, joint_values
+from sevenbar.simulation.prototype import Prototype
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from sevenbar import exudyn_engine, mujoco_engine
-from sevenbar.agreement import Simulation, agreement
-from sevenbar.course import Course, course
-from sevenbar.engine import Progress, Record, imported
 from sevenbar.errors import RequestError, shown
 from sevenbar.linkage import Linkage
-from sevenbar.prototype import Prototype, prototype
+from sevenbar.simulation import exudyn_engine, mujoco_engine
+from sevenbar.simulation.agreement import Simulation, agreement
+from sevenbar.simulation.course import Course, course
+from sevenbar.simulation.engine import Progress, Record, imported
+from sevenbar.simulation.prototype import Prototype, prototype
 
 #: The engines by name.
 ENGINES: dict[str, Callable[..., Record]] = {"exudyn": exudyn_engine.run, "mujoco": mujoco_engine.run}

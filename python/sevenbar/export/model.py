@@ -1,0 +1,34 @@
+"""MJCF: the linkage as MuJoCo opens and runs it, the loop closed by equality constraints."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from sevenbar.errors import RequestError
+from sevenbar.export.parts import Assembly
+from sevenbar.motion import Law
+from sevenbar.simulation.mjcf import mjcf
+from sevenbar.simulation.prototype import prototype
+
+
+def write_mjcf(assembly: Assembly, path: Path) -> None:
+    """The bodies as rods with masses, started in the pose with the velocities of its motion.
+
+    Raises `RequestError` at a dead centre of the input, where velocities have no bound.
+    """
+    pose, motion = assembly.pose, assembly.pose.motion
+    linkage = pose.linkage
+    speed = linkage.drive.speed if math.isnan(motion.speed) else motion.speed
+    # rows of just this input, one for each pass of the circuit
+    law = Law.of([0.0], [pose.input], [speed], [0.0])
+    circuit = linkage.circuit(pose.q, input=motion.input, output=motion.output, law=law)
+    usable = np.flatnonzero(circuit.status == "ok")
+    if not usable.size:
+        raise RequestError(
+            "at: the pose is a dead centre of the input, where joints move at no bounded speed; give another"
+        )
+    apart = np.abs(np.exp(1j * circuit.q[usable]) - np.exp(1j * pose.q)).max(axis=1)
+    path.write_text(mjcf(prototype(linkage, circuit, int(usable[apart.argmin()]), speed)), encoding="utf-8")

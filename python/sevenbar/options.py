@@ -1,0 +1,61 @@
+"""What the commands share: arguments and options, and how progress and written files are told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sevenbar.errors import RequestError, shown
+
+Source = Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")]
+Figures = Annotated[
+    list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
+InputJoint = Annotated[
+    str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
+]
+Speed = Annotated[str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")]
+
+
+def words(given: list[str]) -> list[str]:
+    """The words of an option that is repeated, or has several parted by commas; each once."""
+    parts = [part.strip() for word in given for part in word.split(",")]
+    return list(dict.fromkeys(part for part in parts if part))
+
+
+def figure_formats(given: list[str] | None) -> tuple[str, ...]:
+    """Endings of figures, png where none is given; raises `RequestError` for others."""
+    if given is None:
+        return ("png",)
+    from sevenbar.figure import FORMATS
+
+    endings = tuple(word.lower().removeprefix(".") for word in words(given))
+    for ending in endings:
+        if ending not in FORMATS:
+            raise RequestError(
+                f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(FORMATS)}"
+            )
+    return endings
+
+
+@contextmanager
+def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on the error stream, so that what is printed can be piped on."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task(title, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def tell_written(paths: Sequence[Path]) -> None:
+    """Names the files that were written, if any."""
+    if paths:
+        typer.echo("\nwritten: " + "\n         ".join(str(path) for path in paths))

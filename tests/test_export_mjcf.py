@@ -1,0 +1,60 @@
+"""The exported model as MuJoCo opens and runs it."""
+
+import mujoco
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from sevenbar.errors import RequestError
+from sevenbar.export import export
+from sevenbar.gallery import names
+
+
+def opened(path):
+    """MuJoCo's model and data at the file's start."""
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+def gap(data):
+    """Greatest error of the equalities that close the loop [m, rad]."""
+    return np.abs(data.efc_pos[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]).max()
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_model_starts_closed_in_the_pose_asked_for_and_runs(name, tmp_path):
+    motion = sb.load(name).motion(90)
+    circuit = motion.circuits[-1]
+    row = np.flatnonzero(circuit.status == "ok")[len(circuit.q) // 5]
+    (path,) = export(
+        motion,
+        "mjcf",
+        tmp_path / "model.xml",
+        circuit=circuit.index,
+        at=circuit.input[row],
+        branch=int(circuit.branch[row]),
+    )
+    model, data = opened(path)
+    assert gap(data) < 1e-9
+    metre = {"mm": 1e-3, "in": 0.0254}[motion.linkage.length_unit]
+    for column, kind in ((circuit.input_column, "input"), (circuit.output_column, "output")):
+        label = motion.linkage.columns[column]
+        scale = metre if motion.linkage.column_kinds[column] == "slide" else 1.0
+        found = data.qpos[model.joint(label).qposadr[0]] / scale
+        apart = found - circuit.q[row, column]
+        assert abs((apart + np.pi) % (2 * np.pi) - np.pi) < 1e-6, kind
+    before = data.qpos.copy()
+    for _ in range(20):
+        mujoco.mj_step(model, data)
+    assert np.abs(data.qpos - before).max() > 1e-6
+    assert gap(data) < 1e-3
+
+
+def test_a_dead_centre_has_no_velocities_to_start_with(tmp_path):
+    motion = sb.load("rsur").motion(36, input="cross.2")
+    with pytest.raises(RequestError, match="dead centre"):
+        export(motion, "mjcf", tmp_path / "model.xml", at=motion.circuits[0].dead_centres[0].input)
+    assert not list(tmp_path.iterdir())
