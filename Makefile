@@ -10,6 +10,8 @@ DIST ?= dist
 BIN := $(VENV)/bin
 # a stale Cargo.lock is mended on a desk and refused in CI
 LOCKED := $(if $(CI),--locked)
+# on all cores
+PYTEST = $(BIN)/pytest -n auto --dist worksteal
 # with the folders, so that a file taken away counts as a change
 RUST := Cargo.toml Cargo.lock $(shell find crates)
 # a build is due, too, where somebody removed the compiled core
@@ -32,15 +34,15 @@ demo: $(VENV)/.installed  ## Analyse the two papers' linkages; tables and figure
 
 .PHONY: check
 check: lint rust-test  ## The lints and the fast tests, for every change
-	$(BIN)/pytest -m "not slow and not proof"
+	$(PYTEST) -m "not slow and not proof"
 
 .PHONY: test
 test: $(VENV)/.installed-dev rust-test  ## Every test, the long proofs too
-	$(BIN)/pytest
+	$(PYTEST)
 
 .PHONY: proof
 proof: $(VENV)/.installed-dev  ## The longest: ten thousand random loops against a search, and the like
-	$(BIN)/pytest -m proof
+	$(PYTEST) -m proof
 
 # import-linter without its cache, which has passed for a module that was gone
 .PHONY: lint
