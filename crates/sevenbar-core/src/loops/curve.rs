@@ -27,9 +27,12 @@ use crate::vectors::Number;
 const LONGEST: f64 = 0.25;
 
 /// Change of the Newton map that steps aim at, that they must not exceed, and that bounds the tube in which a curve is alone.
-const AIMED: f64 = 0.33;
+const AIMED: f64 = 0.34;
 const CONTRACTING: f64 = 0.5;
 const ALONE: f64 = 0.9;
+
+/// Guesses of a step's length, each from the one before.
+const GUESSES: usize = 3;
 
 /// Corrections of a step with the inverse of the node before, each by so many terms of Neumann's series.
 const NEUMANN: usize = 3;
@@ -66,6 +69,18 @@ pub(super) struct Stand<N> {
     pub screws: [Twist<N>; COLUMNS],
     /// Of the screws with the tangent for the last row.
     pub inverse: Inverse<N>,
+}
+
+/// A step that was tried.
+#[derive(Clone, Copy)]
+pub(super) struct Step<N> {
+    pub next: Stand<N>,
+    /// Not negative where the argument allows the step.
+    pub allowed: N,
+    /// Radius within which the curve is alone.
+    pub tube: N,
+    /// The correction at its end by the fourth power of its length.
+    pub growth: N,
 }
 
 /// Why a curve ends.
@@ -304,13 +319,21 @@ impl Chain {
         (k, rest * square * square * s * N::splat(1.0 / 120.0))
     }
 
-    /// The length of a step that is likely to be allowed.
+    /// `k` of the argument with the radius that a closure error growing by `growth` times the fourth power asks for.
     #[inline(always)]
-    pub fn likely<N: Number>(&self, node: &Node<N>) -> N {
+    fn asked<N: Number>(&self, node: &Node<N>, s: N, growth: N) -> N {
+        let (k, rest) = self.change(node, s);
+        let error = (s * s * s * s * growth).plus_product(N::splat(2.0), rest);
+        k.plus_product(N::splat(2.0) * node.across, error)
+    }
+
+    /// The length of a step that is likely to be allowed, where the closure error grew like this on the last one.
+    #[inline(always)]
+    pub fn likely<N: Number>(&self, node: &Node<N>, growth: N) -> N {
         let aim = N::splat(AIMED);
         let mut s = (aim / node.slopes[0]).lesser(N::splat(LONGEST));
-        for _ in 0..2 {
-            s = s * (aim / self.change(node, s).0);
+        for _ in 0..GUESSES {
+            s = s * (aim / self.asked(node, s, growth)).sqrt();
         }
         s.lesser(N::splat(LONGEST))
     }
@@ -320,9 +343,9 @@ impl Chain {
         (ALONE - self.change(node, step.abs()).0) / node.across
     }
 
-    /// The stand a step farther along the curve, whether the argument allows the step, as a positive number, and the step's tube.
+    /// The stand a step farther along the curve, and what the argument says of the step.
     #[inline(always)]
-    pub fn step<N: Number>(&self, from: &Stand<N>, s: N) -> (Stand<N>, N, N) {
+    pub fn step<N: Number>(&self, from: &Stand<N>, s: N) -> Step<N> {
         let node = &from.node;
         let start = self.moved(&node.at, &self.predicted(node, s));
         let placed = self.place(&start);
@@ -332,12 +355,16 @@ impl Chain {
         let (d, _) = correction(&from.inverse, (&from.screws, &again), NEUMANN);
         let next = self.stand(&self.moved(&rough, &d), &node.rates[0]);
         let (k, rest) = self.change(node, s);
-        let radius = N::splat(2.0) * (length(&first) + N::splat(2.0) * rest);
-        let tube = (N::splat(ALONE) - k) / node.across;
-        let k = k.plus_product(node.across, radius);
+        let error = length(&first);
+        let radius = N::splat(2.0) * error.plus_product(N::splat(2.0), rest);
         let settled = N::splat(SETTLED) - length(&d);
         let close = placed.closing_cosine.lesser(settled);
-        (next, (N::splat(CONTRACTING) - k).lesser(close), tube)
+        Step {
+            next,
+            allowed: (N::splat(CONTRACTING) - k.plus_product(node.across, radius)).lesser(close),
+            tube: (N::splat(ALONE) - k) / node.across,
+            growth: error / (s * s * s * s),
+        }
     }
 
     /// The node a step ahead (or behind), for steps within a certified one.

@@ -97,11 +97,13 @@ impl LaneKernel for Walk<'_> {
         for lane in 0..LANES {
             self.record(walker[lane], split[lane]);
         }
-        let mut step = self.chain.likely(&here.node).store();
+        let mut growth = [0.0; LANES];
+        let mut step = self.chain.likely(&here.node, V::load(&growth)).store();
         while walker.iter().any(|&w| w < count) {
-            let (next, allowed, tube) = self.chain.step(&here, V::load(&step));
-            let (mut allowed, tube) = (allowed.store(), tube.store());
-            split = self.split(&next.node);
+            let tried = self.chain.step(&here, V::load(&step));
+            let (mut allowed, tube) = (tried.allowed.store(), tried.tube.store());
+            growth = tried.growth.store();
+            split = self.split(&tried.next.node);
             for lane in 0..LANES {
                 // not a number is no allowance either
                 if !(allowed[lane] >= 0.0 && split[lane].inverse_norm.is_finite()) {
@@ -116,7 +118,6 @@ impl LaneKernel for Walk<'_> {
                 let end = if allowed[lane] >= 0.0 {
                     self.stepped(walker[lane], (step[lane], tube[lane]), split[lane])
                 } else {
-                    step[lane] *= 0.5;
                     too_short(step[lane])
                 };
                 if let Some(end) = end {
@@ -127,7 +128,7 @@ impl LaneKernel for Walk<'_> {
                 }
             }
             let mask = V::load(&allowed);
-            here.replace(mask, &next, self.chain.ball_count());
+            here.replace(mask, &tried.next, self.chain.ball_count());
             if fresh.contains(&true) {
                 let begun = self.begun::<V>(&walker);
                 let mut mask = [-1.0; LANES];
@@ -138,11 +139,16 @@ impl LaneKernel for Walk<'_> {
                 }
                 here.replace(V::load(&mask), &begun, self.chain.ball_count());
             }
-            let likely = self.chain.likely(&here.node).store();
+            for lane in (0..LANES).filter(|&k| fresh[k]) {
+                growth[lane] = 0.0;
+            }
+            let likely = self.chain.likely(&here.node, V::load(&growth)).store();
             for lane in 0..LANES {
-                if allowed[lane] >= 0.0 || fresh[lane] {
-                    step[lane] = likely[lane];
-                }
+                step[lane] = if allowed[lane] >= 0.0 || fresh[lane] {
+                    likely[lane]
+                } else {
+                    shortened(step[lane], likely[lane])
+                };
             }
         }
     }
@@ -154,23 +160,33 @@ impl Kernel for Walk<'_> {
         let (at, before) = &self.starts[0];
         let mut here = self.chain.stand(at, before);
         self.record(0, here.node);
-        let mut step = self.chain.likely(&here.node);
+        let mut step = self.chain.likely(&here.node, 0.0);
         loop {
-            let (next, allowed, tube) = self.chain.step(&here, step);
-            let end = if allowed >= 0.0 && next.node.inverse_norm.is_finite() {
-                let end = self.stepped(0, (step, tube), next.node);
-                here = next;
-                step = self.chain.likely(&here.node);
-                end
+            let tried = self.chain.step(&here, step);
+            let allowed = tried.allowed >= 0.0 && tried.next.node.inverse_norm.is_finite();
+            let end = if allowed {
+                here = tried.next;
+                self.stepped(0, (step, tried.tube), here.node)
             } else {
-                step *= 0.5;
                 too_short(step)
             };
             if let Some(end) = end {
                 self.curves[0].end = end;
                 return;
             }
+            let likely = self.chain.likely(&here.node, tried.growth);
+            step = if allowed { likely } else { shortened(step, likely) };
         }
+    }
+}
+
+/// The step after one that was refused.
+fn shortened(step: f64, likely: f64) -> f64 {
+    // what is likely may be not a number
+    if likely < 0.5 * step && likely > 0.05 * step {
+        likely
+    } else {
+        0.5 * step
     }
 }
 
