@@ -19,7 +19,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
     "name",
     [
         *("measuring.calibrate", "measuring.compare", "errors", "files", "forms"),
-        *("gallery", "linkage", "mobility", "motion", "schema", "units"),
+        *("gallery", "linkage", "mobility", "motion", "schema", "table", "units"),
     ],
 )
 def test_docstring_examples_give_what_they_show(name):

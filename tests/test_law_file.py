@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.errors import DescriptionError, MissingExtraError, RequestError
+from sevenbar.errors import MissingExtraError, RequestError, TableError
 
 #: Sun and Zhou's linkage; its coupler is |A1 B1|.
 M, N, L1, L3 = 700, 700, 250, 550
@@ -132,6 +132,47 @@ def test_the_same_law_in_other_units_separators_and_order_is_the_same(tmp_path):
         assert getattr(two, name) == pytest.approx(values, rel=1e-12, abs=1e-9 * np.abs(values).max())
 
 
+def rows(form, columns):
+    return "".join(form.format(*row) for row in zip(*columns, strict=True))
+
+
+def comma(text):
+    return text.replace(".", ",")
+
+
+@pytest.mark.parametrize(
+    ("head", "form", "changed", "encoding"),
+    [
+        ("time [s];crank [deg]\n", "{:.12g};{:.17g}\n", comma, "utf-8"),
+        ("t\tWinkel [°]\r\n", "{:.12g}\t{:.17g}\r\n", comma, "cp1252"),
+        ("time [s],crank [deg]\n", "{:.12g},{:.17g}\n", str, "utf-16"),
+        ("% time [s]   crank [deg]\n", "  {:.16e}   {:.16e}\n", str, "utf-8"),
+        ("ADAMS run 3\n\n   Time    CRANK\n  (sec)    (deg)\n", "  {:.16E}   {:.16E}\n", str, "utf-8"),
+        ("time [s],crank [deg]\n# as measured, by hand\n", "{:.12g},{:.17g}\n,\n", str, "utf-8"),
+    ],
+    ids=["decimal comma", "spreadsheet", "UTF-16", "MATLAB", "ADAMS", "remark and empty lines"],
+)
+def test_a_law_is_read_from_what_other_programs_write(tmp_path, head, form, changed, encoding):
+    times = np.linspace(0, 0.5, 9)
+    degrees = 200 * times**2 + 7 * times
+    (tmp_path / "law.txt").write_bytes((head + changed(rows(form, [times, degrees]))).encode(encoding))
+    law = sb.load_law(tmp_path / "law.txt", rssr())
+    assert law.t == pytest.approx(times, abs=1e-12)
+    assert law.q == pytest.approx(np.radians(degrees), rel=1e-15)
+    assert law.ddq == pytest.approx(np.full(9, np.radians(400)), rel=1e-9)
+
+
+def test_turns_in_a_law_are_counted_in_revolutions(tmp_path):
+    path = write(
+        tmp_path / "law.csv",
+        "time_s,crank_rev,crank_rev_min",
+        [[0, 1, 2, 3, 4, 5], np.arange(6) / 4, [15] * 6],
+    )
+    law = sb.load_law(path, rssr())
+    assert law.q == pytest.approx(np.arange(6) * np.pi / 2, rel=1e-15)
+    assert law.dq == pytest.approx(np.full(6, np.pi / 2), rel=1e-15)
+
+
 def test_a_slide_is_driven_in_any_length_unit(tmp_path):
     linkage = sb.load("rssp")
     times = np.linspace(0, 1, 21)
@@ -158,64 +199,77 @@ def table(head, *rows):
 
 
 HEAD = "time [s],crank [deg]"
-NEEDED = "'time [s],angle [deg]'"
+NEEDED = "'time [s],crank [deg]'"
 
 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("", f"is empty; give a head, as in {NEEDED}, and a row for each time"),
-        ("\n# nothing\n,,\n", f"is empty; give a head, as in {NEEDED}, and a row for each time"),
-        (HEAD, "has a head but no rows; give a row for each time"),
-        (table("0,1", "1,2"), f"line 1: is a row of numbers; begin with a head, as in {NEEDED}"),
+        ("", "is empty; give a table with a header and rows of numbers"),
+        (
+            "\n# nothing\n,,\n",
+            "has text but no row of numbers; give a table with a header and rows of numbers",
+        ),
+        (HEAD, "has text but no row of numbers; give a table with a header and rows of numbers"),
+        (table("0,1", "1,2"), f"no column for the time; the file has no header; name them as in {NEEDED}"),
         (
             table("crank [deg]", "1"),
-            "no column of time; the head has 'crank [deg]'; give one, as in 'time [s]'",
+            f"no column for the time; the columns are 'crank [deg]'; name them as in {NEEDED}",
         ),
         (
             table("time [s],crank", "0,1"),
-            "no column with an angle of crank, which turns; the head has 'time [s]', 'crank'; "
-            "give one, as in 'crank [deg]'",
+            "no column with an angle of crank, which turns; the columns are 'time [s]', 'crank'; "
+            f"name them as in {NEEDED}",
         ),
         (
             table("time [s],crank [mm]", "0,1"),
-            "no column with an angle of crank, which turns; the head has 'time [s]', 'crank [mm]'; "
-            "give one, as in 'crank [deg]'",
+            "no column with an angle of crank, which turns; the columns are 'time [s]', 'crank [mm]'; "
+            f"name them as in {NEEDED}",
         ),
         (
             table("time [s],a [deg],b [rad]", "0,1,2"),
-            "'a [deg]', 'b [rad]' may each be the angle; keep the one of the input, or name it 'crank' and its unit",
+            "line 1: 'a [deg]', 'b [rad]' may each be the angle; keep the one of the input, or name it 'crank' and its unit",
         ),
         (
             table("time [s],crank [deg],crank [rad/s^2]", "0,1,2"),
             "'crank [rad/s^2]' is given without a column of velocity; add that, or leave this out",
         ),
-        (table(HEAD, "0,1", "0.1"), "line 3: has 1 value where the head has 2; give one for each column"),
+        (
+            table(HEAD, "0,1", "0.1"),
+            "line 3: 1 cell where line 2 has 2; the file is cut or damaged there, or holds a second table: mend it",
+        ),
+        (
+            table("time [s],crank [deg]", "s,rad", "0,1"),
+            "mixed units: column 'crank [deg]' has 'deg' in its name and 'rad' in the line of units; keep the right one",
+        ),
         (
             table(HEAD, "0,1", "0.1,nan"),
-            "line 3: crank [deg]: 'nan' is not a finite number; give one, or leave the row out",
+            "line 3: no number in column 'crank [deg]' ('nan'); mend it, or leave such rows out",
         ),
         (
             table(HEAD, "0,1", "-inf,2"),
-            "line 3: time [s]: '-inf' is not a finite number; give one, or leave the row out",
+            "line 3: no number in column 'time [s]' ('-inf'); mend it, or leave such rows out",
         ),
         (
-            table(HEAD, "0,1", "0.1,"),
-            "line 3: crank [deg]: is empty; give a number, or leave the row out",
+            table(HEAD, "0,1", "0.1,", "0.2,"),
+            "lines 3, 4: no number in column 'crank [deg]' (''); mend them, or leave such rows out",
         ),
-        (table(HEAD, "0,1", "0.1,1 deg"), "line 3: crank [deg]: '1 deg' is not a number; give a number"),
         (
-            table("time [s];crank [deg]", "0;0,5"),
-            "line 2: crank [deg]: '0,5' is not a number; write it with a decimal point",
+            table(HEAD, "0,1", "0.1,1 deg"),
+            "line 3, column 'crank [deg]': '1 deg' carries a unit of its own; write plain numbers, all in the one "
+            "unit that the header names",
+        ),
+        (
+            table("time [s];crank [deg]", "0.0;0,5"),
+            "line 2, column 'crank [deg]': '0,5' is not a number; mend the cell or leave the row out",
         ),
         (
             table(HEAD, "0,1", "0.2,2", "0.1,3"),
-            "line 4: time [s]: 0.1 does not come after 0.2, the row before; "
-            "give each time once, from the first to the last",
+            "line 4: time 0.1 after 0.2 in line 3; times must rise: sort the rows, and keep one run only",
         ),
         (
             table(HEAD, "0,1", "0.2,2", "", "0.2,3"),
-            "line 5: time [s]: 0.2 comes twice; give each time once, from the first to the last",
+            "line 5: time 0.2 again, as in line 3; times must rise: sort the rows, and keep one run only",
         ),
         (
             table(HEAD, *(f"{i},{i}" for i in range(5))),
@@ -224,34 +278,33 @@ NEEDED = "'time [s],angle [deg]'"
         ),
         (
             table(HEAD, *(f"{i},{(100 * i) % 360}" for i in range(9))),
-            "line 6: crank [deg]: goes from 300 to 40 in one row, more than half a turn; "
+            "line 6, column 'crank [deg]': goes from 300 to 40 in one row, more than half a turn; "
             "let the angle count on past a full turn, and give rows that are nearer",
         ),
         (
             table("time [s],crank [deg],crank [rad/s]", *(f"{i},{10 * i},10" for i in range(9))),
-            "crank [rad/s]: is no velocity of 'crank [deg]': it makes for 57.3 times its changes; check both units",
+            "column 'crank [rad/s]': is no velocity of 'crank [deg]': it makes for 57.3 times its changes; "
+            "check both units",
         ),
     ],
 )
 def test_each_mistake_in_a_law_has_its_own_message(tmp_path, content, message):
     (tmp_path / "law.csv").write_text(content)
-    with pytest.raises(DescriptionError) as caught:
+    with pytest.raises(TableError) as caught:
         sb.load_law(tmp_path / "law.csv", rssr())
     assert str(caught.value) == f"{tmp_path / 'law.csv'}: {message}"
 
 
 def test_what_is_no_table_of_text_is_told_as_such(tmp_path):
-    (tmp_path / "latin.csv").write_bytes(b"time [s],winkel [\xb0]\n0,1\n")
     (tmp_path / "zeros.csv").write_bytes(bytes(5000))
     (tmp_path / "line.csv").write_text(HEAD + "," * 2_000_000)
     for name, message in (
-        ("latin.csv", "is not text in UTF-8; save it as CSV in UTF-8"),
-        ("zeros.csv", "line 1: is no row of a table of text; give a CSV file"),
-        ("line.csv", "line 1: is no row of a table of text; give a CSV file"),
-        ("none.csv", "no such file; give the path of a CSV file"),
-        (".", "is a folder; give the path of a CSV file in it"),
+        ("zeros.csv", "not a table of text (it holds bytes that no text has); export it as CSV or text"),
+        ("line.csv", "line 1 has 2000020 characters, so it is no row of a table; export it as CSV"),
+        ("none.csv", "no such file; give the path of a table of an input law"),
+        (".", "is a folder; give the path of a table in it"),
     ):
-        with pytest.raises(DescriptionError) as caught:
+        with pytest.raises(TableError) as caught:
             sb.load_law(tmp_path / name, rssr())
         assert str(caught.value) == f"{tmp_path / name}: {message}"
 
@@ -335,12 +388,15 @@ def test_a_law_that_rests_is_a_motion_of_its_rows(tmp_path, linkage, rows):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--law", "none.csv"], "none.csv: no such file; give the path of a CSV file"),
+        (["--law", "none.csv"], "none.csv: no such file; give the path of a table of an input law"),
         (
             ["--law", "law.csv", "--speed", "1 rpm"],
             "--speed: a law gives the speed; leave --speed or --law out",
         ),
-        (["--law", "law.csv", "--out", "out"], "law.csv: has a head but no rows; give a row for each time"),
+        (
+            ["--law", "law.csv", "--out", "out"],
+            "law.csv: has text but no row of numbers; give a table with a header and rows of numbers",
+        ),
     ],
 )
 def test_a_law_that_cannot_be_read_ends_with_exit_2_and_writes_nothing(tmp_path, arguments, message):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.errors import MeasurementError, RequestError
+from sevenbar.errors import RequestError, TableError
 from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes, pairs, read_measured
 from sevenbar.units import measured_unit
 
@@ -33,6 +33,9 @@ def read(tmp_path, text, ends=ENDS, **options):
          {"time": [0, 1], "velocity": [np.pi, np.pi / 2]}),
         ('"Time (sec)"\t"angular acceleration (rad/sec**2)"\n0.0\t1.0\n1.0\t2.0\n',
          {"time": [0, 1], "acceleration": [1, 2]}),
+        ("time [s];angle [rad]\n0;0\n0,5;1,5\n", {"time": [0, 0.5], "angle": [0, 1.5]}),
+        ("time [s],angle [rev]\n% from a bench, by hand\n0,0.5\n,\n1,1\n,\n",
+         {"time": [0, 1], "angle": [np.pi, 2 * np.pi]}),
         ("time [s],angle [deg],\n0,90,\n0.5,180,\n", {"time": [0, 0.5], "angle": [np.pi / 2, np.pi]}),
         ("time [s],angle [deg]\n\n0,90\n# a remark\n0.5,180\n", {"time": [0, 0.5], "angle": [np.pi / 2, np.pi]}),
         ("time [s],angle [deg]\r\n0,90\r\n0.5,180\r\n".encode("utf-16"), {"time": [0, 0.5], "angle": [np.pi / 2, np.pi]}),
@@ -138,10 +141,12 @@ HEADER = "time [s],angle [deg]\n"
          "line 3: no number in column 'angle [deg]' ('NaN'); mend it, or leave such rows out with --skip-nan"),
         (HEADER + "0,1\n1,\n2,inf\n3,-\n4,n/a\n5,6\n",
          "lines 3, 4, 5 and 1 more: no number in column 'angle [deg]' (''); mend them, or leave such rows out with --skip-nan"),
+        (HEADER + ",1\n1,2\n2,2\n",
+         "line 2: no number in column 'time [s]' (''); mend it, or leave such rows out with --skip-nan"),
         (HEADER + "0,1\n2,2\n1,3\n",
          "line 4: time 1 after 2 in line 3; times must rise: sort the rows, and keep one run only"),
         (HEADER + "0,1\n1,2\n1,3\n0,2\n",
-         "line 4: time 1 again in line 3 (and so 1 more times); times must rise: sort the rows, and keep one run only"),
+         "line 4: time 1 again, as in line 3 (and so 1 more times); times must rise: sort the rows, and keep one run only"),
         ("quantity,lowest,highest\nangle [rad],1,0\n",
          "line 2: lowest and highest are not two rising numbers; mend the line"),
         ("quantity,lowest,highest\nangle,0,1\n", "line 2: angle has no unit; write 'angle [deg]'"),
@@ -149,7 +154,7 @@ HEADER = "time [s],angle [deg]\n"
     ],
 )  # fmt: skip
 def test_each_broken_table_has_its_own_message(tmp_path, text, message):
-    with pytest.raises(MeasurementError) as caught:
+    with pytest.raises(TableError) as caught:
         read(tmp_path, text)
     assert str(caught.value) == f"{tmp_path / 'measured.csv'}: {message}"
 
@@ -178,7 +183,7 @@ def test_whatever_is_done_to_a_table_it_is_read_or_told(tmp_path):
             )
         try:
             measured = read(tmp_path, text)
-        except MeasurementError as error:
+        except TableError as error:
             assert str(error).startswith(str(tmp_path / "measured.csv"))
             continue
         assert isinstance(measured, Measured)
@@ -190,20 +195,18 @@ def test_whatever_is_done_to_a_table_it_is_read_or_told(tmp_path):
 
 
 def test_a_line_without_end_is_no_row(tmp_path):
-    with pytest.raises(MeasurementError, match="line 2 has 400000 characters, so it is no row of a table"):
+    with pytest.raises(TableError, match="line 2 has 400000 characters, so it is no row of a table"):
         read(tmp_path, "time [s],angle [deg]\n" + "1," * 200_000)
 
 
 def test_a_unit_of_the_caller_must_not_contradict_the_header(tmp_path):
-    with pytest.raises(
-        MeasurementError, match=r"mixed units: .* is in 'deg' by its header and in 'rad' by --unit"
-    ):
+    with pytest.raises(TableError, match=r"mixed units: .* is in 'deg' by its header and in 'rad' by --unit"):
         read(tmp_path, HEADER + "0,1\n1,2\n", units={"angle": "rad"})
 
 
 def test_a_column_that_is_not_there_is_told_with_those_that_are(tmp_path):
     with pytest.raises(
-        MeasurementError, match=r"no column 'beta' for the angle; the file has 'time .s.', 'angle .deg.'"
+        TableError, match=r"no column 'beta' for the angle; the file has 'time .s.', 'angle .deg.'"
     ):
         read(tmp_path, HEADER + "0,1\n1,2\n", columns={"angle": "beta"})
 
@@ -211,7 +214,7 @@ def test_a_column_that_is_not_there_is_told_with_those_that_are(tmp_path):
 @pytest.mark.parametrize("path", ["no.csv", "."])
 def test_a_table_that_is_no_file_is_told(tmp_path, monkeypatch, path):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(MeasurementError, match=r"no such file|is a folder"):
+    with pytest.raises(TableError, match=r"no such file|is a folder"):
         read_measured(path, ENDS)
 
 
@@ -237,6 +240,8 @@ def test_a_pair_given_twice_is_told():
         ("millimeter/sec", "slide", 1, 1e-3),
         ("msec", "time", 0, 1e-3),
         ("rad/s3", "turn", 3, 1.0),
+        ("rad/s³", "turn", 3, 1.0),
+        ("rev", "turn", 0, 2 * np.pi),
     ],
 )
 def test_units_are_read_as_programs_write_them(text, kind, order, size):

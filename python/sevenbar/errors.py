@@ -19,8 +19,8 @@ class NotCoveredError(SevenbarError):
     """A linkage that is well described but that this version does not analyse."""
 
 
-class MeasurementError(SevenbarError):
-    """A measured table that cannot be read: the file, the line, and what is wrong there."""
+class TableError(SevenbarError):
+    """A text table, of measured values or of an input law: the file, the line, and what is wrong there."""
 
 
 class OutputError(SevenbarError):

@@ -45,10 +45,13 @@ def sliding_speed(value: object, length_unit: str) -> float:
         >>> sliding_speed("1 in/s", "mm")
         25.4
     """
-    # every size is a whole number of micrometres, so the quotient of two is right to the last digit
-    whole = {unit: round(size * 1e6) for unit, size in LENGTHS.items()}
-    sizes = {f"{unit}/s": size / whole[length_unit] for unit, size in whole.items()}
+    sizes = {f"{unit}/s": _quotient(size, LENGTHS[length_unit]) for unit, size in LENGTHS.items()}
     return _speed(value, sizes, "sliding", f"'10 {length_unit}/s'")
+
+
+def _quotient(size: float, other: float) -> float:
+    """Of two lengths [m], right to the last digit: every unit is a whole number of micrometres."""
+    return round(size * 1e6) / round(other * 1e6)
 
 
 def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str) -> float:
@@ -84,11 +87,12 @@ def _no_such_speed(value: str, unit: str, sizes: Mapping[str, float], motion: st
     return unknown_unit(unit, sizes)
 
 
-#: Other spellings of what stands in units of measured tables.
+#: Other spellings of what stands in units of text tables.
 _SPELLINGS = (
     (r"\s+|·", ""),
     (r"\*\*|\^", ""),
     ("²", "2"),
+    ("³", "3"),
     (r"°|degrees?", "deg"),
     (r"radians?", "rad"),
     (r"seconds?|sec(?=[23]?$)", "s"),
@@ -104,6 +108,9 @@ _SPELLINGS = (
 #: Units of time and their size in seconds.
 TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
 
+#: Units of a turn in text tables and their size in radians.
+TURNS = {**ANGLES, "rev": math.tau}
+
 
 @dataclass(frozen=True)
 class MeasuredUnit:
@@ -112,6 +119,14 @@ class MeasuredUnit:
     kind: str
     order: int
     size: float
+
+    def size_in(self, length_unit: str) -> float:
+        """Its size in s, rad or `length_unit`.
+
+        >>> measured_unit("cm/s").size_in("mm")
+        10.0
+        """
+        return _quotient(self.size, LENGTHS[length_unit]) if self.kind == "slide" else self.size
 
 
 def measured_unit(text: str) -> MeasuredUnit | None:
@@ -131,11 +146,11 @@ def measured_unit(text: str) -> MeasuredUnit | None:
     order = {"": 0, "s": 1, "s2": 2, "s3": 3}.get(per)
     if order is None:
         return None
-    if base in ANGLES:
-        return MeasuredUnit("turn", order, ANGLES[base])
+    if base in TURNS:
+        return MeasuredUnit("turn", order, TURNS[base])
     return MeasuredUnit("slide", order, LENGTHS[base]) if base in LENGTHS else None
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit of measured values."""
+    """Whether a text is a unit of a table's column."""
     return measured_unit(text) is not None

@@ -15,10 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
-from sevenbar.errors import MeasurementError, RequestError, shown, suggestion
+from sevenbar.errors import RequestError, TableError, shown, suggestion
 from sevenbar.motion import Floats, Integers
-from sevenbar.table import Table, read_table, read_text
-from sevenbar.units import LENGTHS, MeasuredUnit, measured_unit
+from sevenbar.table import Table, name_and_unit, read_table, read_text
+from sevenbar.units import MeasuredUnit, measured_unit
+
+#: What the tables hold, as messages say it.
+HELD = "measured values"
 
 #: What a table can hold; "angle" is the output's position, a length where it slides.
 QUANTITIES = ("time", "input", "angle", "velocity", "acceleration")
@@ -34,9 +37,6 @@ _WORDS = {
     "velocity": {"velocity", "speed", "omega", "vel"},
     "acceleration": {"acceleration", "acc", "accel"},
 }
-
-#: How many lines a message names.
-MOST_NAMED = 3
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def read_measured(
 
     `columns` names the column of a quantity by its header or its number from 1, `units` its unit; both may
     be left out where the header tells. `skip_nan` leaves out rows in which a used cell holds no number.
-    Raises `MeasurementError` with the line and what is wrong there, `RequestError` for a wrong argument.
+    Raises `TableError` with the line and what is wrong there, `RequestError` for a wrong argument.
     """
     columns, units = dict(columns or {}), dict(units or {})
     for name, given in (("column", columns), ("unit", units)):
@@ -129,25 +129,23 @@ def read_measured(
     file = Path(path)
     if not columns and (extremes := _read_extremes(file, ends, units)) is not None:
         return extremes
-    table = read_table(file)
+    table = read_table(file, HELD)
     places = _places(table, ends, columns)
     _refuse_what_is_missing(table, ends, places)
     sizes = {quantity: _size(table, ends, quantity, place, units) for quantity, place in places.items()}
-    raw = {
-        quantity: np.array([table.number(row, place) for row in range(len(table.rows))])
-        for quantity, place in places.items()
-    }
-    lines = np.array(table.lines, dtype=np.int64)
-    kept = _with_numbers(table, raw, places, lines, skip_nan=skip_nan)
-    lines = lines[kept]
+    raw = {quantity: table.numbers(place) for quantity, place in places.items()}
+    if not skip_nan:
+        table.refuse_gaps({places[q]: raw[q] for q in places}, "leave such rows out with --skip-nan")
+    kept = np.flatnonzero(np.all([np.isfinite(numbers) for numbers in raw.values()], axis=0))
     values = {quantity: numbers[kept] * sizes[quantity] for quantity, numbers in raw.items()}
-    if len(lines) < 2:
-        rows = "no row" if len(lines) == 0 else "one row"
-        raise MeasurementError(f"{table.source}: {rows} of measured values; give at least two")
+    if len(kept) < 2:
+        rows = "no row" if len(kept) == 0 else "one row"
+        raise table.wrong(f"{rows} of measured values; give at least two")
     if "time" in values:
-        _refuse_unsorted(table.source, raw["time"][kept], lines)
+        table.refuse_falling(raw["time"][kept], kept)
     labels = {quantity: table.names[place] or f"column {place + 1}" for quantity, place in places.items()}
-    return Measured(table.source, lines, values, labels, int(len(kept) - kept.sum()))
+    lines = np.array(table.lines, dtype=np.int64)[kept]
+    return Measured(table.source, lines, values, labels, len(table.rows) - len(kept))
 
 
 def pairs(given: Iterable[str], option: str) -> dict[str, str]:
@@ -166,34 +164,6 @@ def pairs(given: Iterable[str], option: str) -> dict[str, str]:
             raise RequestError(f"{option}: {quantity} is given twice; give it once")
         found[quantity] = value.strip()
     return found
-
-
-def _split(name: str) -> tuple[str, str]:
-    """Name and unit of a header: `theta [deg]`, `theta (deg)`, `rocker_rad_s2`, `time_s`, `angle, deg`."""
-    bracket = re.fullmatch(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*", name)
-    if bracket is not None:
-        return bracket[1].strip(), bracket[2].strip()
-    comma = re.fullmatch(r"(.+?)\s*[,/]\s*(\S+)", name)
-    if comma is not None and measured_unit(comma[2]) is not None:
-        return comma[1].strip(), comma[2]
-    words = name.split("_")
-    for start in range(1, len(words)):
-        unit = "/".join(words[start:])
-        if measured_unit(unit) is not None:
-            return "_".join(words[:start]), unit
-    return name.strip(), ""
-
-
-def _unit_text(table: Table, place: int) -> str:
-    """The unit that the file gives a column, in its header or in a line of units; both must agree."""
-    in_name = _split(table.names[place])[1]
-    below = table.units[place]
-    if in_name and below and measured_unit(in_name) != measured_unit(below):
-        raise MeasurementError(
-            f"{table.source}: mixed units: column {table.labels[place]} has {shown(in_name)} in its name and "
-            f"{shown(below)} in the line of units; keep the right one"
-        )
-    return in_name or below
 
 
 def _quantity(name: str, unit: MeasuredUnit | None, ends: Ends) -> str | None:
@@ -230,16 +200,16 @@ def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, i
     candidates: dict[str, list[int]] = {}
     for place, name in enumerate(table.names):
         if name and place not in taken:
-            bare = _split(name)[0]
-            quantity = _quantity(bare, measured_unit(_unit_text(table, place)), ends)
+            bare, unit = table.name_and_unit(place)
+            quantity = _quantity(bare, measured_unit(unit), ends)
             if quantity is not None and quantity not in places:
                 candidates.setdefault(quantity, []).append(place)
     for quantity, found in candidates.items():
         if len(found) > 1:
             names = " and ".join(table.labels[place] for place in found[:2])
-            different = len({measured_unit(_unit_text(table, place)) for place in found}) > 1
-            raise MeasurementError(
-                f"{table.source}: line {table.header_line}: {'mixed units: ' if different else ''}{names} "
+            different = len({measured_unit(table.name_and_unit(place)[1]) for place in found}) > 1
+            raise table.wrong(
+                f"line {table.header_line}: {'mixed units: ' if different else ''}{names} "
                 f"both hold the {quantity}; choose with --column {quantity}=NAME"
             )
     return places | {quantity: found[0] for quantity, found in candidates.items()}
@@ -248,20 +218,19 @@ def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, i
 def _named(table: Table, quantity: str, text: str) -> int:
     for wanted in (text, text.lower()):
         for place, name in enumerate(table.names):
-            if name and wanted in (name, name.lower(), _split(name)[0]):
+            if name and wanted in (name, name.lower(), name_and_unit(name)[0]):
                 return place
     count = len(table.names)
     if text.isdigit() and 1 <= int(text) <= count:
         return int(text) - 1
     header = f"has {', '.join(table.labels)}" if any(table.names) else "has no header"
-    raise MeasurementError(
-        f"{table.source}: no column {shown(text)} for the {quantity}; the file {header}; "
+    raise table.wrong(
+        f"no column {shown(text)} for the {quantity}; the file {header}; "
         f"give one of these or a number from 1 to {count}"
     )
 
 
 def _refuse_what_is_missing(table: Table, ends: Ends, places: Mapping[str, int]) -> None:
-    header = f"the columns are {', '.join(table.labels)}" if any(table.names) else "the file has no header"
     if not any(quantity in places for quantity in OUTPUTS):
         what = f"no column for the angle, velocity or acceleration of the output {shown(ends.output)}"
     elif "time" not in places and "input" not in places:
@@ -269,86 +238,43 @@ def _refuse_what_is_missing(table: Table, ends: Ends, places: Mapping[str, int])
     else:
         return
     quantity = "angle" if "output" in what else "time"
-    raise MeasurementError(
-        f"{table.source}: {what}; {header}; name them as in '{quantity} [{ends.example(quantity)}]', "
+    raise table.wrong(
+        f"{what}; {table.header}; name them as in '{quantity} [{ends.example(quantity)}]', "
         f"or say which with --column {quantity}=NAME or its number"
     )
 
 
 def _size(table: Table, ends: Ends, quantity: str, place: int, units: Mapping[str, str]) -> float:
     """What one unit of a column is in the units that values come out in."""
-    written, asked = _unit_text(table, place), units.get(quantity, "")
+    written, asked = table.name_and_unit(place)[1], units.get(quantity, "")
     label = table.labels[place]
     if written and asked and measured_unit(written) != measured_unit(asked):
-        raise MeasurementError(
-            f"{table.source}: mixed units: column {label} is in {shown(written)} by its header and in "
+        raise table.wrong(
+            f"mixed units: column {label} is in {shown(written)} by its header and in "
             f"{shown(asked)} by --unit; leave --unit out or mend the header"
         )
     if not (written or asked):
-        raise MeasurementError(
-            f"{table.source}: column {label} has no unit; write it as in '{quantity} "
+        raise table.wrong(
+            f"column {label} has no unit; write it as in '{quantity} "
             f"[{ends.example(quantity)}]', or give --unit {quantity}={ends.example(quantity)}"
         )
     return unit_size(f"{table.source}: column {label}", ends, quantity, written or asked)
 
 
 def unit_size(where: str, ends: Ends, quantity: str, text: str) -> float:
-    """What a unit is in the one that a quantity comes out in; `MeasurementError` where it does not fit."""
+    """What a unit is in the one that a quantity comes out in; `TableError` where it does not fit."""
     unit = measured_unit(text)
     if unit is None or (unit.kind, unit.order) != ends.kind(quantity):
         what = "is not a unit known here" if unit is None else f"is not a unit of the {quantity}"
-        raise MeasurementError(f"{where}: {shown(text)} {what}; give one like {ends.example(quantity)}")
-    return unit.size / LENGTHS[ends.length_unit] if unit.kind == "slide" else unit.size
-
-
-def _with_numbers(
-    table: Table,
-    raw: Mapping[str, Floats],
-    places: Mapping[str, int],
-    lines: Integers,
-    *,
-    skip_nan: bool,
-) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Which rows have a number in every used column; `MeasurementError` where not all and not `skip_nan`."""
-    good = np.ones(len(lines), dtype=np.bool_)
-    for numbers in raw.values():
-        good &= np.isfinite(numbers)
-    bad = np.flatnonzero(~good)
-    if bad.size and not skip_nan:
-        first = int(bad[0])
-        quantity = next(q for q, numbers in raw.items() if not np.isfinite(numbers[first]))
-        cell = table.rows[first][places[quantity]]
-        where = _named_lines(lines[bad])
-        raise MeasurementError(
-            f"{table.source}: {where}: no number in column {table.labels[places[quantity]]} ({shown(cell)}); "
-            f"mend {'it' if bad.size == 1 else 'them'}, or leave such rows out with --skip-nan"
-        )
-    return good
-
-
-def _named_lines(lines: Integers) -> str:
-    named = ", ".join(str(line) for line in lines[:MOST_NAMED])
-    more = len(lines) - MOST_NAMED
-    return f"line{'s' * (len(lines) > 1)} {named}" + (f" and {more} more" if more > 0 else "")
-
-
-def _refuse_unsorted(source: str, time: Floats, lines: Integers) -> None:
-    back = np.flatnonzero(np.diff(time) <= 0)
-    if back.size:
-        i = int(back[0])
-        again = "again" if time[i + 1] == time[i] else f"after {time[i]:g}"
-        more = f" (and so {back.size - 1} more times)" if back.size > 1 else ""
-        raise MeasurementError(
-            f"{source}: line {lines[i + 1]}: time {time[i + 1]:g} {again} in line {lines[i]}{more}; times "
-            "must rise: sort the rows, and keep one run only"
-        )
+        raise TableError(f"{where}: {shown(text)} {what}; give one like {ends.example(quantity)}")
+    return unit.size_in(ends.length_unit)
 
 
 def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> MeasuredExtremes | None:
     """A table `quantity, lowest, highest`; `None` where the file has no such header."""
     lines = [
         (i, [cell.strip().strip('"') for cell in re.split(r"[,;\t]", line)])
-        for i, line in enumerate(read_text(path).splitlines(), 1)
+        for i, line in enumerate(read_text(path, HELD).splitlines(), 1)
         if line.strip() and not line.lstrip().startswith(("#", "%"))
     ]
     header = [cell.lower() for cell in lines[0][1]] if lines else []
@@ -359,26 +285,24 @@ def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> Measured
         where = f"{path}: line {i}"
         if len(cells) < len(header):
             count = f"{len(cells)} cell{'s' * (len(cells) != 1)}"
-            raise MeasurementError(f"{where}: {count} where the header has {len(header)}; mend the line")
+            raise TableError(f"{where}: {count} where the header has {len(header)}; mend the line")
         row = dict(zip(header, cells, strict=False))
-        name, unit = _split(row["quantity"])
+        name, unit = name_and_unit(row["quantity"])
         name = name.lower()
         if name not in OUTPUTS or name in values:
             what = "is there twice" if name in values else "is not measured here"
-            raise MeasurementError(f"{where}: {shown(name)} {what}; give each of {', '.join(OUTPUTS)} once")
+            raise TableError(f"{where}: {shown(name)} {what}; give each of {', '.join(OUTPUTS)} once")
         unit = unit or row.get("unit", "") or units.get(name, "")
         if not unit:
-            raise MeasurementError(f"{where}: {name} has no unit; write '{name} [{ends.example(name)}]'")
+            raise TableError(f"{where}: {name} has no unit; write '{name} [{ends.example(name)}]'")
         size = unit_size(where, ends, name, unit)
         try:
             low, high = float(row["lowest"]) * size, float(row["highest"]) * size
         except (KeyError, ValueError):
             low = high = float("nan")
         if not low <= high:
-            raise MeasurementError(f"{where}: lowest and highest are not two rising numbers; mend the line")
+            raise TableError(f"{where}: lowest and highest are not two rising numbers; mend the line")
         values[name] = (low, high)
     if not values:
-        raise MeasurementError(
-            f"{path}: has a header but no row; give a line for each of {', '.join(OUTPUTS)}"
-        )
+        raise TableError(f"{path}: has a header but no row; give a line for each of {', '.join(OUTPUTS)}")
     return MeasuredExtremes(str(path), values)
