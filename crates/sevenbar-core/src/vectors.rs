@@ -94,45 +94,19 @@ impl Number for f64 {
     }
 }
 
-/// Operators of a type by four expressions of two names. Closures would not be compiled for the vector unit.
+/// Operators of a type, each by an expression of two names. Closures would not be compiled for the vector unit.
 macro_rules! operators {
-    ($kind:ident, $a:ident, $b:ident, $add:expr, $sub:expr, $mul:expr, $div:expr) => {
-        impl Add for $kind {
-            type Output = Self;
-            #[inline(always)]
-            fn add(self, b: Self) -> Self {
-                let $a = self;
-                let $b = b;
-                $add
+    ($kind:ident, $a:ident, $b:ident, $($operator:ident $name:ident $value:expr),*) => {
+        $(
+            impl $operator for $kind {
+                type Output = Self;
+                #[inline(always)]
+                fn $name(self, b: Self) -> Self {
+                    let ($a, $b) = (self, b);
+                    $value
+                }
             }
-        }
-        impl Sub for $kind {
-            type Output = Self;
-            #[inline(always)]
-            fn sub(self, b: Self) -> Self {
-                let $a = self;
-                let $b = b;
-                $sub
-            }
-        }
-        impl Mul for $kind {
-            type Output = Self;
-            #[inline(always)]
-            fn mul(self, b: Self) -> Self {
-                let $a = self;
-                let $b = b;
-                $mul
-            }
-        }
-        impl Div for $kind {
-            type Output = Self;
-            #[inline(always)]
-            fn div(self, b: Self) -> Self {
-                let $a = self;
-                let $b = b;
-                $div
-            }
-        }
+        )*
         impl Neg for $kind {
             type Output = Self;
             #[inline(always)]
@@ -151,10 +125,10 @@ operators!(
     Plain,
     a,
     b,
-    Self(std::array::from_fn(|k| a.0[k] + b.0[k])),
-    Self(std::array::from_fn(|k| a.0[k] - b.0[k])),
-    Self(std::array::from_fn(|k| a.0[k] * b.0[k])),
-    Self(std::array::from_fn(|k| a.0[k] / b.0[k]))
+    Add add Self(std::array::from_fn(|k| a.0[k] + b.0[k])),
+    Sub sub Self(std::array::from_fn(|k| a.0[k] - b.0[k])),
+    Mul mul Self(std::array::from_fn(|k| a.0[k] * b.0[k])),
+    Div div Self(std::array::from_fn(|k| a.0[k] / b.0[k]))
 );
 
 impl Number for Plain {
@@ -209,10 +183,10 @@ operators!(
     Wide,
     a,
     b,
-    Self(unsafe { _mm512_add_pd(a.0, b.0) }),
-    Self(unsafe { _mm512_sub_pd(a.0, b.0) }),
-    Self(unsafe { _mm512_mul_pd(a.0, b.0) }),
-    Self(unsafe { _mm512_div_pd(a.0, b.0) })
+    Add add Self(unsafe { _mm512_add_pd(a.0, b.0) }),
+    Sub sub Self(unsafe { _mm512_sub_pd(a.0, b.0) }),
+    Mul mul Self(unsafe { _mm512_mul_pd(a.0, b.0) }),
+    Div div Self(unsafe { _mm512_div_pd(a.0, b.0) })
 );
 
 #[cfg(target_arch = "x86_64")]
@@ -258,10 +232,10 @@ operators!(
     Middle,
     a,
     b,
-    Self(unsafe { [_mm256_add_pd(a.0[0], b.0[0]), _mm256_add_pd(a.0[1], b.0[1])] }),
-    Self(unsafe { [_mm256_sub_pd(a.0[0], b.0[0]), _mm256_sub_pd(a.0[1], b.0[1])] }),
-    Self(unsafe { [_mm256_mul_pd(a.0[0], b.0[0]), _mm256_mul_pd(a.0[1], b.0[1])] }),
-    Self(unsafe { [_mm256_div_pd(a.0[0], b.0[0]), _mm256_div_pd(a.0[1], b.0[1])] })
+    Add add Self(unsafe { [_mm256_add_pd(a.0[0], b.0[0]), _mm256_add_pd(a.0[1], b.0[1])] }),
+    Sub sub Self(unsafe { [_mm256_sub_pd(a.0[0], b.0[0]), _mm256_sub_pd(a.0[1], b.0[1])] }),
+    Mul mul Self(unsafe { [_mm256_mul_pd(a.0[0], b.0[0]), _mm256_mul_pd(a.0[1], b.0[1])] }),
+    Div div Self(unsafe { [_mm256_div_pd(a.0[0], b.0[0]), _mm256_div_pd(a.0[1], b.0[1])] })
 );
 
 #[cfg(target_arch = "x86_64")]

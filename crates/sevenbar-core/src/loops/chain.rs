@@ -2,7 +2,7 @@
 
 use crate::rigid::{Pose, Vec3, dot, norm, scale};
 use crate::vector_math::ROUNDER;
-use crate::vectors::Number;
+use crate::vectors::{LANES, Number, Vector};
 
 /// Most one-freedom columns of a chain with one freedom left: rank six and one.
 pub(super) const COLUMNS: usize = 7;
@@ -74,6 +74,52 @@ const UNTURNED: Rotation = Pose::STILL.rotation;
 
 impl Configuration {
     pub const ZERO: Self = Self { values: [0.0; COLUMNS], balls: [UNTURNED; BALLS] };
+}
+
+impl<V: Vector> Configuration<V> {
+    /// Configurations side by side, one in each lane.
+    #[inline(always)]
+    pub fn beside(each: &[Configuration; LANES], balls: usize) -> Self {
+        let zero = V::splat(0.0);
+        let mut out = Self { values: [zero; COLUMNS], balls: [[[zero; 3]; 3]; BALLS] };
+        let mut lanes = [0.0; LANES];
+        for c in 0..COLUMNS {
+            for k in 0..LANES {
+                lanes[k] = each[k].values[c];
+            }
+            out.values[c] = V::load(&lanes);
+        }
+        for b in 0..balls {
+            for i in 0..9 {
+                for k in 0..LANES {
+                    lanes[k] = each[k].balls[b][i / 3][i % 3];
+                }
+                out.balls[b][i / 3][i % 3] = V::load(&lanes);
+            }
+        }
+        out
+    }
+
+    /// The configuration of each lane.
+    #[inline(always)]
+    pub fn apart(&self, balls: usize) -> [Configuration; LANES] {
+        let mut out = [Configuration::ZERO; LANES];
+        for c in 0..COLUMNS {
+            let lanes = self.values[c].store();
+            for k in 0..LANES {
+                out[k].values[c] = lanes[k];
+            }
+        }
+        for b in 0..balls {
+            for i in 0..9 {
+                let lanes = self.balls[b][i / 3][i % 3].store();
+                for k in 0..LANES {
+                    out[k].balls[b][i / 3][i % 3] = lanes[k];
+                }
+            }
+        }
+        out
+    }
 }
 
 /// `a x b`

@@ -1,6 +1,6 @@
 //! Rows of a circuit eight at a time in vector lanes. What does not settle at once is left to the single row.
 
-use super::chain::{BALLS, COLUMNS, Configuration};
+use super::chain::{COLUMNS, Configuration};
 use super::circuits::{Passes, Rough, Row, UNIT, input_row, missing};
 use super::curve::{bordered_inverse, correction, length};
 use super::rates::ORDERS;
@@ -35,33 +35,13 @@ impl LaneKernel for Many<'_, '_> {
         self.rows.reserve(self.starts.len());
         let starts = self.starts;
         for block in starts.chunks(LANES) {
-            let mut values = [[0.0; LANES]; COLUMNS];
-            let mut balls = [[[0.0; LANES]; 9]; BALLS];
-            for lane in 0..LANES {
+            let mut each = [Configuration::ZERO; LANES];
+            for (lane, at) in each.iter_mut().enumerate() {
                 let (rough, value) = &block[lane.min(block.len() - 1)];
-                let at = self.passes.start(rough);
-                for c in 0..COLUMNS {
-                    values[c][lane] = at.values[c];
-                }
-                values[input][lane] = *value;
-                for b in 0..chain.ball_count() {
-                    for i in 0..9 {
-                        balls[b][i][lane] = at.balls[b][i / 3][i % 3];
-                    }
-                }
+                *at = self.passes.start(rough);
+                at.values[input] = *value;
             }
-            let mut at = Configuration {
-                values: [V::splat(0.0); COLUMNS],
-                balls: [[[V::splat(0.0); 3]; 3]; BALLS],
-            };
-            for c in 0..COLUMNS {
-                at.values[c] = V::load(&values[c]);
-            }
-            for b in 0..chain.ball_count() {
-                for i in 0..9 {
-                    at.balls[b][i / 3][i % 3] = V::load(&balls[b][i]);
-                }
-            }
+            let at = Configuration::<V>::beside(&each, chain.ball_count());
             self.block(&at, block);
         }
     }
@@ -103,23 +83,15 @@ impl Many<'_, '_> {
             self.rows.push(row);
         }
         let rows = &mut self.rows[first..];
+        let places = solved.at.apart(chain.ball_count());
+        for (k, row) in rows.iter_mut().enumerate().filter(|(k, _)| settled[*k]) {
+            row.at = places[k];
+        }
         for c in 0..COLUMNS {
-            let lanes = solved.at.values[c].store();
-            for (k, row) in rows.iter_mut().enumerate().filter(|(k, _)| settled[*k]) {
-                row.at.values[c] = lanes[k];
-            }
             for order in 0..ORDERS {
                 let lanes = solved.rates[order][c].store();
                 for (k, row) in rows.iter_mut().enumerate().filter(|(k, _)| settled[*k]) {
                     row.rates[order][c] = lanes[k];
-                }
-            }
-        }
-        for b in 0..chain.ball_count() {
-            for i in 0..9 {
-                let lanes = solved.at.balls[b][i / 3][i % 3].store();
-                for (k, row) in rows.iter_mut().enumerate().filter(|(k, _)| settled[*k]) {
-                    row.at.balls[b][i / 3][i % 3] = lanes[k];
                 }
             }
         }

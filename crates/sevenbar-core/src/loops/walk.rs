@@ -1,6 +1,6 @@
 //! Curves walked eight side by side in vector lanes, each until it comes back or cannot go on.
 
-use super::chain::{BALLS, COLUMNS, Chain, Columns, Configuration, Joint};
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint};
 use super::curve::{Curve, End, Node, Stand, dot};
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};
@@ -199,33 +199,20 @@ impl Walk<'_> {
     /// The stands at the starts of walkers; a lane without one has the first's.
     #[inline(always)]
     fn begun<V: Vector>(&self, walker: &[usize; LANES]) -> Stand<V> {
-        let of = |lane: usize| self.starts.get(walker[lane]).unwrap_or(&self.starts[0]);
-        let mut at = Configuration {
-            values: [V::splat(0.0); COLUMNS],
-            balls: [[[V::splat(0.0); 3]; 3]; BALLS],
-        };
+        let mut each = [Configuration::ZERO; LANES];
+        let mut directions = [[0.0; LANES]; COLUMNS];
+        for lane in 0..LANES {
+            let (at, direction) = self.starts.get(walker[lane]).unwrap_or(&self.starts[0]);
+            each[lane] = *at;
+            for c in 0..COLUMNS {
+                directions[c][lane] = direction[c];
+            }
+        }
         let mut before = [V::splat(0.0); COLUMNS];
-        let mut lanes = [0.0; LANES];
         for c in 0..COLUMNS {
-            for k in 0..LANES {
-                lanes[k] = of(k).0.values[c];
-            }
-            at.values[c] = V::load(&lanes);
-            for k in 0..LANES {
-                lanes[k] = of(k).1[c];
-            }
-            before[c] = V::load(&lanes);
+            before[c] = V::load(&directions[c]);
         }
-        for b in 0..self.chain.ball_count() {
-            for i in 0..3 {
-                for j in 0..3 {
-                    for k in 0..LANES {
-                        lanes[k] = of(k).0.balls[b][i][j];
-                    }
-                    at.balls[b][i][j] = V::load(&lanes);
-                }
-            }
-        }
+        let at = Configuration::beside(&each, self.chain.ball_count());
         self.chain.stand(&at, &before)
     }
 
@@ -244,23 +231,15 @@ impl Walk<'_> {
             open: 0.0,
         };
         let mut out = [blank; LANES];
+        let places = node.at.apart(self.chain.ball_count());
+        for k in 0..LANES {
+            out[k].at = places[k];
+        }
         for c in 0..COLUMNS {
-            let lanes = node.at.values[c].store();
-            for k in 0..LANES {
-                out[k].at.values[c] = lanes[k];
-            }
             for order in 0..3 {
                 let lanes = node.rates[order][c].store();
                 for k in 0..LANES {
                     out[k].rates[order][c] = lanes[k];
-                }
-            }
-        }
-        for b in 0..self.chain.ball_count() {
-            for i in 0..9 {
-                let lanes = node.at.balls[b][i / 3][i % 3].store();
-                for k in 0..LANES {
-                    out[k].at.balls[b][i / 3][i % 3] = lanes[k];
                 }
             }
         }
