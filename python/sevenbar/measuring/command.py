@@ -9,7 +9,17 @@ import typer
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.options import Figures, Force, InputJoint, Source, Speed, figure_formats, tell_written
+from sevenbar.folder import check_targets
+from sevenbar.options import (
+    Figures,
+    Force,
+    InputJoint,
+    Source,
+    Speed,
+    figure_formats,
+    tell_written,
+    words,
+)
 
 if TYPE_CHECKING:
     from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes
@@ -28,7 +38,9 @@ Units = Annotated[
     ),
 ]
 SkipNan = Annotated[bool, typer.Option("--skip-nan", help="Leave out rows in which a number is missing.")]
-Output = Annotated[str | None, typer.Option("--output", help="The joint that was measured.")]
+Output = Annotated[
+    str | None, typer.Option("--output", help="The joint that was measured; the file's by default.")
+]
 Start = Annotated[
     str, typer.Option(help="Input at time 0 where the table has no input, as in '30deg' or '5mm'.")
 ]
@@ -67,15 +79,17 @@ def compare(
     from sevenbar.measuring.extremes import ExtremesComparison, compare_extremes
     from sevenbar.measuring.measured import MeasuredExtremes
 
-    endings = figure_formats(figures)
+    endings = figure_formats(figures, out)
     loaded = sb.load(linkage)
+    check_targets([out / "comparison.json"] if out is not None else [], force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     found: Comparison | ExtremesComparison
     if isinstance(measured, MeasuredExtremes):
-        if align:
-            raise RequestError(
-                "--align: a table of lowest and highest values has no rows to align; leave it out"
-            )
+        for option, given in (("--align", align), ("--branch", branch)):
+            if given not in (None, []):
+                raise RequestError(
+                    f"{option}: {table} has lowest and highest values of a circuit, no rows; leave it out"
+                )
         found = compare_extremes(loaded, measured, ends, speed=speed, circuit=circuit)
     else:
         begin = _start(loaded, ends.input, start)
@@ -83,7 +97,7 @@ def compare(
             loaded,
             measured,
             ends,
-            align=align or (),
+            align=words(align or []),
             speed=speed,
             start=begin,
             circuit=circuit,
@@ -121,7 +135,10 @@ def calibrate(
     branch: ChosenBranch = None,
     confidence: Annotated[float, typer.Option(help="How often an interval holds the true value.")] = 0.95,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for calibrated.toml, calibration.json, tables and the figure.")
+        Path | None,
+        typer.Option(
+            help="Folder for calibrated.toml, calibration.json, parameters.csv, rows.csv and the figure."
+        ),
     ] = None,
     figures: Figures = None,
     force: Force = False,
@@ -136,8 +153,9 @@ def calibrate(
     from sevenbar.measuring.measured import MeasuredExtremes
     from sevenbar.measuring.rewrite import calibrated_toml
 
-    endings = figure_formats(figures)
+    endings = figure_formats(figures, out)
     loaded = sb.load(linkage)
+    check_targets([out / "calibrated.toml"] if out is not None else [], force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     if isinstance(measured, MeasuredExtremes):
         raise RequestError(
@@ -147,9 +165,9 @@ def calibrate(
         loaded,
         measured,
         ends,
-        free=free or ("*",),
-        hold=hold or (),
-        offsets=offset or (),
+        free=words(free or ["*"]),
+        hold=words(hold or []),
+        offsets=words(offset or []),
         speed=speed,
         start=_start(loaded, ends.input, start),
         circuit=circuit,
