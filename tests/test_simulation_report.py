@@ -226,6 +226,14 @@ def test_nothing_is_written_over_without_being_told_to(rssr, tmp_path):
     assert (tmp_path / "mujoco.csv").read_text().startswith("row,")
 
 
+def test_a_folder_that_cannot_be_made_is_told_before_the_run(tmp_path):
+    (tmp_path / "taken").write_text("a file")
+    # a million steps would take minutes, and show a bar
+    assert mistake("simulate", "rssr", "--steps", 1_000_000, "--out", "taken/out", cwd=tmp_path) == (
+        "taken/out: cannot be written: taken is a file; give a folder that can be made or written"
+    )
+
+
 @pytest.mark.slow
 def test_the_program_refuses_before_the_run_and_writes_with_force(tmp_path):
     call = ["simulate", "five_bar", "--engine", "exudyn", "--steps", 60, "--out", "out"]

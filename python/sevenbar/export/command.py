@@ -44,7 +44,7 @@ def export(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Write a linkage for another program: its motion as a table, its bodies in one pose, a model."""
+    """Write files for other programs: motion, bodies in a pose, models (some: extras 'export', 'cad')."""
     from sevenbar import report
     from sevenbar.export import FORMATS, ending_of, format_of
     from sevenbar.export import export as write_export

@@ -52,7 +52,10 @@ def compare(
     linkage: Source,
     table: Table,
     align: Annotated[
-        list[str] | None, typer.Option(help="Find the zero of the input (phase), of the output (offset).")
+        list[str] | None,
+        typer.Option(
+            help="Find the zero of the input (phase) or of the output (offset) too; may be repeated."
+        ),
     ] = None,
     column: Columns = None,
     unit: Units = None,
@@ -122,7 +125,8 @@ def calibrate(
         list[str] | None, typer.Option(help="A dimension to be kept, or a pattern; may be repeated.")
     ] = None,
     offset: Annotated[
-        list[str] | None, typer.Option(help="Find the zero of a measured joint too: input, output.")
+        list[str] | None,
+        typer.Option(help="Find the zero of the input or of the output too; may be repeated."),
     ] = None,
     column: Columns = None,
     unit: Units = None,
@@ -146,7 +150,7 @@ def calibrate(
         bool, typer.Option("--json", help="Print the calibration as one JSON object and nothing else.")
     ] = False,
 ) -> None:
-    """Find the real dimensions that explain a measured curve, with intervals, and write them as a linkage."""
+    """Find the dimensions that explain a measured curve, with intervals; a new file (extra 'calibrate')."""
     from sevenbar.files import text_of
     from sevenbar.measuring import findings
     from sevenbar.measuring.calibrate import calibrate as calibrated
