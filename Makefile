@@ -29,8 +29,8 @@ help:  ## This list
 
 .PHONY: demo
 demo: $(VENV)/.installed  ## Analyse the two papers' linkages; tables and figures into demo/
-	$(BIN)/sevenbar analyze rssr --out demo
-	$(BIN)/sevenbar analyze seven_r --out demo/seven_r
+	$(BIN)/sevenbar analyze rssr --out demo --force
+	$(BIN)/sevenbar analyze seven_r --out demo/seven_r --force
 
 .PHONY: check
 check: lint rust-test  ## The lints and the fast tests, for every change

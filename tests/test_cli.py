@@ -131,10 +131,31 @@ def test_a_row_without_value_is_an_empty_cell_beside_its_status(tmp_path):
     assert "nan" not in (tmp_path / "motion.csv").read_text()
 
 
+@pytest.mark.parametrize(
+    ("arguments", "taken"),
+    [
+        (["analyze", "rssr", "--out", "."], "report.md"),
+        # a figure, of which is known only when the motion is that it is drawn
+        (["analyze", "rssr", "--out", "."], "configuration.png"),
+        (["analyze", "rssr", "--out", "out", "--animate", "move.gif"], "move.gif"),
+        (["plot", "rssr", "--out", ".", "--kind", "curves"], "motion.png"),
+        (["modes", "rssr", "--out", "modes.png"], "modes.png"),
+    ],
+)
+def test_nothing_is_overwritten_without_force(tmp_path, arguments, taken):
+    (tmp_path / taken).write_text("mine")
+    message = f"{taken}: exists already; give another path, or --force to replace it"
+    assert mistake(*arguments, cwd=tmp_path) == message
+    assert [path.name for path in tmp_path.iterdir()] == [taken]
+    assert (tmp_path / taken).read_text() == "mine"
+    assert sevenbar(*arguments, "--force", cwd=tmp_path).returncode == 0
+    assert (tmp_path / taken).read_bytes() != b"mine"
+
+
 def test_a_written_file_replaces_the_old_one_and_leaves_others_alone(tmp_path):
     (tmp_path / "report.json").write_text("old")
     (tmp_path / "mine.txt").write_text("keep")
-    assert sevenbar("analyze", "rssr", "--samples", 12, "--out", tmp_path).returncode == 0
+    assert sevenbar("analyze", "rssr", "--samples", 12, "--out", tmp_path, "--force").returncode == 0
     assert json.loads((tmp_path / "report.json").read_text())["format"] == 1
     assert (tmp_path / "mine.txt").read_text() == "keep"
     assert not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
@@ -153,9 +174,9 @@ def test_animation_goes_where_it_is_told(tmp_path):
     run = sevenbar("analyze", "rssr", "--samples", 36, "--animate", tmp_path / "move.gif")
     assert run.returncode == 0, run.stderr
     assert (tmp_path / "move.gif").read_bytes()[:6] == b"GIF89a"
-    assert not sevenbar(
-        "analyze", "rssr", "--samples", 36, "--json", "--animate", tmp_path / "move.gif"
-    ).stdout.startswith("w")
+    again = sevenbar("analyze", "rssr", "--samples", 36, "--json", "--animate", tmp_path / "again.gif")
+    assert json.loads(again.stdout)["samples"] == 36
+    assert (tmp_path / "again.gif").exists()
 
 
 def test_the_gallery_lists_its_linkages_with_their_titles_in_line():

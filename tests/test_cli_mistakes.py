@@ -55,11 +55,11 @@ def folder(tmp_path):
         ),
         (
             ["rssr", "--out", "taken"],
-            "taken: cannot be written: file exists; give a folder that can be made or written",
+            "taken: cannot be written: it is a file; give a folder that can be made or written",
         ),
         (
             ["rssr", "--out", "taken/more"],
-            "taken/more: cannot be written: not a directory; give a folder that can be made or written",
+            "taken/more: cannot be written: taken is a file; give a folder that can be made or written",
         ),
     ],
 )

@@ -223,8 +223,8 @@ def test_a_value_that_is_computed_as_zero_has_no_per_cent():
     ("options", "message"),
     [
         ({"align": ["time"]}, "align: 'time' is not offered; give phase or offset"),
-        ({"circuit": 4}, "circuit: 4 is none of this motion; it has 0, 1"),
-        ({"branch": 1}, "branch: 1 is none of this motion; it has 0"),
+        ({"circuit": 4}, "circuit: 4 is not a circuit of this motion; give 0 to 1"),
+        ({"branch": 1}, "branch: 1 is not a pass of this motion; give 0"),
         ({"speed": "10 mm/s"}, "speed: '10 mm/s' is a sliding speed, and the input turns"),
     ],
 )

@@ -101,9 +101,9 @@ def test_the_tables_on_the_engines_are_those_of_today():
             if not re.fullmatch(number, cell):
                 assert cell == other
                 continue
-            # what is left of rounding varies with the machine
+            # what is left of rounding varies with the machine, in accelerations by the step squared
             one, two = (max(float(text.strip().removeprefix("< ")), 1e-9) for text in (cell, other))
-            assert 1 / 3 < one / two < 3, (there, here)
+            assert 1 / 10 < one / two < 10, (there, here)
 
 
 def test_links_of_the_documentation_lead_somewhere():

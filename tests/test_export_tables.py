@@ -153,6 +153,13 @@ def test_each_mistake_has_its_message_and_writes_nothing(motion, tmp_path, argum
     assert not list(tmp_path.iterdir())
 
 
+def test_an_input_beyond_one_circuit_may_be_within_another(tmp_path):
+    rocking = sb.load("rssr").motion(24, input="rocker")
+    with pytest.raises(RequestError, match=r"from 111\.854 deg to 187\.001 deg, or another circuit"):
+        export(rocking, "urdf", tmp_path / "m.urdf", at=0.5)
+    assert export(rocking, "urdf", tmp_path / "m.urdf", at=0.5, circuit=1)
+
+
 def test_a_linkage_that_does_not_close_has_nothing_to_export(tmp_path):
     short = sb.rssr(M=700, N=700, L1=250, L3=550, L2=10)
     with pytest.raises(RequestError, match="motion: cannot-assemble, so there are no rows to export"):
@@ -196,6 +203,7 @@ def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
     for arguments, message in (
         (["rssr", "--to", "urdf"], "rssr.urdf: exists already; give another path, or --force to replace it"),
         (["rssr"], "--to: missing; give a format, csv, parquet,"),
+        (["rssr", "--out", "rssr.urdf/x.csv"], "rssr.urdf: cannot be written: it is a file; give a folder"),
         (["rssr", "--to", "doc"], "to: 'doc' is not a format; allowed: csv,"),
         (["rssp", "--to", "glb", "--at", "3mm"], "--at: '3mm' is no value of crank, which turns;"),
     ):
@@ -203,4 +211,5 @@ def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
         assert (failed.returncode, failed.stdout) == (2, "")
         assert failed.stderr.startswith(f"sevenbar: {message}")
     assert not (tmp_path / "rssp.glb").exists()
+    assert run("rssr", "--to", "mjcf", "--samples", "24").stdout == "written: rssr.xml\n"
     assert run("rssr", "--to", "urdf", "--force", "--samples", "24").returncode == 0

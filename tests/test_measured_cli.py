@@ -44,7 +44,7 @@ def test_table_1_is_one_command():
 
 
 def test_a_comparison_is_printed_written_and_told_as_json(tmp_path):
-    options = ("--align", "phase", "--align", "offset")
+    options = ("--align", "phase,offset")
     out = tmp_path / "new" / "folder"
     run = sevenbar("compare", "rssr", BENCH, *options, "--out", out, "--figures", "svg")
     assert (run.returncode, run.stderr) == (0, "")
@@ -106,7 +106,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, command):
     (tmp_path / "out" / "mine.txt").write_text("keep")
     (tmp_path / "out" / "rows.csv").write_text("mine too")
     before = files(tmp_path)
-    assert mistake(*arguments).endswith("exists already; give another folder, or --force to replace it")
+    assert mistake(*arguments).endswith("exists already; give another path, or --force to replace it")
     assert files(tmp_path) == before
     assert sevenbar(*arguments, "--force").returncode == 0
     after = files(tmp_path)
@@ -163,7 +163,9 @@ def test_a_folder_that_cannot_be_made_leaves_nothing(tmp_path, command):
         (["compare", "rssr", "good.csv", "--figures", "bmp"],
          "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf"),
         (["compare", "rssr", "extremes.csv", "--align", "phase"],
-         "--align: a table of lowest and highest values has no rows to align; leave it out"),
+         "--align: extremes.csv has lowest and highest values of a circuit, no rows; leave it out"),
+        (["compare", "rssr", "extremes.csv", "--branch", "0"],
+         "--branch: extremes.csv has lowest and highest values of a circuit, no rows; leave it out"),
         (["calibrate", "rssr", "extremes.csv"],
          "extremes.csv: lowest and highest values are too few to tell dimensions; give the measured rows"),
         (["calibrate", "rssr", "good.csv", "--free", "L4"],

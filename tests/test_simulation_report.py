@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 import sevenbar as sb
 from sevenbar.errors import NotCoveredError, OutputError, RequestError
+from sevenbar.folder import write_columns
 from sevenbar.simulation import report as simulation_report
 from sevenbar.simulation.figures import figures, joints_figure, output_figure, points_figure
 from sevenbar.simulation.run import simulate
@@ -124,8 +125,15 @@ def test_the_rest_works_without_any_engine():
             ["rssr", "--input", "rocker", "--steps", "72"],
             "circuit: circuit 0 has 13 rows to compare at 72 steps a turn; give more --steps, or another --circuit",
         ),
-        (["rssr", "--steps", "2"], "samples: 2 is not a count; give 4 to 1000000"),
-        (["rssr", "--figures", "bmp"], "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf"),
+        (["rssr", "--steps", "2"], "steps: 2 is not a count; give 4 to 1000000"),
+        (
+            ["rssr", "--out", "out", "--figures", "bmp"],
+            "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf",
+        ),
+        (
+            ["rssr", "--figures", "svg"],
+            "--figures: a folder for them is missing; give --out, as in '--out report'",
+        ),
         (
             ["rssr", "--speed", "0"],
             "speed: '0' has no unit; give a number and a unit, as in '10 rad/s' or '60 rpm'",
@@ -184,7 +192,7 @@ def test_the_folder_holds_report_rows_model_and_figures(rssr, tmp_path):
 
 
 def test_the_rows_are_written_with_both_sides_and_their_units(rssr, rccc, tmp_path):
-    simulation_report.write_csv(rssr, tmp_path / "rows.csv")
+    write_columns(tmp_path / "rows.csv", simulation_report.columns(rssr))
     with (tmp_path / "rows.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 721
@@ -218,12 +226,20 @@ def test_nothing_is_written_over_without_being_told_to(rssr, tmp_path):
     assert (tmp_path / "mujoco.csv").read_text().startswith("row,")
 
 
+def test_a_folder_that_cannot_be_made_is_told_before_the_run(tmp_path):
+    (tmp_path / "taken").write_text("a file")
+    # a million steps would take minutes, and show a bar
+    assert mistake("simulate", "rssr", "--steps", 1_000_000, "--out", "taken/out", cwd=tmp_path) == (
+        "taken/out: cannot be written: taken is a file; give a folder that can be made or written"
+    )
+
+
 @pytest.mark.slow
 def test_the_program_refuses_before_the_run_and_writes_with_force(tmp_path):
     call = ["simulate", "five_bar", "--engine", "exudyn", "--steps", 60, "--out", "out"]
     assert sevenbar(*call, cwd=tmp_path).returncode == 0
     assert mistake(*call, cwd=tmp_path) == (
-        "out/exudyn.json: exists already; give another folder, or --force to write over it"
+        "out/exudyn.json: exists already; give another path, or --force to replace it"
     )
     before = (tmp_path / "out" / "exudyn.json").stat().st_mtime_ns
     assert sevenbar(*call, "--force", cwd=tmp_path).returncode == 0

@@ -14,10 +14,14 @@ import typer.core
 import sevenbar as sb
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.export.command import export
+from sevenbar.folder import check_targets
 from sevenbar.measuring.command import calibrate, compare
 from sevenbar.options import (
     Figures,
+    Force,
     InputJoint,
+    OutputJoint,
+    Samples,
     Source,
     Speed,
     figure_formats,
@@ -64,11 +68,9 @@ def _root(
 @app.command()
 def analyze(
     linkage: Source,
-    samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 360,
+    samples: Samples = 360,
     input_joint: InputJoint = None,
-    output: Annotated[
-        str | None, typer.Option("--output", help="The joint whose motion is told; the file's by default.")
-    ] = None,
+    output: OutputJoint = None,
     speed: Speed = None,
     law: Annotated[
         Path | None,
@@ -81,6 +83,7 @@ def analyze(
     animate: Annotated[
         Path | None, typer.Option(help="Write the moving linkage to this .gif or .mp4.")
     ] = None,
+    force: Force = False,
     json: Annotated[
         bool, typer.Option("--json", help="Print the report as one JSON object and nothing else.")
     ] = False,
@@ -88,12 +91,11 @@ def analyze(
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar import report
 
-    endings = figure_formats(figures)
-    if figures is not None and out is None:
-        raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
+    endings = figure_formats(figures, out)
     if law is not None and speed is not None:
         raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
     loaded = sb.load(linkage)
+    check_targets(report.certain_targets(out) if out is not None else [], force=force)
     read = None if law is None else sb.load_law(law, loaded, input=input_joint)
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
     if animate is not None:
@@ -103,8 +105,9 @@ def analyze(
 
         # before anything is written
         check_target(animate)
+        check_targets([animate], force=force)
         drawn = chosen_circuit(motion, report.posed_circuit(motion) or 0).index
-    written = report.write(motion, out, endings) if out is not None else []
+    written = report.write(motion, out, endings, force=force) if out is not None else []
     if animate is not None:
         with progress_bar(f"drawing {animate.name}") as progress:
             write_animation(motion, animate, circuit=drawn, progress=progress)
@@ -129,6 +132,7 @@ def modes(
         str | None, typer.Option("--input", help="The joint that is held; the file's input by default.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Draw all modes into this .png, .svg or .pdf.")] = None,
+    force: Force = False,
     json: Annotated[
         bool, typer.Option("--json", help="Print the modes as one JSON object and nothing else.")
     ] = False,
@@ -138,6 +142,7 @@ def modes(
 
     loaded = sb.load(linkage)
     column = loaded.column(loaded.drive.joint if input_joint is None else input_joint, "--input")
+    check_targets([] if out is None else [out], force=force)
     found = loaded.assembly_modes(
         report.joint_value(at, "--at", loaded, column), input=loaded.columns[column]
     )
@@ -149,8 +154,7 @@ def modes(
         typer.echo(report.modes_json(loaded, found, column))
         return
     report.print_modes(loaded, found, column)
-    if out is not None:
-        typer.echo(f"\nwritten: {out}")
+    tell_written([] if out is None else [out])
 
 
 #: What `sevenbar plot` can draw.
@@ -168,15 +172,17 @@ def plot_(
     link: Annotated[int | None, typer.Option(help="The link of a point given by --at.")] = None,
     at: Annotated[str | None, typer.Option(help="Where on the link, as in '-100,-90,-80'.")] = None,
     circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space.")] = 0,
-    samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 360,
-    input_joint: Annotated[str | None, typer.Option("--input", help="The joint that drives.")] = None,
-    output: Annotated[str | None, typer.Option("--output", help="The joint that is driven.")] = None,
+    samples: Samples = 360,
+    input_joint: InputJoint = None,
+    output: OutputJoint = None,
+    speed: Speed = None,
     figures: Figures = None,
+    force: Force = False,
 ) -> None:
     """Draw a linkage: curves of the output, all joints, all modes, the linkage in space, a point's path."""
     from sevenbar import report
 
-    endings = figure_formats(figures)
+    endings = figure_formats(figures, out)
     kinds = _kinds(kind)
     loaded = sb.load(linkage)
     points = _points(loaded, point, link, at)
@@ -184,9 +190,9 @@ def plot_(
         if kind is not None and "point" in kind:
             raise RequestError("--kind: point needs a point; give --link and --at, as the linkage names none")
         kinds.remove("point")
-    motion = loaded.motion(samples, input=input_joint, output=output)
-    written = report.write_figures(motion, out, kinds, points, circuit=circuit, figures=endings)
-    typer.echo("written: " + "\n         ".join(str(path) for path in written))
+    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
+    written = report.write_figures(motion, out, kinds, points, circuit=circuit, figures=endings, force=force)
+    tell_written(written, below=False)
 
 
 def _kinds(given: list[str] | None) -> list[str]:

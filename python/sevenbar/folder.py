@@ -7,10 +7,13 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
 
 from sevenbar.errors import OutputError
 from sevenbar.motion import Motion
@@ -19,11 +22,39 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def fill_folder(folder: Path, fill: Callable[[Path], None], *, force: bool = True) -> list[Path]:
+def check_targets(files: Iterable[Path], *, force: bool) -> None:
+    """Raises `OutputError` where files cannot go, or would replace others without `force`; changes nothing.
+
+    Asked before long work, so that it is not done in vain.
+    """
+    for file in files:
+        _check_folder(file.parent)
+        if file.is_dir():
+            raise OutputError(f"{file}: is a folder where a file should go; give another path")
+        if not force and file.exists():
+            raise OutputError(f"{file}: exists already; give another path, or --force to replace it")
+
+
+def _check_folder(folder: Path) -> None:
+    """Raises `OutputError` for a folder that can be neither made nor written."""
+    nearest = next((place for place in (folder, *folder.parents) if place.exists()), folder)
+    if not nearest.is_dir():
+        who = "it" if nearest == folder else str(nearest)
+        raise _unwritable(folder, f"{who} is a file")
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise _unwritable(folder, "permission denied")
+
+
+def _unwritable(folder: Path, reason: str) -> OutputError:
+    return OutputError(f"{folder}: cannot be written: {reason}; give a folder that can be made or written")
+
+
+def fill_folder(folder: Path, fill: Callable[[Path], None], *, force: bool = False) -> list[Path]:
     """Lets `fill` write into a folder aside, then moves its files into `folder`: whole, or not at all.
 
     Without `force` a file that is there already is an `OutputError`, and nothing is changed.
     """
+    _check_folder(folder)
     made = [p for p in (folder, *folder.parents) if not p.exists()]
     staging = None
     try:
@@ -31,22 +62,11 @@ def fill_folder(folder: Path, fill: Callable[[Path], None], *, force: bool = Tru
         staging = Path(tempfile.mkdtemp(prefix=".partial-", dir=folder))
         fill(staging)
         files = sorted(staging.iterdir())
-        for file in files:
-            if (folder / file.name).is_dir():
-                raise OutputError(
-                    f"{folder / file.name}: is a folder where a file should go; give another folder"
-                )
-            if not force and (folder / file.name).exists():
-                raise OutputError(
-                    f"{folder / file.name}: exists already; give another folder, or --force to replace it"
-                )
+        check_targets([folder / file.name for file in files], force=force)
         return [file.replace(folder / file.name) for file in files]
     except OSError as error:
         _undo(made, staging)
-        reason = (error.strerror or str(error)).lower()
-        raise OutputError(
-            f"{folder}: cannot be written: {reason}; give a folder that can be made or written"
-        ) from None
+        raise _unwritable(folder, (error.strerror or str(error)).lower()) from None
     except BaseException:
         _undo(made, staging)
         raise
@@ -74,12 +94,16 @@ def write_figures(
     *,
     circuit: int = 0,
     figures: Sequence[str] = ("png",),
+    force: bool = False,
 ) -> list[Path]:
     """Writes figures of these kinds into a folder, all or none; returns their paths.
 
-    `kinds` of curves, joints, modes, configuration, point; `points` (link, at) by name, for the last.
+    `kinds` of curves, joints, modes, configuration, point; `points` (link, at) by name, for the last. Raises
+    `OutputError` where one of the files exists and `force` is not given.
     """
-    return fill_folder(Path(folder), lambda staging: draw(motion, staging, kinds, points, circuit, figures))
+    return fill_folder(
+        Path(folder), lambda staging: draw(motion, staging, kinds, points, circuit, figures), force=force
+    )
 
 
 def draw(
@@ -118,11 +142,14 @@ def _file_name(name: str) -> str:
     return re.sub(r"[^\w.-]+", "_", name).strip("_.") or "point"
 
 
-def write_csv(motion: Motion, path: Path) -> None:
-    """Writes every row of every circuit; a value that does not exist is an empty cell beside its status."""
-    columns = motion.columns()
+def write_columns(path: Path, columns: Mapping[str, npt.ArrayLike]) -> None:
+    """Writes columns of one length (n,) as CSV, their names as its head; as `write_csv` for the rest."""
+    write_csv(path, list(columns), zip(*(np.asarray(c).tolist() for c in columns.values()), strict=True))
+
+
+def write_csv(path: Path, head: Sequence[str], lines: Iterable[Iterable[Any]]) -> None:
+    """Writes a table as CSV; a value that does not exist, NaN or None, is an empty cell."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        cells = [["" if v != v else v for v in column.tolist()] for column in columns.values()]
-        writer.writerows(zip(*cells, strict=True))
+        writer.writerow(head)
+        writer.writerows(["" if cell is None or cell != cell else cell for cell in line] for line in lines)

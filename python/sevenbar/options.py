@@ -12,12 +12,16 @@ import typer
 from sevenbar.errors import RequestError, shown
 
 Source = Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")]
+Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
 Figures = Annotated[
     list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
 InputJoint = Annotated[
     str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
+]
+OutputJoint = Annotated[
+    str | None, typer.Option("--output", help="The joint whose motion is told; the file's by default.")
 ]
 Speed = Annotated[str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")]
 
@@ -28,8 +32,8 @@ def words(given: list[str]) -> list[str]:
     return list(dict.fromkeys(part for part in parts if part))
 
 
-def figure_formats(given: list[str] | None) -> tuple[str, ...]:
-    """Endings of figures, png where none is given; raises `RequestError` for others."""
+def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]:
+    """Endings of figures, png where none is given; raises `RequestError` for others, and without a folder."""
     if given is None:
         return ("png",)
     from sevenbar.figure import FORMATS
@@ -40,6 +44,8 @@ def figure_formats(given: list[str] | None) -> tuple[str, ...]:
             raise RequestError(
                 f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(FORMATS)}"
             )
+    if out is None:
+        raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
     return endings
 
 
@@ -55,7 +61,7 @@ def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
-def tell_written(paths: Sequence[Path]) -> None:
-    """Names the files that were written, if any."""
+def tell_written(paths: Sequence[Path], *, below: bool = True) -> None:
+    """Names the files that were written, if any; `below` other text, a line is left free."""
     if paths:
-        typer.echo("\nwritten: " + "\n         ".join(str(path) for path in paths))
+        typer.echo("\n" * below + "written: " + "\n         ".join(str(path) for path in paths))

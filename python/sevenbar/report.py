@@ -20,9 +20,10 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.folder import draw, fill_folder, write_csv, write_figures
+from sevenbar.folder import draw, fill_folder, write_columns, write_figures
 from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit, Extremes, Modes, Motion
+from sevenbar.page import Facts
 from sevenbar.summary import (
     COMPLETE,
     GAP,
@@ -39,6 +40,7 @@ __all__ = [
     "as_dict",
     "as_json",
     "joint_value",
+    "json_text",
     "markdown",
     "modes_json",
     "posed_circuit",
@@ -140,21 +142,24 @@ def without_nan(value: Any) -> Any:
     return value
 
 
+def json_text(value: Any) -> str:
+    """Plain values as JSON text, null in place of each number that is not finite."""
+    return json.dumps(without_nan(value), indent=2, allow_nan=False)
+
+
 def as_json(motion: Motion) -> str:
     """`as_dict` as JSON text."""
-    return json.dumps(as_dict(motion), indent=2, allow_nan=False)
+    return json_text(as_dict(motion))
 
 
 def print_text(motion: Motion, console: Console | None = None) -> None:
     """Prints the report for people; angles in degrees."""
     console = console or Console()
     told = summary(motion, console.width)
-    facts = Table.grid(padding=(0, 2))
-    facts.add_column(style="dim", no_wrap=True)
-    facts.add_column()
+    facts = Facts()
     for name, fact in told.facts:
-        facts.add_row(name, Text(fact, style="bold" if name == "motion type" else ""))
-    parts: list[RenderableType] = [Text(told.title, style="bold underline"), facts]
+        facts.add(name, fact, style="bold" if name == "motion type" else "")
+    parts: list[RenderableType] = [Text(told.title, style="bold underline"), facts.grid]
     for sheet in told.sheets:
         parts += [Text(), _table(sheet), *([Text(sheet.note, style="dim")] if sheet.note else [])]
     console.print(Group(*parts))
@@ -195,17 +200,29 @@ def _table(sheet: Sheet) -> Table:
     return table
 
 
-def write(motion: Motion, folder: str | os.PathLike[str], figures: Sequence[str] = ("png",)) -> list[Path]:
+def certain_targets(folder: Path) -> list[Path]:
+    """The files that `write` makes of every motion; its figures depend on the motion."""
+    return [folder / name for name in ("report.md", "report.json", "motion.csv")]
+
+
+def write(
+    motion: Motion,
+    folder: str | os.PathLike[str],
+    figures: Sequence[str] = ("png",),
+    *,
+    force: bool = False,
+) -> list[Path]:
     """Writes report.md, report.json, motion.csv and the figures into a folder; returns their paths.
 
     The folder is made if need be. The figures are configuration and motion; but for an RSSR, whose curves
     tell all, also joints, and path_<name> for each named point. All files are finished in a folder beside it
-    before the first is put in place. Raises `OutputError` where that cannot be done.
+    before the first is put in place. Raises `OutputError` where that cannot be done, and where one of them
+    exists and `force` is not given.
     """
 
     def fill(staging: Path) -> None:
         (staging / "report.json").write_text(as_json(motion) + "\n", encoding="utf-8")
-        write_csv(motion, staging / "motion.csv")
+        write_columns(staging / "motion.csv", motion.columns())
         if motion.circuits:
             general = motion.linkage.kind != "RSSR"
             posed = posed_circuit(motion)
@@ -223,7 +240,7 @@ def write(motion: Motion, folder: str | os.PathLike[str], figures: Sequence[str]
         pictures = [stems[stem] for stem in sorted(stems)]
         (staging / "report.md").write_text(markdown(motion, pictures), encoding="utf-8")
 
-    return fill_folder(Path(folder), fill)
+    return fill_folder(Path(folder), fill, force=force)
 
 
 def posed_circuit(motion: Motion) -> int | None:
@@ -271,7 +288,7 @@ def modes_json(linkage: Linkage, modes: Modes, column: int) -> str:
             for q, residual in zip(modes.q, modes.residual, strict=True)
         ],
     }
-    return json.dumps(without_nan(report), indent=2, allow_nan=False)
+    return json_text(report)
 
 
 def print_modes(linkage: Linkage, modes: Modes, column: int, console: Console | None = None) -> None:

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sevenbar.errors import OutputError, RequestError, shown, suggestion
+from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.export.pose import take
-from sevenbar.folder import fill_folder
+from sevenbar.folder import check_targets, fill_folder
 from sevenbar.linkage import Linkage
 from sevenbar.motion import Motion
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from sevenbar.export.parts import Assembly
     from sevenbar.export.tables import Units
 
-__all__ = ["FORMATS", "Bodies", "Format", "Table", "export", "format_of"]
+__all__ = ["FORMATS", "Bodies", "Format", "Table", "ending_of", "export", "format_of"]
 
 
 @dataclass(frozen=True)
@@ -160,14 +160,13 @@ def export(
     form = FORMATS[word]
     _check_choices(word, form, circuit, at, branch, units)
     into_folder = word == "stl" and not target.suffix
-    if not force and not into_folder:
-        _check_free(_files(word, target))
+    check_targets([] if into_folder else _files(word, target), force=force)
     motion = source.motion(samples) if isinstance(source, Linkage) else source
     if isinstance(form, Table):
         if not motion.circuits:
             raise RequestError(f"motion: {motion.motion_type}, so there are no rows to export")
         return fill_folder(
-            target.parent, lambda aside: form.write(motion, aside / target.name, units or "file")
+            target.parent, lambda aside: form.write(motion, aside / target.name, units or "file"), force=force
         )
     from sevenbar.export.layout import arrange
 
@@ -175,22 +174,15 @@ def export(
     if into_folder:
         from sevenbar.export.meshes import write_stl_parts
 
-        if not force:
-            _check_free([target / f"{part.name}.stl" for part in assembly.parts])
-        return fill_folder(target, lambda aside: write_stl_parts(assembly, aside))
-    return fill_folder(target.parent, lambda aside: form.write(assembly, aside / target.name))
+        check_targets([target / f"{part.name}.stl" for part in assembly.parts], force=force)
+        return fill_folder(target, lambda aside: write_stl_parts(assembly, aside), force=force)
+    return fill_folder(target.parent, lambda aside: form.write(assembly, aside / target.name), force=force)
 
 
 def format_of(path: Path, to: str | None) -> str:
     """The word for the kind of a file: the one given, else that of the path's ending."""
     if to is not None:
-        word = to.lower().removeprefix(".")
-        known = {ending[1:]: name for name, form in FORMATS.items() for ending in form.endings}
-        if word not in known:
-            raise RequestError(
-                f"to: {shown(to)} is not a format; {suggestion(word, FORMATS)}allowed: {', '.join(FORMATS)}"
-            )
-        word = known[word]
+        word = _word(to)
         if path.suffix and path.suffix.lower() not in FORMATS[word].endings:
             raise RequestError(
                 f"{path}: its ending {shown(path.suffix)} is not that of {word}; "
@@ -204,6 +196,25 @@ def format_of(path: Path, to: str | None) -> str:
             return word
     endings = ", ".join(ending for form in FORMATS.values() for ending in form.endings)
     raise RequestError(f"{path}: {shown(path.suffix)} tells no format; give one of {endings}")
+
+
+def ending_of(to: str) -> str:
+    """The ending that a file of a kind has where none is given; raises `RequestError` for another word."""
+    ending = "." + to.lower().removeprefix(".")
+    own = FORMATS[_word(to)].endings
+    # "stp" is asked for by its ending, "mjcf" by its name: MuJoCo's files end in .xml
+    return ending if ending in own and ending[1:] not in FORMATS else own[0]
+
+
+def _word(to: str) -> str:
+    """The word of `FORMATS` for a kind of file, asked for by it or by an ending."""
+    word = to.lower().removeprefix(".")
+    known = {ending[1:]: name for name, form in FORMATS.items() for ending in form.endings}
+    if word not in known:
+        raise RequestError(
+            f"to: {shown(to)} is not a format; {suggestion(word, FORMATS)}allowed: {', '.join(FORMATS)}"
+        )
+    return known[word]
 
 
 def _check_choices(
@@ -225,9 +236,3 @@ def _files(word: str, target: Path) -> list[Path]:
     from sevenbar.export.urdf import loop_file
 
     return [target, loop_file(target)]
-
-
-def _check_free(targets: list[Path]) -> None:
-    for target in targets:
-        if target.exists():
-            raise OutputError(f"{target}: exists already; give another path, or --force to replace it")

@@ -9,7 +9,7 @@ import typer
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.options import Force, InputJoint, Source, Speed, tell_written
+from sevenbar.options import Force, InputJoint, OutputJoint, Samples, Source, Speed, tell_written
 
 
 def export(
@@ -28,29 +28,31 @@ def export(
     ] = None,
     at: Annotated[
         str | None,
-        typer.Option(help="The input of the pose: '30deg', '0.5rad', '12mm'; a plain number is in degrees."),
+        typer.Option(
+            help="Input of the pose: '30deg', '0.5rad', '12mm'; a plain number is in degrees or lengths."
+        ),
     ] = None,
     branch: Annotated[
         int | None, typer.Option(help="The pass of a circuit that rocks; 0 by default.")
     ] = None,
-    samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 360,
+    samples: Samples = 360,
     input_joint: InputJoint = None,
-    output: Annotated[str | None, typer.Option("--output", help="The joint that is driven.")] = None,
+    output: OutputJoint = None,
     speed: Speed = None,
     units: Annotated[
         str | None, typer.Option(help="Of tables: file (the default), or si for metres and radians.")
     ] = None,
     force: Force = False,
 ) -> None:
-    """Write a linkage for another program: its motion as a table, its bodies in one pose, a model."""
+    """Write files for other programs: motion, bodies in a pose, models (some: extras 'export', 'cad')."""
     from sevenbar import report
-    from sevenbar.export import FORMATS, format_of
+    from sevenbar.export import FORMATS, ending_of, format_of
     from sevenbar.export import export as write_export
 
     if out is None:
         if to is None:
             raise RequestError(f"--to: missing; give a format, {', '.join(FORMATS)}, or --out")
-        out = Path(f"{Path(linkage).stem}.{to.lower().removeprefix('.')}")
+        out = Path(f"{Path(linkage).stem}{ending_of(to)}")
     format_of(out, to)
     loaded = sb.load(linkage)
     value = None
@@ -67,6 +69,6 @@ def export(
         units=units,  # type: ignore[arg-type]
         force=force,
     )
-    tell_written(written)
+    tell_written(written, below=False)
     if out.suffix.lower() == ".urdf":
         typer.echo("URDF holds trees only: the joint that closes the loop is in the .loop.json file")

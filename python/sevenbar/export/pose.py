@@ -80,7 +80,7 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
     frames = frames_along(linkage, exact, rows[:1])
     q = exact.q[rows[0]] if rows.size else np.array([math.nan])
     if np.isnan(frames).any() or np.isnan(q).any():
-        raise _no_pose(linkage, chosen, circuit, at)
+        raise _no_pose(motion, chosen, at)
     valid = frames_along(linkage, chosen, np.arange(len(chosen.time)))
     # this pose among them, so that there is one at least
     valid = np.concatenate([frames, valid[~np.isnan(valid).any(axis=(1, 2, 3))]])
@@ -136,7 +136,8 @@ def _travel(linkage: Linkage, q: Floats) -> Floats:
     return np.stack([np.nanmin(slid, axis=0), np.nanmax(slid, axis=0)], axis=1)
 
 
-def _no_pose(linkage: Linkage, circuit: Circuit, index: int, at: float) -> RequestError:
+def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:
+    linkage = motion.linkage
     turns = linkage.column_kinds[circuit.input_column] == "turn"
     name = linkage.columns[circuit.input_column]
 
@@ -148,8 +149,11 @@ def _no_pose(linkage: Linkage, circuit: Circuit, index: int, at: float) -> Reque
     else:
         low, high = circuit.input_range
         allowed = f"a value from {told(low)} to {told(high)}"
+    if len(motion.circuits) > 1:
+        allowed += ", or another circuit"
     return RequestError(
-        f"at: circuit {index} has no pose of definite joint values at {name} = {told(at)}; give {allowed}"
+        f"at: circuit {circuit.index} has no pose of definite joint values at {name} = {told(at)}; "
+        f"give {allowed}"
     )
 
 

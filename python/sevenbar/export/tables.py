@@ -6,7 +6,6 @@ has them, `q (rows, columns)` with its derivatives, beside a note of units and n
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.errors import MissingExtraError
-from sevenbar.folder import write_csv as write_own_csv
+from sevenbar.folder import write_columns
 from sevenbar.motion import Circuit, Motion
 from sevenbar.units import LENGTHS
 
@@ -25,15 +24,7 @@ Units = Literal["file", "si"]
 
 def write_csv(motion: Motion, path: Path, units: Units) -> None:
     """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
-    if units == "file":
-        write_own_csv(motion, path)
-        return
-    columns = flat_columns(motion, units)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        cells = [["" if v != v else v for v in column.tolist()] for column in columns.values()]
-        writer.writerows(zip(*cells, strict=True))
+    write_columns(path, flat_columns(motion, units))
 
 
 def write_parquet(motion: Motion, path: Path, units: Units) -> None:

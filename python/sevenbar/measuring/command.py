@@ -9,7 +9,17 @@ import typer
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.options import Figures, Force, InputJoint, Source, Speed, figure_formats, tell_written
+from sevenbar.folder import check_targets
+from sevenbar.options import (
+    Figures,
+    Force,
+    InputJoint,
+    Source,
+    Speed,
+    figure_formats,
+    tell_written,
+    words,
+)
 
 if TYPE_CHECKING:
     from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes
@@ -28,7 +38,9 @@ Units = Annotated[
     ),
 ]
 SkipNan = Annotated[bool, typer.Option("--skip-nan", help="Leave out rows in which a number is missing.")]
-Output = Annotated[str | None, typer.Option("--output", help="The joint that was measured.")]
+Output = Annotated[
+    str | None, typer.Option("--output", help="The joint that was measured; the file's by default.")
+]
 Start = Annotated[
     str, typer.Option(help="Input at time 0 where the table has no input, as in '30deg' or '5mm'.")
 ]
@@ -40,7 +52,10 @@ def compare(
     linkage: Source,
     table: Table,
     align: Annotated[
-        list[str] | None, typer.Option(help="Find the zero of the input (phase), of the output (offset).")
+        list[str] | None,
+        typer.Option(
+            help="Find the zero of the input (phase) or of the output (offset) too; may be repeated."
+        ),
     ] = None,
     column: Columns = None,
     unit: Units = None,
@@ -67,15 +82,17 @@ def compare(
     from sevenbar.measuring.extremes import ExtremesComparison, compare_extremes
     from sevenbar.measuring.measured import MeasuredExtremes
 
-    endings = figure_formats(figures)
+    endings = figure_formats(figures, out)
     loaded = sb.load(linkage)
+    check_targets([out / "comparison.json"] if out is not None else [], force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     found: Comparison | ExtremesComparison
     if isinstance(measured, MeasuredExtremes):
-        if align:
-            raise RequestError(
-                "--align: a table of lowest and highest values has no rows to align; leave it out"
-            )
+        for option, given in (("--align", align), ("--branch", branch)):
+            if given not in (None, []):
+                raise RequestError(
+                    f"{option}: {table} has lowest and highest values of a circuit, no rows; leave it out"
+                )
         found = compare_extremes(loaded, measured, ends, speed=speed, circuit=circuit)
     else:
         begin = _start(loaded, ends.input, start)
@@ -83,7 +100,7 @@ def compare(
             loaded,
             measured,
             ends,
-            align=align or (),
+            align=words(align or []),
             speed=speed,
             start=begin,
             circuit=circuit,
@@ -108,7 +125,8 @@ def calibrate(
         list[str] | None, typer.Option(help="A dimension to be kept, or a pattern; may be repeated.")
     ] = None,
     offset: Annotated[
-        list[str] | None, typer.Option(help="Find the zero of a measured joint too: input, output.")
+        list[str] | None,
+        typer.Option(help="Find the zero of the input or of the output too; may be repeated."),
     ] = None,
     column: Columns = None,
     unit: Units = None,
@@ -121,7 +139,10 @@ def calibrate(
     branch: ChosenBranch = None,
     confidence: Annotated[float, typer.Option(help="How often an interval holds the true value.")] = 0.95,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for calibrated.toml, calibration.json, tables and the figure.")
+        Path | None,
+        typer.Option(
+            help="Folder for calibrated.toml, calibration.json, parameters.csv, rows.csv and the figure."
+        ),
     ] = None,
     figures: Figures = None,
     force: Force = False,
@@ -129,15 +150,16 @@ def calibrate(
         bool, typer.Option("--json", help="Print the calibration as one JSON object and nothing else.")
     ] = False,
 ) -> None:
-    """Find the real dimensions that explain a measured curve, with intervals, and write them as a linkage."""
+    """Find the dimensions that explain a measured curve, with intervals; a new file (extra 'calibrate')."""
     from sevenbar.files import text_of
     from sevenbar.measuring import findings
     from sevenbar.measuring.calibrate import calibrate as calibrated
     from sevenbar.measuring.measured import MeasuredExtremes
     from sevenbar.measuring.rewrite import calibrated_toml
 
-    endings = figure_formats(figures)
+    endings = figure_formats(figures, out)
     loaded = sb.load(linkage)
+    check_targets([out / "calibrated.toml"] if out is not None else [], force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     if isinstance(measured, MeasuredExtremes):
         raise RequestError(
@@ -147,9 +169,9 @@ def calibrate(
         loaded,
         measured,
         ends,
-        free=free or ("*",),
-        hold=hold or (),
-        offsets=offset or (),
+        free=words(free or ["*"]),
+        hold=words(hold or []),
+        offsets=words(offset or []),
         speed=speed,
         start=_start(loaded, ends.input, start),
         circuit=circuit,

@@ -129,6 +129,11 @@ class Comparison:
         return tuple(extents)
 
 
+def per_cent(part: float) -> str:
+    """A part as people read it, to three digits, never as a power of ten."""
+    return f"{100 * part:.3g} %" if 100 * part < 999.5 else f"{100 * part:.0f} %"
+
+
 def ends_of(linkage: Linkage, input: str | None = None, output: str | None = None) -> Ends:
     """The two joints that a measurement of a linkage is about: the drive's, or those named."""
     first = linkage.column(linkage.drive.joint if input is None else input, "input")
@@ -191,11 +196,11 @@ def compare(
         other = others[0]
         notes.append(
             f"circuit {other.circuit}, branch {other.branch} explains the data nearly as well (misfit "
-            f"{other.misfit:.3g} against {best.misfit:.3g}): these data hardly tell the two apart"
+            f"{per_cent(other.misfit)} against {per_cent(best.misfit)}): these data hardly tell the two apart"
         )
     if best.misfit > UNEXPLAINED:
         notes.append(
-            f"the differences are {100 * best.misfit:.2g} % of the measured range: no circuit explains "
+            f"the differences are {per_cent(best.misfit)} of the measured range: no circuit explains "
             "these data; check units, zeros (--align), speed and which joint was measured"
         )
     computed, values = problem.side_by_side(best)
@@ -349,14 +354,13 @@ class _Problem:
     ) -> list[Candidate]:
         """Every pass with its misfit, the best first."""
         here = self.passes(self.inputs)
-        for name, value, known in (
-            ("circuit", circuit, sorted({key[0] for key in here})),
-            ("branch", branch, sorted({key[1] for key in here})),
+        for name, word, value, known in (
+            ("circuit", "circuit", circuit, sorted({key[0] for key in here})),
+            ("branch", "pass", branch, sorted({key[1] for key in here})),
         ):
             if value is not None and value not in known:
-                raise RequestError(
-                    f"{name}: {value} is none of this motion; it has {', '.join(map(str, known))}"
-                )
+                allowed = "0" if known == [0] else f"{known[0]} to {known[-1]}"
+                raise RequestError(f"{name}: {value} is not a {word} of this motion; give {allowed}")
         wanted = [
             (*key, turn)
             for key in here

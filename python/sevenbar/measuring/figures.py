@@ -11,17 +11,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from sevenbar.figure import STYLE, new_figure
+from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure
 from sevenbar.measuring.calibrate import Calibration
 from sevenbar.measuring.compare import Comparison
 from sevenbar.measuring.measured import Ends
 from sevenbar.motion import Floats
 from sevenbar.skeleton import short
 
-COMPUTED: dict[str, Any] = {"color": "#0072B2", "lw": 1.6, "zorder": 2}
+COMPUTED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.6, "zorder": 2}
 NOMINAL: dict[str, Any] = {"color": "#8a8a8a", "lw": 1.3, "ls": (0, (4, 2)), "zorder": 1}
 MEASURED: dict[str, Any] = {
-    "color": "#D55E00",
+    "color": CIRCUIT_COLOURS[0],
     "ls": "",
     "marker": "o",
     "mfc": "none",

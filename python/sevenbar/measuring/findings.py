@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from sevenbar.figure import save
-from sevenbar.folder import fill_folder
+from sevenbar.folder import fill_folder, write_columns, write_csv
 from sevenbar.measuring.calibrate import Calibration, Parameter
-from sevenbar.measuring.compare import Comparison
+from sevenbar.measuring.compare import Comparison, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
 from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns, word
 from sevenbar.measuring.measured import Ends
-from sevenbar.report import without_nan
+from sevenbar.page import Facts, number_table
+from sevenbar.report import json_text
 
 #: Candidates and notes are told in full in the JSON; of candidates the page has as many.
 MOST_CANDIDATES = 4
@@ -31,13 +29,13 @@ MOST_CANDIDATES = 4
 def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableType:
     """The comparison for people: what explains the data, the paper's Table 1, the differences."""
     ends = comparison.ends
-    facts = _Facts()
+    facts = Facts()
     parts: list[RenderableType] = [Text(comparison.linkage.name, style="bold underline"), facts.grid]
     speed = f"{ends.input} at {comparison.speed:.6g} {ends.unit('input')}/s, output {ends.output}"
     if isinstance(comparison, ExtremesComparison):
         facts.add("measured", f"{comparison.source}, lowest and highest values")
         facts.add("drive", speed)
-        first, *others = (f"circuit {i} (misfit {_part(m)})" for i, m in comparison.misfits)
+        first, *others = (f"circuit {i} (misfit {per_cent(m)})" for i, m in comparison.misfits)
         facts.add("explained by", first, style="bold")
         if others:
             facts.add("not by", "; ".join(others[:MOST_CANDIDATES]))
@@ -75,7 +73,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
 def calibration_text(calibration: Calibration) -> RenderableType:
     """The calibration for people: each dimension with its interval, or why it has none."""
     ends, chosen = calibration.ends, calibration.before.chosen
-    facts = _Facts()
+    facts = Facts()
     facts.add(
         "measured",
         f"{calibration.source}, {len(calibration.line)} rows of "
@@ -148,8 +146,8 @@ def comparison_json(comparison: Comparison | ExtremesComparison) -> str:
     ]
     if isinstance(comparison, ExtremesComparison):
         misfits = [{"circuit": i, "misfit": m} for i, m in comparison.misfits]
-        return _json(common | {"circuit": comparison.circuit, "candidates": misfits, "table": table})
-    return _json(
+        return json_text(common | {"circuit": comparison.circuit, "candidates": misfits, "table": table})
+    return json_text(
         common
         | {
             "rows": len(comparison.line),
@@ -169,7 +167,7 @@ def comparison_json(comparison: Comparison | ExtremesComparison) -> str:
 def calibration_json(calibration: Calibration) -> str:
     """The calibration as one JSON object; angles in radians, null where there is no interval."""
     ends = calibration.ends
-    return _json(
+    return json_text(
         {
             "format": 1,
             "linkage": calibration.linkage.name,
@@ -217,7 +215,7 @@ def write_comparison(
             for row in extent.rows()
         ]
         head = ("quantity", "unit", "value", "computed", "measured", "error", "per_cent")
-        _write_csv(staging / "table.csv", head, lines)
+        write_csv(staging / "table.csv", head, lines)
         if isinstance(comparison, Comparison):
             sides = {"measured": comparison.measured, "computed": comparison.computed}
             _write_rows(staging / "rows.csv", ends, comparison.line, comparison.input, sides)
@@ -261,7 +259,7 @@ def write_calibration(
             )
             for p in calibration.parameters
         ]
-        _write_csv(staging / "parameters.csv", head, lines)
+        write_csv(staging / "parameters.csv", head, lines)
         sides = {
             "measured": calibration.measured,
             "nominal": calibration.nominal,
@@ -274,28 +272,12 @@ def write_calibration(
     return fill_folder(folder, fill, force=force)
 
 
-class _Facts:
-    """Lines of a label and a text; texts hold names of files, so they are no markup."""
-
-    def __init__(self) -> None:
-        self.grid = Table.grid(padding=(0, 2))
-        self.grid.add_column(style="dim", no_wrap=True)
-        self.grid.add_column()
-
-    def add(self, label: str, text: str, style: str = "") -> None:
-        self.grid.add_row(label, Text(text, style=style))
-
-
 def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
     return [word(ends, quantity) for quantity in quantities]
 
 
 def _candidate(circuit: int, branch: int, misfit: float) -> str:
-    return f"circuit {circuit}, branch {branch} (misfit {_part(misfit)})"
-
-
-def _part(value: float) -> str:
-    return f"{100 * value:.3g} %"
+    return f"circuit {circuit}, branch {branch} (misfit {per_cent(misfit)})"
 
 
 def _value(ends: Ends, quantity: str, value: float) -> str:
@@ -306,49 +288,41 @@ def _value(ends: Ends, quantity: str, value: float) -> str:
 
 def _extents_table(extents: Sequence[Extent], ends: Ends) -> Table:
     """The paper's Table 1, a line for each of its three values of each quantity."""
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.add_column("value")
-    for name in ("computed", "measured", "error", "per cent"):
-        table.add_column(name, justify="right")
-    for extent in extents:
-        unit = ends.unit(extent.quantity)
-        for name, computed, measured, error, share in extent.rows():
-            table.add_row(
-                f"{word(ends, extent.quantity)} {name} \\[{unit}]",
-                f"{computed:.6g}",
-                f"{measured:.6g}",
-                f"{error:+.4g}",
-                "-" if share is None else f"{share:+.2f} %",
-            )
-    return table
+    rows = (
+        (
+            f"{word(ends, extent.quantity)} {name} [{ends.unit(extent.quantity)}]",
+            f"{computed:.6g}",
+            f"{measured:.6g}",
+            f"{error:+.4g}",
+            "-" if share is None else f"{share:+.2f} %",
+        )
+        for extent in extents
+        for name, computed, measured, error, share in extent.rows()
+    )
+    return number_table(("value", "computed", "measured", "error", "per cent"), rows)
 
 
 def _spread_table(comparison: Comparison) -> Table:
     ends = comparison.ends
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.add_column("measured less computed")
-    for name in ("greatest", "in line", "rms", "mean"):
-        table.add_column(name, justify="right")
-    for quantity in comparison.outputs:
-        spread = comparison.spread(quantity)
-        table.add_row(
-            f"{word(ends, quantity)} \\[{ends.unit(quantity)}]",
+    rows = (
+        (
+            f"{word(ends, quantity)} [{ends.unit(quantity)}]",
             f"{spread.greatest:+.4g}",
             str(spread.line),
             f"{spread.rms:.4g}",
             f"{spread.mean:+.4g}",
         )
-    return table
+        for quantity in comparison.outputs
+        for spread in [comparison.spread(quantity)]
+    )
+    return number_table(("measured less computed", "greatest", "in line", "rms", "mean"), rows)
 
 
 def _parameter_table(calibration: Calibration) -> Table:
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.add_column("dimension")
-    for name in ("nominal", "calibrated", f"\u00b1 {100 * calibration.confidence:g} %", "change"):
-        table.add_column(name, justify="right")
-    table.add_column("")
+    heads = ("dimension", "nominal", "calibrated", f"\u00b1 {100 * calibration.confidence:g} %", "change", "")
+    rows = []
     for p in calibration.parameters:
-        label = f"{p.name} \\[{_parameter_unit(p, calibration.ends)}]"
+        label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]"
         nominal, value = _shown(p, p.nominal), _shown(p, p.value)
         if p.status == "calibrated":
             reach = _shown(p, (p.high - p.low) / 2)
@@ -357,8 +331,8 @@ def _parameter_table(calibration: Calibration) -> Table:
         else:
             note = {"fixed": "held", "untold": "not told: held"}.get(p.status, p.status)
             cells = [f"{value:.6g}", "-", "-", note]
-        table.add_row(label, f"{nominal:.6g}", *cells)
-    return table
+        rows.append((label, f"{nominal:.6g}", *cells))
+    return number_table(heads, rows, words=[5])
 
 
 def _digits(reach: float) -> int:
@@ -390,28 +364,17 @@ def _units(ends: Ends) -> dict[str, str]:
     return {"length": ends.length_unit, "angle": "rad", "time": "s"}
 
 
-def _json(value: dict[str, Any]) -> str:
-    return json.dumps(without_nan(value), indent=2, allow_nan=False)
-
-
 def _write_rows(
     path: Path, ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, Any]]
 ) -> None:
     """A line for each measured row: its line in the file, the input, each quantity on each side."""
-    columns = {"line": line.tolist(), f"input_{_suffix(ends.unit('input'))}": inputs.tolist()}
+    columns = {"line": line, f"input_{_suffix(ends.unit('input'))}": inputs}
     for quantity in next(iter(sides.values())):
         for side, values in sides.items():
             name = f"{word(ends, quantity)}_{side}_{_suffix(ends.unit(quantity))}"
-            columns[name] = values[quantity].tolist()
-    _write_csv(path, tuple(columns), zip(*columns.values(), strict=True))
+            columns[name] = values[quantity]
+    write_columns(path, columns)
 
 
 def _suffix(unit: str) -> str:
     return unit.replace("/", "_").replace("\u00b2", "2")
-
-
-def _write_csv(path: Path, head: Sequence[str], lines: Iterable[Sequence[Any]]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(head)
-        writer.writerows([["" if cell is None or cell != cell else cell for cell in line] for line in lines])

@@ -8,10 +8,12 @@ from typing import Annotated
 import typer
 
 import sevenbar as sb
+from sevenbar.folder import check_targets
 from sevenbar.options import (
     Figures,
     Force,
     InputJoint,
+    OutputJoint,
     Source,
     Speed,
     figure_formats,
@@ -26,10 +28,7 @@ def simulate(
     steps: Annotated[int, typer.Option(help="Steps in a full turn of the input.")] = 3600,
     circuit: Annotated[int, typer.Option(help="The circuit that is followed.")] = 0,
     input_joint: InputJoint = None,
-    output: Annotated[
-        str | None,
-        typer.Option("--output", help="The joint whose rates are compared; the file's by default."),
-    ] = None,
+    output: OutputJoint = None,
     speed: Speed = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the JSON, the CSV and the figures.")] = None,
     figures: Figures = None,
@@ -42,14 +41,12 @@ def simulate(
     from sevenbar.simulation import report as simulation_report
     from sevenbar.simulation.run import moved, prepared, ready
 
-    endings = figure_formats(figures)
+    endings = figure_formats(figures, out)
     ready(engine)
     loaded = sb.load(linkage)
-    if out is not None and not force:
+    if out is not None:
         # before the long run
-        simulation_report.refuse_existing(
-            simulation_report.targets(engine, out, endings, bool(loaded.points))
-        )
+        check_targets(simulation_report.targets(engine, out, endings, bool(loaded.points)), force=force)
     way, model = prepared(loaded, steps=steps, circuit=circuit, input=input_joint, output=output, speed=speed)
     with progress_bar(f"{engine}: {loaded.name}") as progress:
         run = moved(way, model, engine, progress)

@@ -25,7 +25,7 @@ STRETCHES = 180
 #: A logarithmic panel ends at this part of its greatest difference, or at this number: below is rounding.
 SPAN, FLOOR = 1e-6, 1e-17
 
-_THEORY, _ENGINE = "#0072B2", "#D55E00"
+_ENGINE, _THEORY = CIRCUIT_COLOURS[:2]
 
 
 def figures(run: Simulation) -> Iterator[tuple[str, Figure]]:

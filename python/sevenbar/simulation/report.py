@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import json
 import math
 import os
 from collections.abc import Sequence
@@ -12,24 +10,45 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from rich.box import SIMPLE_HEAD
 from rich.console import Console, Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
-from sevenbar.errors import OutputError
-from sevenbar.folder import fill_folder
+from sevenbar.folder import check_targets, fill_folder, write_columns
+from sevenbar.page import Facts, number_table
+from sevenbar.report import json_text, without_nan
 from sevenbar.simulation.agreement import Difference, Simulation
-from sevenbar.simulation.run import as_dict
 from sevenbar.skeleton import short
 
 #: The names of figures that a run may have.
 FIGURES = ("output", "joints", "points")
 
 
+def as_dict(run: Simulation) -> dict[str, Any]:
+    """What a run comes to, as plain values: angles in radians, lengths in the linkage's unit."""
+    way = run.course
+    told = {
+        "format": 1,
+        "linkage": {"name": run.linkage.name, "kind": run.linkage.kind},
+        "units": {"length": run.linkage.length_unit, "angle": "rad", "time": "s"},
+        "engine": {"name": run.record.engine, "version": run.record.version, "notes": list(run.record.notes)},
+        "drive": {"input": way.motion.input, "output": way.motion.output, "speed": way.motion.speed},
+        "course": {
+            "circuit": way.circuit.index,
+            "closes": way.closes,
+            "rows": len(way.rows),
+            "lead": len(way.lead),
+            "step": way.step,
+        },
+        "differences": [vars(found) for found in run.differences],
+        "closure_error": {"length": run.gap, "angle": run.tilt},
+        "returned": None if run.returned is None else {"length": run.returned[0], "angle": run.returned[1]},
+    }
+    return without_nan(told)  # type: ignore[no-any-return]
+
+
 def as_json(run: Simulation) -> str:
     """What a run comes to as JSON text."""
-    return json.dumps(as_dict(run), indent=2, allow_nan=False)
+    return json_text(as_dict(run))
 
 
 def print_text(run: Simulation, console: Console | None = None) -> None:
@@ -41,35 +60,35 @@ def text(run: Simulation) -> RenderableType:
     """The report for people, to be printed by rich."""
     way, record, linkage = run.course, run.record, run.linkage
     motion, unit = way.motion, run.linkage.length_unit
-    facts = Table.grid(padding=(0, 2))
-    facts.add_column(style="dim")
-    facts.add_column()
-    facts.add_row("loop", " ".join(f"{j.kind} {j.name}" for j in linkage.joints))
-    facts.add_row("engine", f"{record.engine} {record.version}: {record.method}")
+    facts = Facts()
+    facts.add("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))
+    facts.add("engine", f"{record.engine} {record.version}: {record.method}")
     slide = linkage.column_kinds[way.circuit.input_column] == "slide"
-    facts.add_row(
+    facts.add(
         "drive", f"{motion.input} at {motion.speed:.6g} {unit if slide else 'rad'}/s, output {motion.output}"
     )
-    facts.add_row("course", way.told())
+    facts.add("course", way.told())
     lead = f", after {len(way.lead)} that are not compared" if len(way.lead) else ""
-    facts.add_row("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
+    facts.add("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
     for number, note in enumerate(record.notes):
-        facts.add_row("" if number else "built", note)
-    facts.add_row(
+        facts.add("" if number else "built", note)
+    facts.add(
         "closure error", f"{_sized(run.gap, unit)} and {_sized(run.tilt, 'rad')} at most, in the engine"
     )
     if run.returned is not None:
-        facts.add_row(
+        facts.add(
             "return",
             f"misses its first pose by {_sized(run.returned[0], unit)} and {_sized(run.returned[1], 'rad')}",
         )
-    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    table.add_column(f"{record.engine} less Sevenbar", no_wrap=True)
-    for heading in ("greatest", f"at {short(motion.input, 12)}", "median", "values up to"):
-        table.add_column(heading, justify="right")
-    for found in run.differences:
-        table.add_row(*_cells(found, slide, unit))
-    return Group(Text(linkage.name, style="bold underline"), facts, Text(), table)
+    heads = (
+        f"{record.engine} less Sevenbar",
+        "greatest",
+        f"at {short(motion.input, 12)}",
+        "median",
+        "values up to",
+    )
+    table = number_table(heads, (_cells(found, slide, unit) for found in run.differences))
+    return Group(Text(linkage.name, style="bold underline"), facts.grid, Text(), table)
 
 
 def _sized(value: float, unit: str) -> str:
@@ -78,10 +97,10 @@ def _sized(value: float, unit: str) -> str:
 
 def _cells(found: Difference, slide: bool, unit: str) -> tuple[str, ...]:
     if math.isnan(found.greatest):
-        return f"{found.quantity} \\[{found.unit}]", "-", "-", "-", "-"
+        return f"{found.quantity} [{found.unit}]", "-", "-", "-", "-"
     at = f"{found.at:.6g} {unit}" if slide else f"{math.degrees(found.at):.3f}°"
     return (
-        f"{found.quantity} \\[{found.unit}]",
+        f"{found.quantity} [{found.unit}]",
         f"{found.greatest:.2e}",
         at,
         f"{found.median:.2e}",
@@ -102,13 +121,6 @@ def targets(run_engine: str, folder: Path, figures: Sequence[str], points: bool)
     return [folder / name for name in names]
 
 
-def refuse_existing(files: Sequence[Path]) -> None:
-    """Raises `OutputError` naming the first file that is already there."""
-    for file in files:
-        if file.exists():
-            raise OutputError(f"{file}: exists already; give another folder, or --force to write over it")
-
-
 def write(
     run: Simulation,
     folder: str | os.PathLike[str],
@@ -126,19 +138,18 @@ def write(
     from sevenbar.simulation.mjcf import mjcf
 
     engine = run.record.engine.lower()
-    if not force:
-        refuse_existing(targets(engine, Path(folder), figures, bool(run.points)))
+    check_targets(targets(engine, Path(folder), figures, bool(run.points)), force=force)
 
     def fill(staging: Path) -> None:
         (staging / f"{engine}.json").write_text(as_json(run) + "\n", encoding="utf-8")
-        write_csv(run, staging / f"{engine}.csv")
+        write_columns(staging / f"{engine}.csv", columns(run))
         if engine == "mujoco":
             (staging / "mujoco.xml").write_text(mjcf(run.model, time_step=run.course.step), encoding="utf-8")
         for name, figure in drawn(run):
             for ending in figures:
                 save(figure, staging / f"{engine}_{name}.{ending}")
 
-    return fill_folder(Path(folder), fill)
+    return fill_folder(Path(folder), fill, force=force)
 
 
 def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
@@ -169,13 +180,3 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
     found["closure_error_rad"] = run.engine.tilt.max(axis=1)
     return found
-
-
-def write_csv(run: Simulation, path: Path) -> None:
-    """Writes every row; a value that does not exist is an empty cell."""
-    table = columns(run)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(table)
-        cells = [["" if v != v else v for v in column.tolist()] for column in table.values()]
-        writer.writerows(zip(*cells, strict=True))

@@ -9,10 +9,11 @@ The engine is given rigid bodies, joints and a drive, and the pose and velocitie
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+
+import numpy as np
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.linkage import Linkage
+from sevenbar.linkage import MOST_SAMPLES, Linkage
 from sevenbar.simulation import exudyn_engine, mujoco_engine
 from sevenbar.simulation.agreement import Simulation, agreement
 from sevenbar.simulation.course import Course, course
@@ -59,7 +60,9 @@ def prepared(
     speed: float | str | None = None,
 ) -> tuple[Course, Prototype]:
     """What an engine will be asked for, and the prototype it is given; raises as `simulate` does."""
-    motion = linkage.motion(steps, input=input, output=output, speed=speed)
+    if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 4 <= steps <= MOST_SAMPLES:
+        raise RequestError(f"steps: {shown(steps)} is not a count; give 4 to {MOST_SAMPLES}")
+    motion = linkage.motion(int(steps), input=input, output=output, speed=speed)
     way = course(motion, circuit)
     return way, prototype(linkage, way.circuit, way.start, motion.speed)
 
@@ -75,28 +78,3 @@ def moved(way: Course, model: Prototype, engine: str, progress: Progress | None 
     """A prototype moved along a course by an engine."""
     record = ENGINES[engine](model, way.steps, way.step, progress=progress)
     return agreement(way, model, record)
-
-
-def as_dict(run: Simulation) -> dict[str, Any]:
-    """What a run comes to, as plain values: angles in radians, lengths in the linkage's unit."""
-    way = run.course
-    return {
-        "format": 1,
-        "linkage": {"name": run.linkage.name, "kind": run.linkage.kind},
-        "units": {"length": run.linkage.length_unit, "angle": "rad", "time": "s"},
-        "engine": {"name": run.record.engine, "version": run.record.version, "notes": list(run.record.notes)},
-        "drive": {"input": way.motion.input, "output": way.motion.output, "speed": way.motion.speed},
-        "course": {
-            "circuit": way.circuit.index,
-            "closes": way.closes,
-            "rows": len(way.rows),
-            "lead": len(way.lead),
-            "step": way.step,
-        },
-        "differences": [
-            {key: None if value != value else value for key, value in vars(found).items()}
-            for found in run.differences
-        ],
-        "closure_error": {"length": run.gap, "angle": run.tilt},
-        "returned": None if run.returned is None else {"length": run.returned[0], "angle": run.returned[1]},
-    }

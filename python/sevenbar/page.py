@@ -1,0 +1,33 @@
+"""What the printed pages of all commands are made of: labelled facts, and tables of numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+
+class Facts:
+    """Lines of a label and a text beside it; texts hold names of joints and files, so they are no markup."""
+
+    def __init__(self) -> None:
+        self.grid = Table.grid(padding=(0, 2))
+        self.grid.add_column(style="dim", no_wrap=True)
+        self.grid.add_column()
+
+    def add(self, label: str, text: str, style: str = "") -> None:
+        """Adds a line; without a label it belongs to the one above."""
+        self.grid.add_row(label, Text(text, style=style))
+
+
+def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: Sequence[int] = ()) -> Table:
+    """A table with names in its first column and numbers, flush right, in the others but for `words`."""
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    for place, head in enumerate(heads):
+        right = place > 0 and place not in words
+        table.add_column(Text(head), justify="right" if right else "left", no_wrap=place == 0)
+    for row in rows:
+        table.add_row(*map(Text, row))
+    return table
