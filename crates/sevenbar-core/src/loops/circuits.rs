@@ -92,24 +92,47 @@ impl Curve {
     /// Where a column changes direction, in order.
     pub fn turnings(&self, chain: &Chain, column: usize) -> Vec<Turning> {
         let mut found = Vec::new();
+        let mut marks: Vec<(f64, f64)> = Vec::new();
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
-            let mut before = (0.0, a.rates[0][column]);
-            for look in 1..=LOOKS {
+            // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
+            marks.clear();
+            for look in 0..=LOOKS {
                 let s = a.step * look as f64 / LOOKS as f64;
-                // by the nearer end
                 let rate = if 2 * look < LOOKS {
                     a.rate(column, s)
                 } else {
                     b.rate(column, s - a.step)
                 };
-                if before.1 * rate < 0.0
-                    && let Some(node) = turning_between(chain, a, column, before, (s, rate))
+                match marks.last_mut() {
+                    Some(last) if last.1 * rate >= 0.0 => {
+                        if rate.abs() > last.1.abs() {
+                            *last = (s, rate);
+                        }
+                    }
+                    _ => marks.push((s, rate)),
+                }
+            }
+            if marks.len() < 2 {
+                continue;
+            }
+            // both ends are known, and the places between are looked at
+            let count = marks.len();
+            for (k, mark) in marks.iter_mut().enumerate() {
+                *mark = if k == 0 {
+                    (0.0, a.rates[0][column])
+                } else if k + 1 == count {
+                    (a.step, b.rates[0][column])
+                } else {
+                    let rate = chain.ahead(a, mark.0).map_or(mark.1, |n| n.rates[0][column]);
+                    (mark.0, rate)
+                };
+            }
+            for ends in marks.windows(2) {
+                if ends[0].1 * ends[1].1 < 0.0
+                    && let Some(node) = turning_between(chain, a, column, ends[0], ends[1])
                 {
                     found.push(Turning { segment, node });
-                }
-                if rate != 0.0 {
-                    before = (s, rate);
                 }
             }
         }
@@ -117,23 +140,17 @@ impl Curve {
     }
 }
 
-/// The place in a segment where a column's rate is zero, between two where its sign differs.
+/// The place in a step where a column's rate is zero, between two where its sign differs.
 fn turning_between(
     chain: &Chain,
     a: &Node,
     column: usize,
-    low: (f64, f64),
-    high: (f64, f64),
+    mut low: (f64, f64),
+    mut high: (f64, f64),
 ) -> Option<Node> {
-    let (mut low, mut high) = (low, high);
     let mut best: Option<Node> = None;
-    for step in 0..60 {
-        // regula falsi, each second time a bisection as long as the bracket is wide
-        let s = if step % 3 == 2 {
-            0.5 * (low.0 + high.0)
-        } else {
-            (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
-        };
+    let mut s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+    for _ in 0..60 {
         let node = chain.ahead(a, s)?;
         let rate = node.rates[0][column];
         if best
@@ -150,6 +167,13 @@ fn turning_between(
         } else {
             high = (s, rate);
         }
+        // Newton's step by the second derivative, if it stays between
+        let next = s - rate / node.rates[1][column] * dot(&node.rates[0], &a.rates[0]);
+        s = if next > low.0 && next < high.0 {
+            next
+        } else {
+            0.5 * (low.0 + high.0)
+        };
     }
     best
 }
