@@ -5,6 +5,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.errors import RequestError, TableError
+from sevenbar.export.tables import write_csv
 from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes, pairs, read_measured
 from sevenbar.units import measured_unit
 
@@ -76,10 +77,8 @@ def test_a_slide_comes_out_in_the_linkage_s_length_unit(tmp_path):
 
 
 def test_the_rows_that_sevenbar_writes_are_read_back(tmp_path):
-    from sevenbar.folder import write_csv
-
     motion = sb.load("rssr").motion(36)
-    write_csv(motion, tmp_path / "motion.csv")
+    write_csv(motion, tmp_path / "motion.csv", "file")
     lines = (tmp_path / "motion.csv").read_text().splitlines()
     (tmp_path / "measured.csv").write_text("\n".join(lines[:37]) + "\n")
     measured = read_measured(tmp_path / "measured.csv", ENDS)
