@@ -170,6 +170,7 @@ def test_a_linkage_that_does_not_close_is_an_answer(tmp_path):
     assert {p.name for p in (tmp_path / "out").iterdir()} == {"report.md", "report.json", "motion.csv"}
 
 
+@pytest.mark.slow
 def test_animation_goes_where_it_is_told(tmp_path):
     run = sevenbar("analyze", "rssr", "--samples", 36, "--animate", tmp_path / "move.gif")
     assert run.returncode == 0, run.stderr

@@ -32,7 +32,7 @@ WELL = 1e4
 #: The cosine of a ball's second turn below which its first and third have no direction.
 TURNS_DEFINED = 0.2
 
-LINKAGES = {"few": 6, "many": 60}
+LINKAGES = {"two": 2, "few": 6, "many": 60}
 ROWS = 3
 
 FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {
@@ -59,7 +59,13 @@ def many_digits() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(params=["few", pytest.param("many", marks=pytest.mark.proof)])
+@pytest.fixture(
+    params=[
+        "two",
+        pytest.param("few", marks=pytest.mark.slow),
+        pytest.param("many", marks=pytest.mark.proof),
+    ]
+)
 def amount(request: pytest.FixtureRequest) -> int:
     return LINKAGES[request.param]
 
