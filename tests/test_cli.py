@@ -5,8 +5,6 @@ import io
 import json
 import math
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,24 +12,12 @@ import pytest
 from rich.console import Console
 
 import sevenbar as sb
+from commands import mistake, sevenbar
 from sevenbar import report
 from sevenbar.gallery import names
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
-
-
-def sevenbar(*arguments, cwd=None):
-    command = [sys.executable, "-m", "sevenbar.cli", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
-
-
-def mistake(*arguments, cwd=None):
-    """The one message of a call that must end with exit 2 and print nothing else."""
-    run = sevenbar(*arguments, cwd=cwd)
-    assert (run.returncode, run.stdout) == (2, "")
-    assert "Traceback" not in run.stderr
-    return run.stderr.removeprefix("sevenbar: ").rstrip("\n")
 
 
 def test_the_report_tells_the_paper_s_case():

@@ -3,7 +3,7 @@
 import pytest
 
 import sevenbar as sb
-from test_cli import mistake, sevenbar
+from commands import mistake, sevenbar
 
 LISTED = "give the path of a TOML file, or a name that 'sevenbar gallery' lists"
 

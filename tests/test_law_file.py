@@ -1,6 +1,5 @@
 """Laws from files: against the RSSR's closed formula, differences of rows, and the same law in other words."""
 
-import subprocess
 import sys
 
 import mpmath as mp
@@ -8,6 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from commands import sevenbar
 from sevenbar.errors import MissingExtraError, RequestError, TableError
 
 #: Sun and Zhou's linkage; its coupler is |A1 B1|.
@@ -328,11 +328,6 @@ def test_without_scipy_only_what_needs_a_spline_is_refused(tmp_path, monkeypatch
         f"{path}: a spline through each value needs SciPy; install it with: pip install 'sevenbar[law]', "
         "or give columns of velocity and acceleration and jerk"
     )
-
-
-def sevenbar(*arguments, cwd):
-    command = [sys.executable, "-m", "sevenbar.cli", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
 
 
 def test_the_command_line_takes_a_law_and_writes_its_rows(tmp_path):

@@ -11,7 +11,7 @@ import pytest
 
 import bench_curve
 import sevenbar as sb
-from test_cli import mistake, sevenbar
+from commands import mistake, sevenbar
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 BENCH = EXAMPLES / "rssr_bench.csv"

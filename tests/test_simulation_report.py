@@ -3,8 +3,6 @@
 import csv
 import json
 import re
-import subprocess
-import sys
 
 import mujoco
 import numpy as np
@@ -12,26 +10,12 @@ import pytest
 from matplotlib.figure import Figure
 
 import sevenbar as sb
+from commands import mistake, sevenbar
 from sevenbar.errors import NotCoveredError, OutputError, RequestError
 from sevenbar.folder import write_columns
 from sevenbar.simulation import report as simulation_report
 from sevenbar.simulation.figures import figures, joints_figure, output_figure, points_figure
 from sevenbar.simulation.run import simulate
-
-
-def sevenbar(*arguments, cwd=None, before=""):
-    """A call of the program; `before` is run in it first."""
-    code = f"import sys\n{before}\nfrom sevenbar.cli import main\nmain()"
-    command = [sys.executable, "-c", code, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
-
-
-def mistake(*arguments, cwd=None, before=""):
-    """The one message of a call that must end with exit 2 and print nothing else."""
-    run = sevenbar(*arguments, cwd=cwd, before=before)
-    assert (run.returncode, run.stdout) == (2, "")
-    assert "Traceback" not in run.stderr
-    return run.stderr.removeprefix("sevenbar: ").rstrip("\n")
 
 
 @pytest.fixture(scope="module")

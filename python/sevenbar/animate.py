@@ -20,8 +20,8 @@ from PIL import Image
 
 from sevenbar import plot, scene, skeleton
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
-from sevenbar.figure import STYLE, chosen_circuit, new_figure, shown_value, slides, title, written_whole
-from sevenbar.motion import Circuit, Floats, Motion
+from sevenbar.figure import STYLE, new_figure, shown_value, slides, title, written_whole
+from sevenbar.motion import Circuit, Floats, Motion, chosen_circuit
 
 Picture = npt.NDArray[np.uint8]
 

@@ -101,7 +101,7 @@ def analyze(
     if animate is not None:
         from sevenbar.animate import animate as write_animation
         from sevenbar.animate import check_target
-        from sevenbar.figure import chosen_circuit
+        from sevenbar.motion import chosen_circuit
 
         # before anything is written
         check_target(animate)

@@ -14,7 +14,7 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from sevenbar.errors import OutputError, RequestError, shown
+from sevenbar.errors import OutputError, shown
 from sevenbar.motion import Circuit, Motion
 from sevenbar.skeleton import short
 
@@ -63,20 +63,6 @@ def input_label(motion: Motion) -> str:
     if slides(motion, motion.input):
         return f"input position: {name} [{motion.linkage.length_unit}]"
     return f"input angle: {name} [deg]"
-
-
-def chosen_circuit(motion: Motion, index: int) -> Circuit:
-    """The circuit of this index, or `RequestError` saying why there is none."""
-    count = len(motion.circuits)
-    if count == 0:
-        closing = "at no input" if motion.motion_type == "cannot-assemble" else "along no circuit"
-        raise RequestError(
-            f"motion: {motion.motion_type}, the loop closes {closing}, so there is nothing to draw"
-        )
-    if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
-        allowed = "0" if count == 1 else f"0 to {count - 1}"
-        raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
-    return motion.circuits[index]
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -111,7 +111,7 @@ def draw(
 ) -> None:
     """Draws figures of these kinds into a folder, in each of the formats `figures`."""
     from sevenbar import plot
-    from sevenbar.figure import chosen_circuit
+    from sevenbar.motion import chosen_circuit
 
     def made() -> Iterator[tuple[str, Figure]]:
         linkage = motion.linkage

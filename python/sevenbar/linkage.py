@@ -339,18 +339,19 @@ class Linkage:
         column, output_column = self._ends(
             input, self.drive.output if output is None and input is None else output
         )
-        if (
-            isinstance(samples, bool)
-            or not isinstance(samples, (int, np.integer))
-            or not 4 <= samples <= MOST_SAMPLES
-        ):
-            raise RequestError(f"samples: {shown(samples)} is not a count; give 4 to {MOST_SAMPLES}")
-        return column, output_column, int(samples), self._speed(speed, column)
+        return column, output_column, sample_count("samples", samples), self._speed(speed, column)
 
     def _has_closed_form(self, method: str) -> bool:
         if method not in ("auto", "general"):
             raise RequestError(f"method: {shown(method)} is not offered; give auto or general")
         return method == "auto" and self.kind == "RSSR"
+
+
+def sample_count(name: str, value: object) -> int:
+    """A number of inputs in a turn, or `RequestError` naming what it was given for."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 4 <= value <= MOST_SAMPLES:
+        raise RequestError(f"{name}: {shown(value)} is not a count; give 4 to {MOST_SAMPLES}")
+    return int(value)
 
 
 def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:

@@ -436,6 +436,20 @@ def sampled_extremes(values: Floats, inputs: Floats) -> Extremes | None:
     return Extremes(float(values[low]), float(inputs[low]), float(values[high]), float(inputs[high]))
 
 
+def chosen_circuit(motion: Motion, index: int) -> Circuit:
+    """The circuit of this index, or `RequestError` saying why there is none."""
+    count = len(motion.circuits)
+    if count == 0:
+        closing = "at no input" if motion.motion_type == "cannot-assemble" else "along no circuit"
+        raise RequestError(
+            f"motion: {motion.motion_type}, the loop closes {closing}, so there is nothing to draw"
+        )
+    if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
+        allowed = "0" if count == 1 else f"0 to {count - 1}"
+        raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
+    return motion.circuits[index]
+
+
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
     try:

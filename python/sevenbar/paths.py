@@ -18,7 +18,6 @@ from sevenbar.figure import (
     CUT,
     LINE_STYLES,
     STYLE,
-    chosen_circuit,
     input_label,
     new_figure,
     note,
@@ -28,7 +27,7 @@ from sevenbar.figure import (
     title,
 )
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Floats, Integers, Modes, Motion
+from sevenbar.motion import Circuit, Floats, Integers, Modes, Motion, chosen_circuit
 from sevenbar.scene import INPUT, OUTPUT, chain_bars, chain_keys, prepare_view, put, stage_chain
 from sevenbar.skeleton import chain, frames_of, one_pose, short, walk
 

@@ -24,7 +24,6 @@ from sevenbar.figure import (
     FORMATS,
     LINE_STYLES,
     STYLE,
-    chosen_circuit,
     input_label,
     new_figure,
     note,
@@ -34,7 +33,7 @@ from sevenbar.figure import (
     slides,
     title,
 )
-from sevenbar.motion import Circuit, Extremes, Floats, Motion
+from sevenbar.motion import Circuit, Extremes, Floats, Motion, chosen_circuit
 from sevenbar.paths import joints, modes_overview, point_path
 from sevenbar.scene import bars, label, link_keys, put, stage
 from sevenbar.skeleton import Skeleton, skeleton, walk

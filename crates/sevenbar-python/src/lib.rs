@@ -137,12 +137,7 @@ impl Rssr {
         law: Option<PyReadonlyArray2<'py, f64>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let input = input_named(input)?;
-        let law: Option<Vec<[f64; 4]>> = law.map(|rows| {
-            let rows = rows.as_array();
-            rows.outer_iter()
-                .map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0)))
-                .collect()
-        });
+        let law = law_rows(law);
         let (motion, rows) = py.detach(|| {
             let motion = self.0.motion(input);
             let rows: Vec<Vec<Row>> = motion
@@ -250,6 +245,18 @@ fn circuit_dict<'py>(py: Python<'py>, circuit: &Circuit, rows: &[Row]) -> PyResu
     result.set_item("velocity", circuit.velocity.map(extremes))?;
     result.set_item("acceleration", circuit.acceleration.map(extremes))?;
     Ok(result)
+}
+
+/// An input law as rows of value and three derivatives.
+type LawRows = Option<Vec<[f64; 4]>>;
+
+pub(crate) fn law_rows(law: Option<PyReadonlyArray2<'_, f64>>) -> LawRows {
+    law.map(|rows| {
+        rows.as_array()
+            .outer_iter()
+            .map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0)))
+            .collect()
+    })
 }
 
 /// Kind, input, output, pass and condition of each.

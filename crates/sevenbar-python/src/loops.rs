@@ -1,6 +1,6 @@
 //! Any single loop, for Python.
 
-use crate::{CoreError, dead_centre_rows, flat};
+use crate::{CoreError, dead_centre_rows, flat, law_rows};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -195,17 +195,6 @@ impl Loop {
         }
         Ok(result)
     }
-}
-
-type LawRows = Option<Vec<[f64; 4]>>;
-
-fn law_rows(law: Option<PyReadonlyArray2<'_, f64>>) -> LawRows {
-    law.map(|rows| {
-        rows.as_array()
-            .outer_iter()
-            .map(|r| std::array::from_fn(|k| r.get(k).copied().unwrap_or(0.0)))
-            .collect()
-    })
 }
 
 fn write_found(result: &Bound<'_, PyDict>, found: &loops::Found) -> PyResult<()> {

@@ -9,9 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.figure import chosen_circuit
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Floats, Law, Motion
+from sevenbar.motion import Circuit, Floats, Law, Motion, chosen_circuit
 from sevenbar.skeleton import Chain, chain, frames_along
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.

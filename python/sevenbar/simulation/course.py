@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Circuit, Floats, Integers, Motion
+from sevenbar.errors import RequestError
+from sevenbar.motion import Circuit, Floats, Integers, Motion, chosen_circuit
 
 #: An engine starts so many rows ahead of the first that is compared. Its accelerations start with an error
 #: that is damped by some 0.6 (Exudyn) to 0.75 (MuJoCo) a step, so that rounding remains.
@@ -125,13 +125,9 @@ def _longest_pass(circuit: Circuit, solved: np.ndarray) -> Integers:
 
 
 def _circuit(motion: Motion, index: int) -> Circuit:
-    count = len(motion.circuits)
-    if count == 0:
+    if not motion.circuits:
         raise RequestError(
             f"simulate: {motion.linkage.name} does not move ({motion.motion_type}), so no engine can follow "
             "it; give another input, or other dimensions"
         )
-    if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
-        allowed = "0" if count == 1 else f"0 to {count - 1}"
-        raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
-    return motion.circuits[index]
+    return chosen_circuit(motion, index)

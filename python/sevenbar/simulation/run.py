@@ -10,10 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
 from sevenbar.errors import RequestError, shown
-from sevenbar.linkage import MOST_SAMPLES, Linkage
+from sevenbar.linkage import Linkage, sample_count
 from sevenbar.simulation import exudyn_engine, mujoco_engine
 from sevenbar.simulation.agreement import Simulation, agreement
 from sevenbar.simulation.course import Course, course
@@ -60,9 +58,7 @@ def prepared(
     speed: float | str | None = None,
 ) -> tuple[Course, Prototype]:
     """What an engine will be asked for, and the prototype it is given; raises as `simulate` does."""
-    if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 4 <= steps <= MOST_SAMPLES:
-        raise RequestError(f"steps: {shown(steps)} is not a count; give 4 to {MOST_SAMPLES}")
-    motion = linkage.motion(int(steps), input=input, output=output, speed=speed)
+    motion = linkage.motion(sample_count("steps", steps), input=input, output=output, speed=speed)
     way = course(motion, circuit)
     return way, prototype(linkage, way.circuit, way.start, motion.speed)
 
