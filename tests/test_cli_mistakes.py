@@ -186,3 +186,11 @@ def test_a_figure_in_a_place_that_cannot_be_written_leaves_nothing(folder):
         message = mistake("analyze", "rssr", "--out", "out", "--animate", place, cwd=folder)
         assert place in message or "avi" in message
     assert sorted(p.name for p in folder.iterdir()) == before
+
+
+def test_a_length_that_is_lost_beside_the_others_is_the_callers_mistake(tmp_path):
+    (tmp_path / "thin.toml").write_text("format = 1\n[rssr]\nM = 700\nN = 700\nL1 = 1e-50\nL3 = 550\nD = 0\n")
+    assert mistake("analyze", "thin.toml", cwd=tmp_path) == (
+        "linkage: link 1: its two joints coincide, so it has no length; "
+        "give it one that is not lost beside the others"
+    )

@@ -165,3 +165,25 @@ def test_forward_differences_of_the_path_approach_the_exact_velocity_in_first_or
             worst = max(worst, float(np.abs(differences - trace.velocity).max()))
         errors.append(worst)
     assert 3 < errors[0] / errors[1] < 5
+
+
+@pytest.mark.parametrize("name", ["seven_r", "myard_5r", "rsur"])
+def test_a_negative_speed_runs_a_circuit_that_goes_round_with_falling_input(name):
+    """Row by row the same poses from the other end, rates of the other sign, times that rise."""
+    forwards, backwards = (sb.load(name).motion(speed=speed) for speed in (2.0, -2.0))
+    for there, back in zip(forwards, backwards, strict=True):
+        count = len(there.time)
+        assert there.turns
+        order = np.append(0, np.arange(count - 1, 0, -1))
+        np.testing.assert_allclose(back.input, -there.input, atol=1e-12)
+        turned = (back.q - there.q[order] + np.pi) % (2 * np.pi) - np.pi
+        np.testing.assert_allclose(turned, 0, atol=1e-9)
+        np.testing.assert_allclose(back.dq, -there.dq[order], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(back.ddq, there.ddq[order], rtol=1e-9, atol=1e-7)
+        assert (np.diff(back.time) > 0).all()
+        # the rate is the slope over the time that goes by
+        slope = np.gradient(back.output, back.time)[1:-1]
+        np.testing.assert_allclose(slope, back.dq[1:-1, back.output_column], atol=2e-3)
+        one, other = there.point(1, (1.0, 2.0, 3.0)), back.point(1, (1.0, 2.0, 3.0))
+        np.testing.assert_allclose(other.position, one.position[order], atol=1e-9)
+        np.testing.assert_allclose(other.velocity, -one.velocity[order], atol=1e-7)

@@ -33,7 +33,10 @@ class ClosedForm:
 
     def __init__(self, linkage: Linkage) -> None:
         self._linkage = linkage
-        self._core = _core.Rssr(linkage.base, linkage.ground, linkage.links)
+        try:
+            self._core = _core.Rssr(linkage.base, linkage.ground, linkage.links)
+        except _core.CoreError as error:  # beside the longest dimension it vanishes
+            raise RequestError(f"linkage: {error}; give it one that is not lost beside the others") from None
 
     @property
     def size(self) -> float:

@@ -15,12 +15,14 @@ from sevenbar.motion import (
     STATUSES,
     Circuit,
     Floats,
+    Integers,
     Law,
     Modes,
     Motion,
     Trace,
     circuit_from,
 )
+from sevenbar.written import Freedom
 
 if TYPE_CHECKING:
     from sevenbar.linkage import Linkage
@@ -42,6 +44,7 @@ class GeneralLoop:
         self._linkage = linkage
         letters, advances, links, self._link = _expanded(linkage)
         self._core = _core.Loop(letters, np.array(advances), linkage.base, linkage.ground, np.array(links))
+        self._found: dict[int, Mobility] = {}
 
     @property
     def size(self) -> float:
@@ -83,7 +86,9 @@ class GeneralLoop:
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""
-        return self._mobility(self._solve(column, self._core.mobility, column))
+        if column not in self._found:
+            self._found[column] = self._mobility(self._solve(column, self._core.mobility, column))
+        return self._found[column]
 
     def motion(self, column: int, output: int, samples: int, speed: float, law: Law | None) -> Motion:
         """Every circuit over the whole range of one column."""
@@ -91,6 +96,8 @@ class GeneralLoop:
         table = None if law is None else law.table
         raw = self._solve(column, self._core.motion, column, output, samples, speed, table)
         mobility = self._mobility(raw)
+        if law is None:
+            self._found[column] = mobility
         if raw["input_rests"] and not raw["circuits"]:
             raise self._rests(column)
         circuits = tuple(
@@ -176,12 +183,16 @@ class GeneralLoop:
     def _circuit(
         self, index: int, raw: Mapping[str, Any], columns: tuple[int, int], speed: float, law: Law | None
     ) -> Circuit:
+        order = np.arange(len(raw["status"]))
+        kinds = self._linkage.column_kinds
+        if speed < 0 and law is None and raw["closed"] and raw["turns"]:
+            order = np.append(order[:1], order[:0:-1])
+            raw = _run_backwards(raw, order, kinds)
         q = raw["joints"][0]
         status = np.array(STATUSES)[raw["status"]]
         # the pose of a row may be known where a ball's turns are not
         status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
         rows = raw["rows"]
-        kinds = self._linkage.column_kinds
         words = _word(kinds[columns[0]], raw["input"]), _word(kinds[columns[1]], raw["output"])
         return circuit_from(
             raw,
@@ -196,10 +207,10 @@ class GeneralLoop:
             status=status,
             mode=np.full(len(q), index),
             transmission=None,
-            _point=lambda link, at: self._trace(rows, link, at, status),
+            _point=lambda link, at: self._trace(rows, order, link, at, status),
         )
 
-    def _trace(self, rows: Any, link: int, at: Floats, status: Any) -> Trace:
+    def _trace(self, rows: Any, order: Integers, link: int, at: Floats, status: Any) -> Trace:
         count = len(self._linkage.joints)
         if link == count:
             position = np.broadcast_to(at, (len(status), 3)).copy()
@@ -208,10 +219,25 @@ class GeneralLoop:
             rest[status == "dead-centre"] = np.nan
             velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
         else:
-            position, velocity, acceleration, jerk = rows.point(self._link[link - 1], at)
+            position, velocity, acceleration, jerk = (
+                np.asarray(part)[order] for part in rows.point(self._link[link - 1], at)
+            )
         own = np.array(status)
         own[own == "turns-undefined"] = "ok"
         return Trace(position, velocity, acceleration, jerk, own)
+
+
+def _run_backwards(raw: Mapping[str, Any], order: Integers, kinds: Sequence[Freedom]) -> Mapping[str, Any]:
+    """A circuit that goes round as the core walked it, with rising input, in the order of a falling one."""
+    joints = np.array(raw["joints"])
+    q = joints[0]
+    # what the joints have turned when the circuit closes, which falls when it is run the other way
+    ahead = 2 * q[-1] - q[-2] - q[0]
+    gained = np.where([kind == "turn" for kind in kinds], np.round(ahead / math.tau) * math.tau, 0.0)
+    joints = joints[:, order]
+    joints[0, 1:] -= gained
+    rows = {name: np.asarray(raw[name])[order] for name in ("status", "branch", "residual", "condition")}
+    return {**raw, **rows, "joints": joints}
 
 
 def _expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[int]]:
