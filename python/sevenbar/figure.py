@@ -15,7 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from sevenbar.errors import OutputError, shown
-from sevenbar.motion import Circuit, Motion
+from sevenbar.motion import Circuit, Floats, Motion
 from sevenbar.skeleton import short
 
 #: What a figure can be written as.
@@ -80,6 +80,17 @@ def title(motion: Motion) -> str:
 def rocking(circuit: Circuit) -> bool:
     """Whether the input has dead centres, where rates grow without bound."""
     return any(centre.kind == "input" for centre in circuit.dead_centres)
+
+
+def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
+    """The ends of drawn values (n,), of rates that grow without bound those of `CUT`; `None` without any."""
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return None
+    if quantity not in CUT or not rocking(circuit):
+        return float(finite.min()), float(finite.max())
+    low, high = np.percentile(finite, [CUT[quantity], 100 - CUT[quantity]])
+    return float(low), float(high)
 
 
 def note(motion: Motion, cut: bool) -> str:

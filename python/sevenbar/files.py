@@ -106,6 +106,11 @@ def _read(path: Path) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise _unreadable(place, f"cannot be read: {reason.lower()}; give the path of a TOML file") from None
+    return decoded(content, place)
+
+
+def decoded(content: bytes, place: str) -> str:
+    """The TOML text of a file's bytes; `place` is its name in messages. Raises as `load` does."""
     if len(content) > LARGEST_FILE:
         raise _unreadable(
             place, f"larger than {LARGEST_FILE} bytes, so it is no linkage file; give a TOML file of format 1"

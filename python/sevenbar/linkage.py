@@ -88,17 +88,17 @@ class Linkage:
         """The G's of all links (n, 4, 4), the ground's last: `Z(q1) G1 .. Z(qn) Gn = 1`."""
         return np.concatenate([self.links, [inverse(self.ground) @ self.base]])
 
-    @property
+    @cached_property
     def kind(self) -> str:
         """The joints' letters in loop order."""
         return "".join(joint.kind for joint in self.joints)
 
-    @property
+    @cached_property
     def columns(self) -> tuple[str, ...]:
         """The names of the one-freedom joints, in loop order."""
         return tuple(column for joint in self.joints for column in joint.columns)
 
-    @property
+    @cached_property
     def column_kinds(self) -> tuple[Freedom, ...]:
         """What each column is: an angle [rad] or a length."""
         return tuple(freedom for joint in self.joints for freedom in FREEDOMS[joint.kind])

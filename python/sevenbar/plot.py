@@ -20,7 +20,6 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.errors import RequestError, shown
 from sevenbar.figure import (
     CIRCUIT_COLOURS,
-    CUT,
     FORMATS,
     LINE_STYLES,
     STYLE,
@@ -32,6 +31,7 @@ from sevenbar.figure import (
     shown_value,
     slides,
     title,
+    told_range,
 )
 from sevenbar.motion import Circuit, Extremes, Floats, Motion, chosen_circuit
 from sevenbar.paths import joints, modes_overview, point_path
@@ -132,12 +132,11 @@ def passes(motion: Motion) -> list[Pass]:
     for circuit in motion.circuits:
         path = walk(motion, circuit)
         for branch, part in enumerate(path.passes):
-            label, way = f"circuit {circuit.index}", 1.0
+            label = f"circuit {circuit.index}"
             if len(path.passes) > 1:
                 label += f", branch {branch}"
                 if motion.law is None:
                     rise = path.input[part][-1] - path.input[part][0]
-                    way = math.copysign(1.0, rise * motion.speed)
                     label += ": input rising" if rise > 0 else ": input falling"
             rates = path.rows[part], circuit.output_column
             colour = CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)]
@@ -151,7 +150,8 @@ def passes(motion: Motion) -> list[Pass]:
                 path.time[part],
                 shown_value(motion, motion.output, path.output[part]),
             )
-            made.append(Pass(circuit, label, style, *angles, way * circuit.dq[rates], circuit.ddq[rates]))
+            velocity = path.ways[branch] * circuit.dq[rates]
+            made.append(Pass(circuit, label, style, *angles, velocity, circuit.ddq[rates]))
     return made
 
 
@@ -211,8 +211,9 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over
                 for value, _ in sides
             ]
             period = math.inf if slides(motion, motion.input) else 360.0
+            lines = [(line.input, getattr(line, over), getattr(line, quantity)) for line in own]
             places = [
-                _place(own, quantity, over, v, shown_value(motion, motion.input, at), period)
+                place_of(lines, v, shown_value(motion, motion.input, at), period)
                 for v, (_, at) in zip(values, sides, strict=True)
             ]
             look = {"ms": 4.5, "mfc": "white", "mec": own[0].style["color"], "mew": 1.2, "zorder": 4}
@@ -225,39 +226,44 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over
         if not slides(motion, motion.input):
             axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
         for inputs, style, name in ((motion.limits, "--", LIMIT), (motion.change_points, ":", CHANGE_POINT)):
-            lifted = inputs[None, :]
-            if not slides(motion, motion.input):
-                lifted = np.degrees(inputs) + 360.0 * np.arange(-4, 5)[:, None]
-            for place in lifted[(lifted > ends.min() - 1e-6) & (lifted < ends.max() + 1e-6)]:
+            for place in inputs_between(motion, inputs, ends.min(), ends.max()):
                 axes.axvline(place, color="#505050", lw=1.0, ls=style, zorder=1, label=name)
     axes.set_xlabel(input_label(motion) if over == "input" else "time [s]")
     axes.set_ylabel(_label(motion, quantity))
 
 
-def _place(own: Sequence[Pass], quantity: str, over: str, value: float, at: float, period: float) -> float:
-    """Where along a panel the passes of a circuit take a value at an input, known to whole periods."""
+def inputs_between(motion: Motion, inputs: Floats, low: float, high: float) -> Floats:
+    """The given inputs [rad, or length] as they are drawn, angles at every turn, within a range (m,)."""
+    lifted = inputs[None, :]
+    if not slides(motion, motion.input):
+        lifted = np.degrees(inputs) + 360.0 * np.arange(-4, 5)[:, None]
+    between: Floats = lifted[(lifted > low - 1e-6) & (lifted < high + 1e-6)]
+    return between
+
+
+def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: float, period: float) -> float:
+    """Where a panel's lines take a value at an input, known to whole periods; NaN where they do not.
+
+    Each line has its inputs, its places along the panel and its values, (n,).
+    """
     found = [(math.inf, math.nan)]
-    for line in own:
-        off = line.input - at
+    for inputs, across, values in lines:
+        off = inputs - at
         if math.isfinite(period):
             off = (off + period / 2) % period - period / 2
         for i in np.flatnonzero((off[:-1] * off[1:] <= 0) & (np.abs(off[:-1] - off[1:]) < period / 2)):
             share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.0
-            x, y = (v[i] + share * (v[i + 1] - v[i]) for v in (getattr(line, over), getattr(line, quantity)))
+            x, y = (v[i] + share * (v[i + 1] - v[i]) for v in (across, values))
             found.append((abs(y - value), x))
     return min(found)[1]
 
 
 def _cut(axes: Axes, drawn: Sequence[Pass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; tells whether it did."""
-    drawn = [line for line in drawn if np.isfinite(getattr(line, quantity)).any()]
-    if quantity not in CUT or not any(rocking(line.circuit) for line in drawn):
+    told = [(line, told_range(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
+    spans = [span for _, span in told if span is not None]
+    if quantity == "angle" or not any(span is not None and rocking(line.circuit) for line, span in told):
         return False
-    spans: list[Floats] = []
-    for line in drawn:
-        values = getattr(line, quantity)
-        share = CUT[quantity] if rocking(line.circuit) else 0.0
-        spans.append(np.percentile(values[np.isfinite(values)], [share, 100 - share]))
     low, high = np.min(spans), np.max(spans)
     axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
     return True

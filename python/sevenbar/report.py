@@ -34,7 +34,7 @@ from sevenbar.summary import (
     side_lengths,
     summary,
 )
-from sevenbar.units import ANGLES, LENGTHS
+from sevenbar.units import ANGLES, amount, length_sizes
 
 __all__ = [
     "as_dict",
@@ -255,19 +255,15 @@ def joint_value(text: str, key: str, linkage: Linkage, column: int) -> float:
     A plain number is in degrees for a turn and in the length unit for a slide. Raises `RequestError`.
     """
     slides = linkage.column_kinds[column] == "slide"
-    # every length is a whole number of micrometres, so the quotient of two is right to the last digit
-    own = LENGTHS[linkage.length_unit] * 1e6
-    sizes = {unit: round(size * 1e6) / round(own) for unit, size in LENGTHS.items()} if slides else ANGLES
     plain = linkage.length_unit if slides else "deg"
-    match = re.fullmatch(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\W\d]*|\u00b0)\s*", text)
-    unit = (match[2] or plain).replace("\u00b0", "deg") if match else ""
-    if match is None or unit not in sizes or not math.isfinite(float(match[1])):
+    value = amount(text, length_sizes(linkage.length_unit) if slides else ANGLES, plain)
+    if value is None:
         kind = "slides" if slides else "turns"
         hint = f"12 or 12{plain}" if slides else "30, 30deg or 0.5rad"
         raise RequestError(
             f"{key}: {shown(text)} is no value of {linkage.columns[column]}, which {kind}; give {hint}"
         )
-    return float(match[1]) * sizes[unit]
+    return value
 
 
 def modes_json(linkage: Linkage, modes: Modes, column: int) -> str:

@@ -35,8 +35,7 @@ def stage(axes: Any, motion: Motion, frame: Skeleton) -> None:
     if isinstance(frame, Chain):
         return stage_chain(axes, motion.linkage, frame)
     axes.computed_zorder = False
-    elevation, azimuth = _view(frame)
-    axes.view_init(elevation, azimuth)
+    axes.view_init(*view(frame))
     axes.set_proj_type("ortho")
     drawn = [frame.places.reshape(-1, 3)]
     for place, colour in zip(frame.moving, (*_ends_colours(motion), *_point_colours(frame)), strict=True):
@@ -80,6 +79,11 @@ def prepare_view(axes: Any, places: Floats, unit: str, fill: float = 0.74) -> No
     _equal_box(axes, places, unit, fill)
     for scale in (axes.xaxis, axes.yaxis):  # the last ones would fall together in the corner
         scale.get_major_locator().set_params(prune="both")
+
+
+def view(frame: Skeleton) -> tuple[float, float]:
+    """Elevation and azimuth [deg] from which the whole motion of a frame is seen well."""
+    return _wide_view(frame.places.reshape(-1, 3)) if isinstance(frame, Chain) else _view(frame)
 
 
 def _wide_view(places: Floats) -> tuple[float, float]:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from sevenbar.errors import RequestError
-from sevenbar.linkage import Linkage, inverse
+from sevenbar.linkage import Linkage, Point, inverse
 from sevenbar.motion import Circuit, Floats, Integers, Motion
 
 #: Places of the pose: the two centres and the two balls; further named points come after them.
@@ -26,7 +27,8 @@ class Walk:
     """A circuit as it is walked; closed by its first row, a turn on, unless a law drives.
 
     `rows` index the circuit; `input`, `output` [rad] and `time` [s] run on over the closure, each (n,).
-    `passes` are the stretches between input dead centres, both ends included.
+    `passes` are the stretches between input dead centres, both ends included; `ways` has a factor for the
+    velocities of each: -1 where the input goes back, against its speed, else 1.
     """
 
     rows: Integers
@@ -34,6 +36,7 @@ class Walk:
     output: Floats
     time: Floats
     passes: tuple[slice, ...]
+    ways: tuple[float, ...]
 
 
 def walk(motion: Motion, circuit: Circuit) -> Walk:
@@ -43,20 +46,45 @@ def walk(motion: Motion, circuit: Circuit) -> Walk:
     rows = np.arange(count)
     if motion.law is not None or count < 2 or not circuit.closed:
         passes = tuple(slice(a, b) for a, b in pairwise(starts))
-        return Walk(rows, circuit.input, circuit.output, circuit.time, passes)
+        ways = _ways(motion, circuit.input, passes)
+        return Walk(rows, circuit.input, circuit.output, circuit.time, passes, ways)
     way = math.copysign(circuit.turns * math.tau, motion.speed)
-    first = circuit.output[0]
-    ahead = 2 * circuit.output[-1] - circuit.output[-2]
-    gained = 0.0 if circuit.output_range is not None else round((ahead - first) / math.tau) * math.tau
+    gained = 0.0 if circuit.output_range is not None else _turns_gained(circuit.output)
     last = circuit.input[0] + way
     period = circuit.time[-1] + abs(last - circuit.input[-1]) / abs(motion.speed)
+    inputs = np.append(circuit.input, last)
+    passes = tuple(slice(a, b + 1) for a, b in pairwise(starts))
     return Walk(
         np.append(rows, 0),
-        np.append(circuit.input, last),
-        np.append(circuit.output, first + gained),
+        inputs,
+        np.append(circuit.output, circuit.output[0] + gained),
         np.append(circuit.time, period),
-        tuple(slice(a, b + 1) for a, b in pairwise(starts)),
+        passes,
+        _ways(motion, inputs, passes),
     )
+
+
+def _ways(motion: Motion, inputs: Floats, passes: Sequence[slice]) -> tuple[float, ...]:
+    if motion.law is not None or len(passes) < 2:
+        return (1.0,) * len(passes)
+    rises = (float(inputs[part][-1] - inputs[part][0]) for part in passes)
+    return tuple(math.copysign(1.0, rise * motion.speed) for rise in rises)
+
+
+def _turns_gained(angles: Floats) -> float:
+    """The whole turns [rad] between the first row of a closed circuit and the first again; 0 if unknown."""
+    ahead = float(2 * angles[-1] - angles[-2] - angles[0])
+    return round(ahead / math.tau) * math.tau if math.isfinite(ahead) else 0.0
+
+
+def along(motion: Motion, circuit: Circuit, path: Walk, column: int) -> Floats:
+    """A column [rad, or length] of a circuit along its walk; a turn runs on over the closure, (n,)."""
+    if column == circuit.output_column:
+        return path.output
+    values: Floats = circuit.q[path.rows, column]
+    if len(path.rows) > len(circuit.time) and motion.linkage.column_kinds[column] == "turn":
+        values[-1] += _turns_gained(circuit.q[:, column])
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +130,7 @@ class Skeleton:
         """The places whose paths are drawn."""
         return (A, B, *range(4, len(self.names)))
 
-    @property
+    @cached_property
     def span(self) -> float:
         """The largest extent along x, y or z [length]."""
         flat = self.places.reshape(-1, 3)
@@ -122,6 +150,7 @@ class Chain(Skeleton):
     marks: tuple[tuple[int, str, tuple[int, ...]], ...]
     joints: tuple[int, ...]
     points: tuple[int, ...]
+    extent: float
 
     @property
     def solid(self) -> int:
@@ -150,20 +179,27 @@ class Chain(Skeleton):
 AXIS, CYLINDER = 0.075, 0.032
 
 
-def chain(linkage: Linkage, frames: Floats, points: Sequence[tuple[str, int, Floats]] = ()) -> Chain:
+def chain(
+    linkage: Linkage,
+    frames: Floats,
+    points: Sequence[tuple[str, int, Floats]] = (),
+    *,
+    extent: float | None = None,
+) -> Chain:
     """The places of a loop from the frames (n, moving links, 4, 4) of its links along a walk.
 
     `points` are named places on links, (n, 3) each. Each joint is drawn where its axis was placed, each
     link from joint to joint; in Denavit-Hartenberg rows along the offset, then along the common normal.
+    `extent` is that of the linkage where the frames show only a part of its motion.
     """
     rows, count = len(frames), len(linkage.joints)
     after = np.concatenate([frames, np.broadcast_to(linkage.ground, (rows, 1, 4, 4))], axis=1)
     steps = [frames[:, i] @ linkage.links[i] for i in range(count - 1)]
     before = np.stack([np.broadcast_to(linkage.base, (rows, 4, 4)), *steps], axis=1)
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
-    extent = np.nanmax(origins, axis=(0, 1)) - np.nanmin(origins, axis=(0, 1))
+    spread = float((np.nanmax(origins, axis=(0, 1)) - np.nanmin(origins, axis=(0, 1))).max())
     in_rows = "twist_1_deg" in linkage.dimensions
-    spherical = not extent.max() > 1e-9
+    spherical = not spread > 1e-9
     places: list[Floats] = []
 
     def add(place: Floats) -> int:
@@ -172,7 +208,7 @@ def chain(linkage: Linkage, frames: Floats, points: Sequence[tuple[str, int, Flo
 
     # a loop whose axes meet where all frames lie is shown on a sphere round that place
     radius = 1.0 if spherical else 0.0
-    span = 1.6 if spherical else float(extent.max())
+    span = extent or (1.6 if spherical else spread)
     feet: list[tuple[int, int]] = []
     marks: list[tuple[int, str, tuple[int, ...]]] = []
     links: list[tuple[int, ...]] = []
@@ -184,7 +220,9 @@ def chain(linkage: Linkage, frames: Floats, points: Sequence[tuple[str, int, Flo
 
         def along(middle: Floats, axis: Floats, half: float, to: Floats | None = None) -> tuple[int, int]:
             end = middle if to is None else to
-            way = np.where(((end - middle) * axis).sum(axis=1, keepdims=True) < 0, -1.0, 1.0) * axis
+            # not by closure errors, which would swap the ends from row to row
+            back = ((end - middle) * axis).sum(axis=1, keepdims=True) < -1e-3 * span
+            way = np.where(back, -1.0, 1.0) * axis
             return add(middle - half * span * way), add(end + half * span * way)
 
         if joint.kind != "S":
@@ -232,6 +270,7 @@ def chain(linkage: Linkage, frames: Floats, points: Sequence[tuple[str, int, Flo
         marks=tuple(marks),
         joints=joints,
         points=own,
+        extent=span,
     )
 
 
@@ -309,7 +348,7 @@ def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
     linkage: Linkage = motion.linkage
     if linkage.kind != "RSSR":
         rows = walk(motion, circuit).rows
-        poses = frames_along(linkage, circuit, rows)
+        poses = frames_of(linkage, circuit.q[rows])
         if np.isnan(poses).any(axis=(1, 2, 3)).all():
             raise _nothing(circuit)
         return chain(
@@ -343,6 +382,26 @@ def _nothing(circuit: Circuit) -> RequestError:
 def short(text: str, width: int) -> str:
     """The text, cut to so many letters."""
     return text if len(text) <= width else text[: width - 1] + "…"
+
+
+def places_of(linkage: Linkage, q: Floats, frame: Skeleton) -> Floats:
+    """The places (n, k, 3) of poses given by joint values (n, columns), in the order of those of `frame`."""
+    frames = frames_of(linkage, q)
+    points = [(point.name, point.link, _carried(linkage, frames, point)) for point in linkage.points]
+    if isinstance(frame, Chain):
+        return chain(linkage, frames, points, extent=frame.extent).places
+    traces = [trace for _, _, trace in points]
+    centres = [np.broadcast_to(frame.pose(0)[centre], traces[0].shape) for centre in (A0, B0)]
+    return np.stack([centres[0], traces[0], traces[1], centres[1], *traces[2:]], axis=1)
+
+
+def _carried(linkage: Linkage, frames: Floats, point: Point) -> Floats:
+    """Where a point of a link is (n, 3) in poses given by the frames of the links."""
+    place = linkage.point_frames[point.link - 1] @ np.array([*point.at, 1.0])
+    if point.link > len(linkage.links):
+        return np.broadcast_to(place[:3], (len(frames), 3))
+    moved: Floats = (frames[:, point.link - 1] @ place)[:, :3]
+    return moved
 
 
 def one_pose(frame: Chain, row: int) -> Chain:

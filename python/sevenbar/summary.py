@@ -69,7 +69,7 @@ def summary(motion: Motion, room: int = 100) -> Summary:
         sheets += _compared(motion, room)
     elif motion.circuits:
         sheets += _side_by_side(motion)
-    return Summary(linkage.name, tuple(_facts(motion)), tuple(sheets))
+    return Summary(linkage.name, tuple(facts_of(motion)), tuple(sheets))
 
 
 def modes_sheets(linkage: Linkage, modes: Modes, room: int) -> list[Sheet]:
@@ -116,8 +116,9 @@ def closure_error(circuits: Iterable[Circuit]) -> float:
     return max((float(values.max()) for values in residuals if values.size), default=math.nan)
 
 
-def _facts(motion: Motion) -> list[tuple[str, str]]:
-    linkage, mobility = motion.linkage, motion.mobility
+def facts_of(motion: Motion) -> list[tuple[str, str]]:
+    """What the report tells of the motion as a whole: names and words."""
+    linkage = motion.linkage
     facts = [("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))]
     numbers = {} if _in_rows(linkage) else dict(linkage.dimensions) or side_lengths(linkage)
     if numbers:
@@ -130,8 +131,8 @@ def _facts(motion: Motion) -> list[tuple[str, str]]:
         rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
         facts.append(("law", f"{rows}; extremes of velocity and acceleration are those of its rows"))
     facts.append(("motion type", motion.motion_type))
-    if meaning := _meaning(motion):
-        facts.append(("", meaning))
+    if told := meaning(motion):
+        facts.append(("", told))
     facts.append(("circuits", _circuit_count(motion)))
     if motion.circuits or motion.limits.size:
         show = _Shown(_units(motion)[0])
@@ -143,7 +144,7 @@ def _facts(motion: Motion) -> list[tuple[str, str]]:
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
     if motion.completeness != "closed-form":
         facts.append(("established", motion.established))
-        facts.append(("mobility", _mobility(mobility)))
+        facts.append(("mobility", _mobility(motion.mobility)))
     if motion.idle:
         facts.append(("idle freedom", "; ".join(motion.idle) + ", held by convention"))
     facts.append(("redundant", "; ".join(motion.redundant) or "no constraints"))
@@ -195,19 +196,17 @@ def _dimension_sheet(linkage: Linkage) -> Sheet:
     return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1})
 
 
-def _meaning(motion: Motion) -> str:
+def meaning(motion: Motion) -> str:
     """A sentence on a motion type that is not a pair of words for input and output."""
-    mobility = motion.mobility
     match motion.motion_type:
         case "two-inputs":
             return (
-                f"the loop moves with {mobility.finite} freedoms, so one input does not determine it: "
+                f"the loop moves with {motion.mobility.finite} freedoms, so one input does not determine it: "
                 "drive or lock another joint"
             )
         case "rigid":
-            return (
-                f"the loop closes but cannot move: the closure takes all of its {mobility.freedoms} freedoms"
-            )
+            taken = motion.mobility.freedoms
+            return f"the loop closes but cannot move: the closure takes all of its {taken} freedoms"
         case "cannot-assemble" if motion.linkage.kind == "RSSR":
             return "no input closes the loop: the coupler is too short or too long"
         case "cannot-assemble":
@@ -390,15 +389,27 @@ def _telling(motion: Motion, form: Literal["list", "table"]) -> list[tuple[_Quan
     ]
 
 
-def _side_by_side(motion: Motion) -> list[Sheet]:
-    """A line for each quantity: first those that circuits share, then with a column for each circuit."""
+def circuit_facts(motion: Motion, circuit: Circuit) -> list[tuple[str, str]]:
+    """What the report tells of one circuit: names, and values each "@" the input where it is met."""
+    told = [(quantity, [cells[circuit.index]]) for quantity, cells in _telling(motion, "list")]
+    return [(label, cells[0]) for label, cells in _lines(told) if cells[0] not in NOTHING]
+
+
+def _lines(told: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Texts]]:
+    """Quantities as lines of a list, those with two ends as two lines."""
     lines: list[tuple[str, Texts]] = []
-    for quantity, cells in _telling(motion, "list"):
+    for quantity, cells in told:
         if quantity.ends and any(len(cell) == 2 for cell in cells):
             lines.append((quantity.label("min"), tuple(cell[0] for cell in cells)))
             lines.append((quantity.label("max"), tuple(cell[-1] for cell in cells)))
         else:
             lines.append((quantity.label(), tuple(quantity.between.join(cell) for cell in cells)))
+    return lines
+
+
+def _side_by_side(motion: Motion) -> list[Sheet]:
+    """A line for each quantity: first those that circuits share, then with a column for each circuit."""
+    lines = _lines(_telling(motion, "list"))
     if len(motion.circuits) == 1:
         return [_list(motion, ["circuit 0"], lines)]
     shared = [(label, cells[:1]) for label, cells in lines if len(set(cells)) == 1]

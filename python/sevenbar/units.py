@@ -45,8 +45,29 @@ def sliding_speed(value: object, length_unit: str) -> float:
         >>> sliding_speed("1 in/s", "mm")
         25.4
     """
-    sizes = {f"{unit}/s": _quotient(size, LENGTHS[length_unit]) for unit, size in LENGTHS.items()}
+    sizes = {f"{unit}/s": size for unit, size in length_sizes(length_unit).items()}
     return _speed(value, sizes, "sliding", f"'10 {length_unit}/s'")
+
+
+def length_sizes(length_unit: str) -> dict[str, float]:
+    """Every length unit and its size in another."""
+    return {unit: _quotient(size, LENGTHS[length_unit]) for unit, size in LENGTHS.items()}
+
+
+def amount(text: str, sizes: Mapping[str, float], plain: str) -> float | None:
+    """The number that a text gives by the sizes of units: "30", "12 mm"; `None` for what is no finite one.
+
+    A number alone is in the unit `plain`.
+
+        >>> amount("1 in", length_sizes("mm"), "mm")
+        25.4
+    """
+    match = _QUANTITY.fullmatch(text.replace("\u00b0", "deg"))
+    if match is None:
+        return None
+    unit = match[2] or plain
+    value = float(match[1]) * sizes.get(unit, math.nan)
+    return value if math.isfinite(value) else None
 
 
 def _quotient(size: float, other: float) -> float:
