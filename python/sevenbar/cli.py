@@ -30,6 +30,7 @@ from sevenbar.options import (
     words,
 )
 from sevenbar.simulation.command import simulate
+from sevenbar.studio.command import studio
 
 
 class _Commands(typer.core.TyperGroup):
@@ -232,7 +233,7 @@ def _points(
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
-for _command in (compare, calibrate, simulate, export):
+for _command in (studio, compare, calibrate, simulate, export):
     app.command()(_command)
 
 

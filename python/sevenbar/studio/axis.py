@@ -1,0 +1,75 @@
+"""A scale of a curve: its range, where its ticks stand, and how its numbers are written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain, count
+from typing import Final
+
+#: Steps [deg] that people read angles by, from 5 deg on.
+DEGREE_STEPS: Final = (5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0)
+
+#: Numbers outside this range are written by a power of ten at the axis.
+PLAIN: Final = (1e-2, 1e5)
+
+#: From here on a number, far beyond its axis, is written short.
+LONGEST = 1e6
+
+EXPONENTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A range, the step of its ticks, and the power of ten its numbers are written by."""
+
+    low: float
+    high: float
+    step: float
+    power: int
+
+    @property
+    def ticks(self) -> tuple[float, ...]:
+        """The multiples of the step within the range."""
+        room = 1e-9 * (self.high - self.low)
+        first, last = math.ceil((self.low - room) / self.step), math.floor((self.high + room) / self.step)
+        return tuple(i * self.step for i in range(first, last + 1))
+
+    def word(self, value: float) -> str:
+        """A value as it is written at a tick."""
+        fractions = (self.step / 10.0**self.power * 10**digits for digits in count())
+        needed = next(
+            digits for digits, step in enumerate(fractions) if abs(step - round(step)) < 1e-6 * step
+        )
+        return self._written(value, needed)
+
+    def reading(self, value: float, unit: str) -> str:
+        """A value with its unit, to about a thousandth of the range."""
+        word = self._written(value, self.power + math.ceil(3.0 - math.log10(self.high - self.low)))
+        if unit == "deg" and not self.power:
+            return f"{word}°"
+        return f"{word}{'·' if self.power else ' '}{self.unit(unit)}"
+
+    def _written(self, value: float, digits: int) -> str:
+        scaled, digits = value / 10.0**self.power, max(0, digits)
+        # adding zero takes the sign off a zero
+        word = f"{round(scaled, digits) + 0.0:.{digits}f}" if abs(scaled) < LONGEST else f"{scaled:.3g}"
+        return word.replace("-", "−")
+
+    def unit(self, unit: str) -> str:
+        """The unit with the power of ten."""
+        return f"10{str(self.power).translate(EXPONENTS)} {unit}" if self.power else unit
+
+
+def axis(low: float, high: float, most: int, *, degrees: bool = False) -> Axis:
+    """The scale of a range (low < high) with at most so many ticks, at round numbers."""
+    needed = (high - low) / most
+    tens = 10.0 ** math.floor(math.log10(needed))
+    steps: Iterator[float] = (i * tens * 10**k for k in count() for i in (1, 2, 2.5, 5))
+    if degrees and needed > DEGREE_STEPS[0] / 2:
+        steps = chain(DEGREE_STEPS, (360.0 * i * 10**k for k in count() for i in (2, 5, 10)))
+    step = next(step for step in steps if math.floor(high / step) - math.ceil(low / step) < most)
+    largest = max(abs(low), abs(high))
+    power = 0 if PLAIN[0] <= largest < PLAIN[1] else 3 * math.floor(math.log10(largest) / 3)
+    return Axis(low, high, step, power)

@@ -1,0 +1,70 @@
+"""The studio's server: one session for each tab, on this machine only unless another address is asked for."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import suppress
+
+import viser
+
+from sevenbar.studio.local_server import LocalServer
+from sevenbar.studio.session import Session
+from sevenbar.studio.tab import Tab
+
+
+class StudioServer:
+    """Serves a linkage to browsers; every tab begins with the linkage as it was given."""
+
+    def __init__(self, text: str, source: str, host: str, port: int) -> None:
+        """`text` is TOML, `source` its name. Raises `DescriptionError`; `OSError` for a bad address."""
+        Session(text, source)  # before anything is served
+        self._server = LocalServer(host, port)
+        self._text, self._source = text, source
+        self._tabs: dict[int, Tab] = {}
+        self._lock = threading.Lock()
+        self._server.on_client_connect(self._connected)
+        self._server.on_client_disconnect(self._disconnected)
+
+    @property
+    def address(self) -> str:
+        """What to open in a browser."""
+        host = self._server.get_host()
+        # every address of this machine is no address to go to
+        host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
+        return f"http://{f'[{host}]' if ':' in host else host}:{self._server.get_port()}"
+
+    @property
+    def tabs(self) -> tuple[Tab, ...]:
+        """The tabs that are open."""
+        with self._lock:
+            return tuple(self._tabs.values())
+
+    def _connected(self, client: viser.ClientHandle) -> None:
+        tab = Tab(client, Session(self._text, self._source))
+        with self._lock:
+            self._tabs[client.client_id] = tab
+        tab.start()
+        if client.client_id not in self._server.get_clients():  # left while all this was made
+            self._left(client)
+
+    async def _disconnected(self, client: viser.ClientHandle) -> None:
+        # awaited by viser, where a plain function would be given to threads that `stop` has ended
+        self._left(client)
+
+    def _left(self, client: viser.ClientHandle) -> None:
+        with self._lock:
+            tab = self._tabs.pop(client.client_id, None)
+        if tab is not None:
+            tab.end()
+
+    def stop(self) -> None:
+        """Ends the server and all tabs."""
+        with self._lock:
+            for tab in self._tabs.values():
+                tab.end()
+        self._server.stop()
+
+    def wait(self) -> None:
+        """Serves until it is interrupted by Ctrl+C."""
+        with suppress(KeyboardInterrupt):
+            threading.Event().wait()

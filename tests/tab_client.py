@@ -1,0 +1,140 @@
+"""A tab of the studio without a browser: it speaks viser's wire, keeps what it was sent, and works the controls."""
+
+import threading
+import time
+
+import msgspec
+import numpy as np
+import viser
+import zstandard
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+CAMERA = {
+    "type": "ViewerCameraMessage",
+    "wxyz": (1.0, 0.0, 0.0, 0.0),
+    "position": (3.0, -3.0, 2.0),
+    "fov": 0.9,
+    "near": 0.01,
+    "far": 1000.0,
+    "image_height": 900,
+    "image_width": 1000,
+    "look_at": (0.0, 0.0, 0.0),
+    "up_direction": (0.0, 0.0, 1.0),
+}
+
+
+class TabClient:
+    """Connects to a studio's address; `gui` and `scene` hold the properties of all that was made there."""
+
+    def __init__(self, address):
+        self.gui, self.scene, self.values, self.told = {}, {}, {}, []
+        self.received, self.last = 0, 0.0
+        version = f"viser-v{viser.__version__}"
+        self._socket = connect(
+            address.replace("http://", "ws://"), subprotocols=[version], max_size=None, compression=None
+        )
+        self._lock = threading.Lock()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        self._send(CAMERA)
+
+    def _send(self, message):
+        self._socket.send(msgspec.msgpack.encode(message))
+
+    def _read(self):
+        try:
+            for frame in self._socket:
+                self._take(frame)
+                self.received += len(frame)
+                self.last = time.perf_counter()
+        except ConnectionClosed:
+            pass
+
+    def _take(self, frame):
+        packed = int.from_bytes(frame[8:16], "little")
+        content = msgspec.msgpack.decode(zstandard.decompress(frame[16 : 16 + packed]))
+        buffers, place = [], 16 + packed
+        for length in content["binaryBufferLengths"]:
+            place += -place % 8
+            buffers.append(frame[place : place + length])
+            place += length
+        with self._lock:
+            for message in content["messages"]:
+                self._apply({key: _whole(value, buffers) for key, value in message.items()})
+
+    def _apply(self, message):
+        match message["type"]:
+            case "GuiUpdateMessage":
+                updates = dict(message["updates"])
+                if "value" in updates:
+                    self.values[message["uuid"]] = updates.pop("value")
+                self.gui.get(message["uuid"], {}).update(updates)
+            case "GuiRemoveMessage":
+                self.gui.pop(message["uuid"], None)
+            case "SceneNodeUpdateMessage":
+                self.scene.get(message["name"], {}).update(message["updates"])
+            case "RemoveSceneNodeMessage":
+                self.scene.pop(message["name"], None)
+            case "NotificationShowMessage":
+                self.told.append(message)
+            case kind if kind.startswith("Gui") and "uuid" in message and "props" in message:
+                self.gui[message["uuid"]] = {"kind": kind, **message["props"]}
+                if "value" in message:
+                    self.values[message["uuid"]] = message["value"]
+            case _ if "name" in message and "props" in message:
+                self.scene[message["name"]] = dict(message["props"])
+
+    def settled(self, quiet=0.15, limit=30.0):
+        """Waits until nothing has come for a while [s] from now on."""
+        start = time.perf_counter()
+        while time.perf_counter() < start + limit:
+            if self.received and time.perf_counter() - max(self.last, start) > quiet:
+                return self
+            time.sleep(0.01)
+        raise AssertionError("the studio does not come to rest")
+
+    def find(self, label, kind=""):
+        """The uuids of the controls with a label, in the order in which they were made."""
+        with self._lock:
+            return [u for u, p in self.gui.items() if p.get("label") == label and kind in p["kind"]]
+
+    def value(self, label, kind=""):
+        """The value of the first control with a label."""
+        return self.values[self.find(label, kind)[0]]
+
+    def put(self, label, value, kind="", which=0):
+        """Gives a control a value, as a person does."""
+        self.write(self.find(label, kind)[which], value)
+
+    def write(self, uuid, value):
+        """The same for a control known by its uuid."""
+        self.values[uuid] = value
+        self._send({"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": value}})
+
+    def click(self, label):
+        """Clicks a button."""
+        self._send({"type": "GuiUpdateMessage", "uuid": self.find(label)[0], "updates": {"value": True}})
+
+    def html(self):
+        """All HTML that is on the page, the visible pieces alone."""
+        with self._lock:
+            return "\n".join(
+                p["content"] for p in self.gui.values() if p["kind"] == "GuiHtmlMessage" and p["visible"]
+            )
+
+    def close(self):
+        """Leaves, as a tab that is closed."""
+        self._socket.close()
+        self._reader.join(timeout=5)
+
+
+def _whole(value, buffers):
+    """A value with its arrays in place."""
+    if isinstance(value, dict):
+        if "__binary_index" in value:
+            return np.frombuffer(buffers[value["__binary_index"]], dtype=value["dtype"])
+        return {key: _whole(each, buffers) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_whole(each, buffers) for each in value]
+    return value

@@ -1,0 +1,40 @@
+"""`sevenbar studio` as it is called: what is wrong is said before anything is served."""
+
+import pytest
+
+from commands import mistake, sevenbar
+
+WITHOUT = """
+import importlib.util
+real = importlib.util.find_spec
+importlib.util.find_spec = lambda name, package=None: None if name == "{}" else real(name, package)
+"""
+
+
+def test_a_file_with_mistakes_is_not_served(tmp_path):
+    (tmp_path / "bad.toml").write_text("format = 1\n[rssr]\nM = 700\nN = 700\nL1 = -5\nL3 = 550\nD = 0\n")
+    told = mistake("studio", "bad.toml", "--no-open", cwd=tmp_path)
+    assert told == "bad.toml: rssr.L1: -5 is not a length; give a number > 0"
+    assert mistake("studio", "nosuch", "--no-open", cwd=tmp_path).startswith("nosuch: no such file")
+
+
+@pytest.mark.parametrize("host", ["999.1.1.1", "nowhere.invalid", "192.0.2.7"])
+def test_an_address_that_is_none_of_this_machine_is_told_at_once(tmp_path, host):
+    told = mistake("studio", "rssr", "--no-open", "--host", host, cwd=tmp_path)
+    assert told.startswith(f"--host, --port: cannot serve at {host}:8077: ")
+    assert told.endswith("; give another address")
+
+
+@pytest.mark.parametrize("missing", ["viser", "tomlkit"])
+def test_a_missing_extra_is_named(tmp_path, missing):
+    told = mistake("studio", "rssr", "--no-open", cwd=tmp_path, before=WITHOUT.format(missing))
+    assert told == f"studio needs {missing}; install it with: pip install 'sevenbar[studio]'"
+
+
+def test_the_command_line_does_not_load_the_studio_without_need(tmp_path):
+    run = sevenbar(
+        "gallery",
+        cwd=tmp_path,
+        before="import sys, atexit\natexit.register(lambda: print('viser' in sys.modules))",
+    )
+    assert run.stdout.splitlines()[-1] == "False"
