@@ -37,7 +37,7 @@ check: lint rust-test  ## The lints and the fast tests, for every change
 	$(PYTEST) -m "not slow and not proof"
 
 .PHONY: test
-test: $(VENV)/.installed-dev rust-test  ## Every test, the long proofs too
+test: $(VENV)/.installed-dev have-chromium rust-test  ## Every test, the long proofs too
 	$(PYTEST)
 
 .PHONY: proof
@@ -103,6 +103,15 @@ $(VENV)/.installed: $(VENV)/.maturin $(RUST) $(LOST)
 $(VENV)/.installed-dev: $(VENV)/.maturin $(RUST) $(LOST)
 	$(BIN)/maturin develop --release $(LOCKED) --extras dev
 	@touch $(VENV)/.installed $@
+
+# for the tests in a browser, which fail without it; all others run on
+.PHONY: have-chromium
+have-chromium:
+	@for name in chromium chromium-browser google-chrome; do command -v $$name >/dev/null && exit; done; \
+	  [ "$$(id -u)" = 0 ] || as="sudo -n"; \
+	  command -v apt-get >/dev/null && echo "installing chromium through apt" && \
+	  { $$as apt-get -qq update; $$as apt-get -qq --yes install chromium; } </dev/null >/dev/null 2>&1 || \
+	  echo "no Chromium, so the tests in a browser will fail; install it: apt-get install chromium" >&2
 
 .PHONY: have-cargo lost-core
 have-cargo:

@@ -1,0 +1,48 @@
+"""What tests in a browser are given: Chromium, its pages, the studio."""
+
+from contextlib import ExitStack
+from itertools import count
+
+import pytest
+
+import browser
+from served import Studio
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """No test that needs a browser is among the fast ones, whatever its author remembers."""
+    for item in items:
+        if "chromium" in item.fixturenames:
+            item.add_marker("browser")
+            item.add_marker("slow")
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """A headless browser, for all tests of one worker."""
+    with browser.launched() as found:
+        yield found
+
+
+@pytest.fixture
+def studio(tmp_path):
+    """Start a studio with arguments of its command line; what is still running is ended after the test."""
+    numbers = count()
+    with ExitStack() as ends:
+
+        def start(*arguments):
+            one = Studio(*arguments, folder=tmp_path / f"studio-{next(numbers)}")
+            ends.callback(lambda: one.stopped or one.stop())
+            return one
+
+        yield start
+
+
+@pytest.fixture
+def pages(chromium, studio):  # noqa: ARG001  # made after the studio, so that pages close before it ends
+    """Open pages at addresses; nothing may go wrong on them."""
+    opened = browser.Pages(chromium)
+    yield opened
+    opened.close()
+    assert not opened.wrong
