@@ -10,7 +10,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from PIL import ImageFont
 
@@ -198,6 +198,7 @@ def test_wrong_requests_say_what_is_allowed() -> None:
 # --- the scales
 
 
+@example(middle=1.0, span=0.001, most=4, degrees=False)
 @given(
     middle=st.floats(-1e6, 1e6),
     span=st.floats(1e-3, 1e7),

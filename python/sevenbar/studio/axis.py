@@ -32,9 +32,18 @@ class Axis:
     @property
     def ticks(self) -> tuple[float, ...]:
         """The multiples of the step within the range."""
+        return tuple(i * self.step for i in self._multiples)
+
+    @property
+    def count(self) -> int:
+        """How many ticks there are."""
+        return len(self._multiples)
+
+    @property
+    def _multiples(self) -> range:
+        # rounding takes no tick off an end
         room = 1e-9 * (self.high - self.low)
-        first, last = math.ceil((self.low - room) / self.step), math.floor((self.high + room) / self.step)
-        return tuple(i * self.step for i in range(first, last + 1))
+        return range(math.ceil((self.low - room) / self.step), math.floor((self.high + room) / self.step) + 1)
 
     def word(self, value: float) -> str:
         """A value as it is written at a tick."""
@@ -69,7 +78,8 @@ def axis(low: float, high: float, most: int, *, degrees: bool = False) -> Axis:
     steps: Iterator[float] = (i * tens * 10**k for k in count() for i in (1, 2, 2.5, 5))
     if degrees and needed > DEGREE_STEPS[0] / 2:
         steps = chain(DEGREE_STEPS, (360.0 * i * 10**k for k in count() for i in (2, 5, 10)))
-    step = next(step for step in steps if math.floor(high / step) - math.ceil(low / step) < most)
+    # counted as they are drawn: rounding may put one more on an end
+    step = next(step for step in steps if Axis(low, high, step, 0).count <= most)
     largest = max(abs(low), abs(high))
     power = 0 if PLAIN[0] <= largest < PLAIN[1] else 3 * math.floor(math.log10(largest) / 3)
     return Axis(low, high, step, power)
