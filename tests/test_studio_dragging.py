@@ -16,6 +16,8 @@ from tab_client import TabClient
 
 #: Growth of the process that is no leak [MB]: caches of sizes and fonts that come with what is drawn first.
 GROWTH = 40.0
+#: Each waits for seconds as a person does.
+pytestmark = pytest.mark.slow
 BAD = ("abc", "NaN", "0", "1e300", "-1e300", "", "1e-300", "30deg", "1,5", "<b>", "9" * 400)
 
 
@@ -120,7 +122,7 @@ def restless(client, dice):
 @pytest.mark.parametrize("name", ["rssr", "seven_r"])
 @pytest.mark.parametrize(
     "seconds",
-    [pytest.param(20, marks=pytest.mark.slow), pytest.param(600, marks=pytest.mark.proof)],
+    [20, pytest.param(600, marks=pytest.mark.proof)],
 )
 def test_random_dragging_never_fails_nor_grows_nor_shows_a_wrong_mode(name, seconds, capsys):
     dice = random.Random(seconds)
