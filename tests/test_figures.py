@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -159,3 +160,14 @@ def test_eight_circuits_are_eight_looks_in_the_curves(motions: dict[str, sb.Moti
 def test_any_loop_can_be_animated(motions: dict[str, sb.Motion], name: str, tmp_path: Path) -> None:
     with Image.open(animate(motions[name], tmp_path / "a.gif", frames=3)) as image:
         assert image.n_frames == 3  # type: ignore[attr-defined]
+
+
+def test_a_row_whose_balls_have_no_turns_is_drawn_where_its_links_are():
+    motion = sb.load("rssp").motion()
+    circuit = motion.circuits[0]
+    q, status = circuit.q.copy(), circuit.status.copy()
+    balls = [i for i, name in enumerate(circuit.columns) if name not in motion.linkage.drivable()]
+    q[5, balls], status[5] = np.nan, "turns-undefined"
+    lost = replace(circuit, q=q, status=status)
+    drawn, whole = (skeleton.skeleton(motion, one).places for one in (lost, circuit))
+    np.testing.assert_allclose(drawn, whole, atol=1e-9 * circuit.size)
