@@ -133,8 +133,8 @@ class Skeleton:
     @cached_property
     def span(self) -> float:
         """The largest extent along x, y or z [length]."""
-        flat = self.places.reshape(-1, 3)
-        return float((np.nanmax(flat, axis=0) - np.nanmin(flat, axis=0)).max())
+        high, low = (one.reduce(one.reduce(self.places, axis=0), axis=0) for one in (np.fmax, np.fmin))
+        return float((high - low).max())
 
 
 @dataclass(frozen=True, eq=False)

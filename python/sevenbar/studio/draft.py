@@ -125,7 +125,7 @@ class Draft:
         others = {key: value for key, value in self.raw.items() if key != "point"}
         return replace(self, raw=others | ({"point": kept} if kept else {}))
 
-    @property
+    @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
         """Every number that can be changed, in the order of the file."""
         linkage = self.linkage

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from html import escape
 from typing import Any
 
-import numpy as np
 import viser
 
 from sevenbar.errors import RequestError, shown
@@ -14,7 +12,6 @@ from sevenbar.studio.controls import Alert, Asked, put
 from sevenbar.studio.session import Session
 from sevenbar.studio.shaping import DimensionList
 from sevenbar.studio.view import View, own_points
-from sevenbar.summary import joint_text
 
 
 class PointsPanel:
@@ -64,8 +61,7 @@ class PointsPanel:
         self._shown = draft
         linkage = draft.linkage
         count = len(linkage.joints)
-        words = ("the input's", *("",) * (count - 2), "the ground")
-        links = tuple(f"{i + 1} {word}".strip() for i, word in enumerate(words))
+        links = (*(f"{number}" for number in range(1, count)), f"{count} the ground")
         if links != self._link.options:
             self._link.options = links
         letters = "u, v, w" if "link" in draft.raw else "x, y, z"
@@ -83,12 +79,12 @@ class PointsPanel:
 def _speeds(view: View, index: int) -> str:
     """How fast a point gets, and how slow, among the samples of the circuit on view."""
     point, speeds = view.linkage.points[index], view.speeds[index]
-    if not np.isfinite(speeds).any():
+    parts = [
+        f"{word} {speeds[row]:.4g} {view.linkage.length_unit}/s @ {view.input_text(row)}"
+        for word, row in view.speed_extremes(index)
+    ]
+    if not parts:
         return ""
-    parts = []
-    for word, row in (("fastest", np.nanargmax(speeds)), ("slowest", np.nanargmin(speeds))):
-        at = joint_text(view.linkage, view.circuit.input_column, view.path.input[row] % math.tau)
-        parts.append(f"{word} {speeds[row]:.4g} {view.linkage.length_unit}/s @ {at}")
     told = escape(f"{point.name} on link {point.link}: {', '.join(parts)}")
     return f'<div style="padding:2px 12px 6px;font-size:12.5px">{told}</div>'
 

@@ -155,9 +155,7 @@ class Scenery:
         for index in own_points(view) if wanted else ():
             name = view.linkage.points[index].name
             speeds = view.speeds[index]
-            if not np.isfinite(speeds).any():
-                continue
-            for word, row in (("fastest", np.nanargmax(speeds)), ("slowest", np.nanargmin(speeds))):
+            for word, row in view.speed_extremes(index):
                 places.append(view.traces[index].position[view.path.rows][row])
                 words.append(f"{name} {word}: {speeds[row]:.4g} {view.linkage.length_unit}/s")
         self.stage.marks(np.array(places).reshape(-1, 3), words)

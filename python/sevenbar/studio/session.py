@@ -74,7 +74,6 @@ class Session:
         Raises `DescriptionError` for a value that is refused, and then nothing has changed.
         """
         draft = self.draft.with_value(place, value)
-        draft.linkage  # noqa: B018  looked at before anything is forgotten
         now = time.monotonic()
         goes_on = self._last_change[0] == place and now - self._last_change[1] < ONE_DRAG
         self._step(draft, remember=not goes_on)
@@ -93,7 +92,6 @@ class Session:
         if "speed" in draft.raw["drive"] and linkage.column_kinds[first] != was:
             unit = "rad" if linkage.column_kinds[first] == "turn" else linkage.length_unit
             draft = draft.with_value(("drive", "speed"), f"1 {unit}/s")
-        draft.linkage  # noqa: B018
         self._step(draft)
 
     def add_point(self, name: str, link: int, at: tuple[float, float, float]) -> None:
@@ -101,7 +99,6 @@ class Session:
         if any(point.name == name.strip() for point in self.draft.linkage.points):
             raise RequestError(f"point: there is a point {name!r} already; give another name")
         draft = self.draft.with_point(name, link, at)
-        draft.linkage  # noqa: B018
         self._step(draft)
 
     def remove_point(self, index: int) -> None:
@@ -109,6 +106,8 @@ class Session:
         self._step(self.draft.without_point(index))
 
     def _step(self, draft: Draft, *, remember: bool = True) -> None:
+        """Takes a draft as the next step; raises `DescriptionError` for one that describes no linkage."""
+        draft.linkage  # noqa: B018  looked at before anything is forgotten
         if remember:
             self.past = [*self.past, self.draft][-MOST_STEPS:]
         self.future = []

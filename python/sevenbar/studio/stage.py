@@ -158,7 +158,7 @@ class Stage:
         Its paths are drawn at once, save with `paths` False; its solids, axes and names by the `pose` that
         must follow.
         """
-        self._size = extent(frame.places)
+        self._size = frame.span
         self._plan = plan(linkage, frame, ends, self._size)
         self._moving, self._frame = self._plan.moving(), frame
         self._places, self._fresh = None, True
@@ -334,9 +334,3 @@ class Stage:
         named = self._plan.labels if self._labels_on else ()
         places = self._places[[place for _, place in named]]
         self._names.put([text for text, _ in named], self.in_scene(places) + ABOVE)
-
-
-def extent(places: Floats) -> float:
-    """The largest extent along x, y or z of places (n, k, 3), NaN left out; as `Skeleton.span`, but fast."""
-    high, low = np.fmax.reduce(places, axis=0), np.fmin.reduce(places, axis=0)
-    return float((np.fmax.reduce(high, axis=0) - np.fmin.reduce(low, axis=0)).max())

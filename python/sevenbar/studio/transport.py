@@ -151,16 +151,13 @@ def _shown_speed(view: View) -> float:
 def _reading(session: Session, view: View) -> str:
     """Where the linkage stands: input, output, time and mode."""
     circuit = view.circuit
-    first = view.input_at(session.row)
     second = float(view.along(view.path.output, session.row))
-    if not _slides(view):
-        first %= math.tau
     way = ""
     if circuit.input_range is not None:
         way = " rising" if view.way[int(session.row)] * view.motion.speed > 0 else " falling"
     modes = session.modes()
     lines = [
-        f"input {joint_text(view.linkage, circuit.input_column, first)}{way}",
+        f"input {view.input_text(session.row)}{way}",
         f"output {joint_text(view.linkage, circuit.output_column, second)}",
         f"t = {view.time_at(session.row):.4g} s",
     ]

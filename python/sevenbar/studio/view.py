@@ -10,7 +10,8 @@ import numpy as np
 
 from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit, Floats, Motion, Trace
-from sevenbar.skeleton import Skeleton, Walk, skeleton, walk
+from sevenbar.skeleton import Skeleton, Walk, along, skeleton, walk
+from sevenbar.summary import joint_text
 
 #: Inputs [rad, or parts of the linkage's size] nearer to a limit are at it.
 SAME_INPUT = 1e-9
@@ -201,6 +202,19 @@ class View:
         """The speed [length/s] of each named point on the path's rows, (n,)."""
         return tuple(np.linalg.norm(trace.velocity, axis=1)[self.path.rows] for trace in self.traces)
 
+    def speed_extremes(self, point: int) -> tuple[tuple[str, int], ...]:
+        """The rows of the path where a named point is fastest and slowest; none where it has no speed."""
+        speeds = self.speeds[point]
+        if not np.isfinite(speeds).any():
+            return ()
+        return ("fastest", int(np.nanargmax(speeds))), ("slowest", int(np.nanargmin(speeds)))
+
+    def input_text(self, row: float) -> str:
+        """The input at a row with its unit, an angle within a turn."""
+        value, column = self.input_at(row), self.circuit.input_column
+        turns = self.linkage.column_kinds[column] == "turn"
+        return joint_text(self.linkage, column, value % math.tau if turns else value)
+
     def rates(self, point: int, row: float) -> tuple[Floats, Floats, Floats]:
         """Position, velocity and acceleration (3,) of a named point at a row; NaN where there is none.
 
@@ -218,12 +232,8 @@ class View:
     @cached_property
     def _joints(self) -> Floats:
         """Joint values (n, columns) along the path; in its closing row a turn on, where the joints are."""
-        q = self.circuit.q[self.path.rows]
-        if len(q) > 2 and self.path.rows[-1] == 0:
-            turns = np.array([kind == "turn" for kind in self.linkage.column_kinds])
-            ahead = 2 * q[-2] - q[-3]
-            q[-1] += np.where(turns, np.round((ahead - q[-1]) / math.tau) * math.tau, 0.0)
-        return q
+        columns = range(len(self.linkage.columns))
+        return np.stack([along(self.motion, self.circuit, self.path, column) for column in columns], axis=1)
 
 
 def own_points(view: View) -> range:
