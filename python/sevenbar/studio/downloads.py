@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sevenbar import report
 from sevenbar.errors import RequestError
-from sevenbar.export import FORMATS, export
+from sevenbar.export import FORMATS, Bodies, export
 from sevenbar.figure import FORMATS as FIGURES
 from sevenbar.motion import Motion
 from sevenbar.studio.draft import Draft
@@ -102,7 +102,7 @@ def _one(stem: str, files: list[Path]) -> tuple[str, bytes]:
 
 
 #: Words of exports that hold one pose, the one on view.
-POSED = ("glb", "stl", "step", "urdf", "mjcf", "cmd")
+POSED = tuple(word for word, form in FORMATS.items() if isinstance(form, Bodies))
 
 #: What is offered, by the words of the page.
 DOWNLOADS: dict[str, Callable[[Scene], tuple[str, bytes]]] = {

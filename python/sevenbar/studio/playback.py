@@ -44,7 +44,7 @@ iframe {{ flex: 1; border: 0; height: 100%; min-width: 0; }}
 
 
 def _scene(view: View) -> str:
-    """The page of viser's own page, with the scene and its motion in it."""
+    """The page of viser's player, with the scene and its motion in it."""
     # a recording is made of a server's scene; nobody is told of this one
     server = LocalServer("127.0.0.1", 0)
     try:

@@ -42,12 +42,15 @@ def verdict(session: Session) -> str:
     if session.view is not None:
         stale = "opacity:0.45;" if session.problem else ""
         told += f'<div style="{stale}">{_of_circuit(session.view)}</div>'
-    return f'<div style="padding:2px 12px 10px;font-size:12.5px;line-height:1.4">{told}</div>'
+    return _block(told)
 
 
 def facts_html(view: View) -> str:
     """What the report tells of the motion and the circuit of a view."""
-    told = _facts(_of_motion(view.motion)) + _of_circuit(view)
+    return _block(_facts(_of_motion(view.motion)) + _of_circuit(view))
+
+
+def _block(told: str) -> str:
     return f'<div style="padding:2px 12px 10px;font-size:12.5px;line-height:1.4">{told}</div>'
 
 
