@@ -16,9 +16,9 @@ import pytest
 
 import sevenbar as sb
 from reference_loops import Loop
+from sevenbar.draft import Dimension, Draft
 from sevenbar.errors import SevenbarError
 from sevenbar.gallery import text
-from sevenbar.studio.draft import Dimension, Draft
 from sevenbar.studio.session import Session
 from studio_sessions import distance
 

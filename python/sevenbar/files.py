@@ -8,7 +8,7 @@ import tomllib
 from pathlib import Path
 
 from sevenbar.errors import DescriptionError, Problem, shown
-from sevenbar.forms import from_form
+from sevenbar.forms import from_description
 from sevenbar.gallery import names, nearest, text
 from sevenbar.linkage import Linkage
 
@@ -41,8 +41,6 @@ def text_of(source: str | os.PathLike[str]) -> str:
 
 def loads(content: str, source: str = "text") -> Linkage:
     """The linkage described by a TOML text; `source` is its name in messages."""
-    from sevenbar import schema
-
     for number, line in enumerate(content.splitlines(), 1):
         if len(line) > LONGEST_LINE:
             raise _unreadable(
@@ -54,7 +52,7 @@ def loads(content: str, source: str = "text") -> Linkage:
         raise _unreadable(source, _told(error, content.split("\n"))) from None
     except RecursionError:
         raise _unreadable(source, "nested too deep; a linkage file has tables of plain keys only") from None
-    return from_form(schema.check(raw, source=source), source)
+    return from_description(raw, source)
 
 
 #: What TOML's reader says of a place.

@@ -51,8 +51,6 @@ def rssr(
 
     Source: Sun and Zhou, Figure 2, eq. (5) to (7).
     """
-    from sevenbar import schema
-
     dimensions = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D}
     if L2 is not None:
         dimensions["L2"] = L2
@@ -63,7 +61,7 @@ def rssr(
         "drive": {"speed": _plain(speed)},
         "rssr": {key: _plain(value) for key, value in dimensions.items()},
     }
-    return from_form(schema.check(raw))
+    return from_description(raw)
 
 
 def from_axes(
@@ -90,8 +88,6 @@ def from_axes(
         >>> linkage.motion().motion_type
         'crank-rocker'
     """
-    from sevenbar import schema
-
     raw = {
         "format": 1,
         "name": name,
@@ -100,7 +96,7 @@ def from_axes(
         "joint": _plain(joints),
         "point": _plain(points),
     }
-    return from_form(schema.check(raw))
+    return from_description(raw)
 
 
 def from_dh(
@@ -134,8 +130,6 @@ def from_dh(
 
     Source: the 7R paper's loop and its u, v, w.
     """
-    from sevenbar import schema
-
     columns = {"length": length, "twist": twist, "offset": offset, "angle": angle, "pitch": pitch}
     rows = _rows(joints, {key: _plain(values) for key, values in columns.items()}, _plain(names))
     raw = {
@@ -147,7 +141,7 @@ def from_dh(
         "link": rows,
         "point": _plain(points),
     }
-    return from_form(schema.check(raw))
+    return from_description(raw)
 
 
 def _rows(joints: object, columns: Mapping[str, Any], names: Any) -> list[dict[str, Any]]:
@@ -191,8 +185,14 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def from_form(form: LinkageForm, source: str = "") -> Linkage:
-    """The linkage that a checked description tells of."""
+def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
+    """The linkage that a description tells of, by the tables and keys of a file; it keeps them.
+
+    Raises `DescriptionError` with all that is wrong; `source` is the file it came from.
+    """
+    from sevenbar import schema
+
+    form = schema.check(raw, source=source)
     if form.rssr is not None:
         linkage = _from_dimensions(form.rssr)
     elif form.joint is not None:
@@ -205,6 +205,7 @@ def from_form(form: LinkageForm, source: str = "") -> Linkage:
         length_unit=form.length_unit,
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         drive=Drive(*form.driven, form.drive.speed),
+        description=raw,
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -65,7 +65,8 @@ class Linkage:
     `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,
     both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
     to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
-    `dimensions` are the named numbers of the form it was written in.
+    `dimensions` are the named numbers of the form it was written in, `description` that form itself: the
+    tables and keys of a file, from which a linkage with other numbers is made.
     """
 
     name: str
@@ -78,6 +79,7 @@ class Linkage:
     length_unit: str = "mm"
     points: tuple[Point, ...] = ()
     dimensions: Mapping[str, float] = field(default_factory=dict)
+    description: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):

@@ -175,12 +175,15 @@ class Circuit:
     output_range: tuple[float, float] | None
     #: The transmission angle [rad]; `None` where it is not defined.
     transmission: Extremes | None
-    #: Of the output's velocity [rad/s] and acceleration [rad/s^2]; `None` where they grow without
-    #: bound, or a change point lies within.
+    #: Of the output's velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3]; `None` where they grow
+    #: without bound, or a change point lies within.
     velocity: Extremes | None
     acceleration: Extremes | None
+    jerk: Extremes | None
     input_column: int
     output_column: int
+    #: Whether the output is an angle, not a slide.
+    output_turns: bool
     #: The size of the linkage [length].
     size: float
     _point: Callable[[int, Floats], Trace] = field(repr=False)
@@ -379,9 +382,11 @@ def circuit_from(
     if law is None:
         velocity = scaled_extremes(raw["velocity"], speed)
         acceleration = scaled_extremes(raw["acceleration"], speed * speed)
+        jerk = scaled_extremes(raw.get("jerk"), speed**3)
     else:
         velocity = sampled_extremes(dq[:, output_column], inputs)
         acceleration = sampled_extremes(ddq[:, output_column], inputs)
+        jerk = sampled_extremes(dddq[:, output_column], inputs)
     common = {
         "status": np.array(STATUSES)[raw["status"]],
         "output_range": raw["output"],
@@ -402,8 +407,10 @@ def circuit_from(
         input_range=raw["input"],
         velocity=velocity,
         acceleration=acceleration,
+        jerk=jerk,
         input_column=input_column,
         output_column=output_column,
+        output_turns=linkage.column_kinds[output_column] == "turn",
         size=size,
         _frames=linkage.point_frames,
         **(common | own),

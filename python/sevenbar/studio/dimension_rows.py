@@ -8,9 +8,9 @@ from typing import Any
 
 import viser
 
+from sevenbar.draft import Dimension
 from sevenbar.errors import SevenbarError
 from sevenbar.studio.controls import PAUSE, Alert, Asked, by_person, put
-from sevenbar.studio.draft import Dimension
 from sevenbar.units import ANGLES
 
 #: Steps of a slider over its range, at most.

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sevenbar import report
+from sevenbar.draft import Draft
 from sevenbar.errors import RequestError
 from sevenbar.export import FORMATS, Bodies, export
 from sevenbar.figure import FORMATS as FIGURES
 from sevenbar.motion import Motion
-from sevenbar.studio.draft import Draft
 from sevenbar.studio.session import Session
 from sevenbar.studio.view import View
 

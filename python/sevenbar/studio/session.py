@@ -7,9 +7,9 @@ import time
 
 import numpy as np
 
+from sevenbar.draft import Draft, Place
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.motion import Motion
-from sevenbar.studio.draft import Draft, Place
 from sevenbar.studio.view import View, modes_at, nearest
 from sevenbar.summary import meaning
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import viser
 
+from sevenbar.draft import Dimension
 from sevenbar.studio.controls import Alert, Asked, by_person, put
 from sevenbar.studio.dimension_rows import DimensionRow, largest_length
-from sevenbar.studio.draft import Dimension
 from sevenbar.studio.session import Session
 
 #: More groups of dimensions than these are folded at first, but for the first one.

@@ -1,4 +1,4 @@
-"""The studio's draft: what is shown is what is written, and what was written by a person stays.
+"""A draft: what is shown is what is written, and what was written by a person stays.
 
 Source: `tomllib`, which reads both texts; comments are counted by lines, as a person would.
 """
@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.draft import Dimension, Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.files import loads
 from sevenbar.gallery import names, text
 from sevenbar.studio.dimension_rows import largest_length, number_text, slider_range
-from sevenbar.studio.draft import Dimension, Draft
 
 RSSR = "M = 700\nN = 700 # height\nL1 = 250\nL3=550\nD = 0 # none\n"
 ROWS = (
@@ -229,7 +229,7 @@ READ = [
 
 @pytest.mark.parametrize(("unit", "given", "value"), READ)
 def test_a_number_is_read_in_any_unit_that_fits(unit: str, given: str, value: float) -> None:
-    dimension = Dimension(("rssr", "L1"), "L1", "dimensions", unit, 1.0)
+    dimension = Dimension("L1", ("rssr", "L1"), "L1", "dimensions", unit, 1.0)
     assert dimension.read(given) == pytest.approx(value, rel=1e-14)
 
 
@@ -239,7 +239,7 @@ def test_a_number_is_read_in_any_unit_that_fits(unit: str, given: str, value: fl
     ["", "  ", "abc", "NaN", "inf", "-inf", "1e400", "1,5", "1 2", "0x10", "5 kg", "1e9999 mm", "<b>"],
 )
 def test_what_is_no_number_is_refused_with_what_to_give(unit: str, given: str) -> None:
-    dimension = Dimension(("link", 1, "twist"), "twist", "link 2", unit, 1.0)
+    dimension = Dimension("twist_2", ("link", 1, "twist"), "twist", "link 2", unit, 1.0)
     with pytest.raises(RequestError) as caught:
         dimension.read(given)
     message = str(caught.value)
@@ -264,7 +264,7 @@ def test_what_is_no_number_is_refused_with_what_to_give(unit: str, given: str) -
 )
 def test_a_refusal_says_what_is_wrong_with_the_unit(unit: str, given: str, words: str) -> None:
     with pytest.raises(RequestError, match=re.escape(words)):
-        Dimension(("rssr", "L1"), "L1", "dimensions", unit, 1.0).read(given)
+        Dimension("L1", ("rssr", "L1"), "L1", "dimensions", unit, 1.0).read(given)
 
 
 # --- sliders
@@ -296,7 +296,7 @@ def test_a_slider_holds_its_value_whatever_that_is(unit: str) -> None:
             for size in (5e-324, 1e-310, 1e-100, 1.0, 700.0, 1e100):
                 if positive and not value:
                     continue
-                low, high, step = slider_range(Dimension(("a",), "a", "g", unit, signed, positive), size)
+                low, high, step = slider_range(Dimension("a", ("a",), "a", "g", unit, signed, positive), size)
                 assert low <= signed <= high, (signed, size)
                 assert 0 < step <= high - low, (signed, size)
                 assert np.isfinite([low, high, step]).all()
@@ -314,12 +314,14 @@ def test_every_slider_of_the_gallery_has_room_on_both_sides_in_fine_steps(name: 
 
 
 def test_a_number_is_written_as_people_write_it_and_read_back() -> None:
-    dimension = Dimension(("a",), "a", "g", "mm", 1.0)
+    dimension = Dimension("a", ("a",), "a", "g", "mm", 1.0)
     for value, told in ((0.1 + 0.2, "0.3"), (250.0, "250"), (-1e-7, "-1e-07"), (1e100, "1e+100"), (0.0, "0")):
         assert number_text(value) == told
         assert dimension.read(told) == pytest.approx(value, rel=1e-11)
 
 
 def test_widening_a_slider_never_narrows_it() -> None:
-    tops = [slider_range(Dimension(("a",), "a", "g", "mm", v), 1.0)[1] for v in np.geomspace(1e-3, 1e6, 400)]
+    tops = [
+        slider_range(Dimension("a", ("a",), "a", "g", "mm", v), 1.0)[1] for v in np.geomspace(1e-3, 1e6, 400)
+    ]
     assert all(a <= b for a, b in pairwise(tops))

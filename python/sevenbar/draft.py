@@ -1,19 +1,19 @@
-"""The description that is being shaped: its dimensions, what changes it, and its way back to a file."""
+"""A description that is being shaped: its dimensions by name, what changes it, and its way back to a file."""
 
 from __future__ import annotations
 
 import copy
 import tomllib
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
-from sevenbar import schema
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.files import loads
-from sevenbar.forms import from_form
-from sevenbar.linkage import Linkage
+from sevenbar.forms import from_description
+from sevenbar.linkage import Joint, Linkage
 from sevenbar.units import ANGLES, TURNING_SPEEDS, amount, length_sizes
 
 #: A place in a description: keys of tables, and counts from 0 in lists.
@@ -31,10 +31,11 @@ ROW_KEYS = {
 class Dimension:
     """A number of the description that can be changed.
 
-    `value` and `unit` are the file's; `group` is what it belongs to; `follows` where the file leaves it out
-    and it follows from the others.
+    `name` is its own among all: "L1"; "length_2"; "crank.axis_x"; "P.u". `value` and `unit` are the file's;
+    `group` is what it belongs to; `follows` where the file leaves it out and it follows from the others.
     """
 
+    name: str
     place: Place
     label: str
     group: str
@@ -48,6 +49,25 @@ class Dimension:
         """Its place as messages tell it: `rssr.L1`, `link[2].twist`, `joint[1].at[3]`."""
         parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in self.place]
         return "".join(parts).lstrip(".")
+
+    @property
+    def column(self) -> str:
+        """Its name in tables, with the unit: `L1_mm`, `twist_2_deg`."""
+        return f"{self.name}_{self.unit.replace('/', '_')}" if self.unit else self.name
+
+    @property
+    def kind(self) -> Literal["length", "angle", "pitch", "number", "speed"]:
+        """What its value is."""
+        if "/" in self.unit or self.unit == "rpm":
+            return "pitch" if self.unit.endswith("turn") else "speed"
+        if self.unit in ANGLES:
+            return "angle"
+        return "length" if self.unit else "number"
+
+    @property
+    def scale(self) -> float:
+        """The size of its unit beside the one that is carried: radian, length unit."""
+        return ANGLES.get(self.unit, 1.0)
 
     def read(self, text: str) -> float:
         """The value that a person wrote, in the dimension's unit: "250", "25 cm", "30deg".
@@ -81,7 +101,13 @@ class Dimension:
 
 @dataclass(frozen=True, eq=False)
 class Draft:
-    """A description as it stands now: the text it came from, and the tables and numbers it has become."""
+    """A description as it stands now: the text it came from, and the tables and numbers it has become.
+
+    >>> import sevenbar as sb
+    >>> draft = Draft.of_linkage(sb.load("rssr"))
+    >>> draft.with_values({"L1": 260.0}).linkage.dimensions["L1"]
+    260.0
+    """
 
     text: str
     raw: Mapping[str, Any]
@@ -93,6 +119,16 @@ class Draft:
         loads(text, source)  # with all that is wrong in it
         return Draft(text, tomllib.loads(text), source)
 
+    @staticmethod
+    def of_linkage(linkage: Linkage) -> Draft:
+        """The draft of a linkage's own description, which has no text with comments."""
+        if not linkage.description:
+            raise RequestError(
+                f"linkage: '{linkage.name}' was made without a description; "
+                "make it by load, rssr, from_dh or from_axes"
+            )
+        return Draft("", linkage.description, linkage.name)
+
     def as_opened(self) -> Draft:
         """The draft as its text has it."""
         return replace(self, raw=tomllib.loads(self.text))
@@ -100,7 +136,7 @@ class Draft:
     @cached_property
     def linkage(self) -> Linkage:
         """The linkage described; raises `DescriptionError`."""
-        return from_form(schema.check(self.raw, source=""))
+        return from_description(self.raw)
 
     def with_value(self, place: Place, value: object) -> Draft:
         """The draft with a value at a place, whose tables are made where the file has none."""
@@ -112,6 +148,28 @@ class Draft:
             table = table[part]
         table[place[-1]] = value
         return replace(self, raw=raw)
+
+    def dimension(self, name: str) -> Dimension:
+        """The dimension of a name, or of a place as in a file (`link[2].twist`).
+
+        Raises `RequestError` where there is none.
+        """
+        for dimension in self.dimensions:
+            if name in (dimension.name, dimension.key):
+                return dimension
+        known = [dimension.name for dimension in self.dimensions]
+        raise RequestError(
+            f"dimension: {shown(name)} is not a dimension of {shown(self.source)}; "
+            f"{suggestion(name, known)}give one of {', '.join(known)}"
+        )
+
+    def with_values(self, values: Mapping[str, float]) -> Draft:
+        """The draft with other values of dimensions, by name, each in the file's unit."""
+        draft = self
+        for name, value in values.items():
+            dimension = self.dimension(name)
+            draft = draft.with_value(dimension.place, self.written(dimension, float(value)))
+        return draft
 
     def with_point(self, name: str, link: int, at: Sequence[float]) -> Draft:
         """The draft with one more named point."""
@@ -136,23 +194,29 @@ class Draft:
             value = linkage.dimensions[key] if given is None else float(given)
             # D left out is 0; L2 left out follows from the others
             follows = given is None and key == "L2"
-            found.append(Dimension(("rssr", key), key, "dimensions", length, value, key[0] == "L", follows))
+            place = ("rssr", key)
+            positive = key[0] == "L"
+            found.append(Dimension(key, place, key, "dimensions", length, value, positive, follows))
         units = {"twist": angle, "angle": angle, "pitch": f"{length}/turn"}
         joints = linkage.joints
         for i, row in enumerate(self.raw.get("link", ())):
             group = f"link {i + 1}, after {joints[i].name} ({joints[i].kind})"
             for key in ROW_KEYS[joints[i].kind]:
                 unit = units.get(key, length)
-                found.append(Dimension(("link", i, key), key, group, unit, float(row.get(key, 0.0))))
+                value = float(row.get(key, 0.0))
+                found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
         for i, table in enumerate(self.raw.get("joint", ())):
-            found += _of_drawn(i, table, f"{joints[i].name} ({joints[i].kind})", length)
+            found += _of_drawn(i, table, joints[i], length)
         letters = "uvw" if "link" in self.raw else "xyz"
         for i, table in enumerate(self.raw.get("point", ())):
-            found += _vector(("point", i, "at"), table["at"], letters, f"point {table['name']}", length)
+            name = table["name"]
+            found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
         column = linkage.columns.index(linkage.drive.joint)
         speed = "rad/s" if linkage.column_kinds[column] == "turn" else f"{length}/s"
-        found.append(Dimension(("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
-        return tuple(found)
+        found.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
+        # a point may have the name of a joint
+        taken = Counter(dimension.name for dimension in found)
+        return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in found)
 
     def written(self, dimension: Dimension, value: float) -> object:
         """What stands in the file for a value of a dimension: a speed with its unit, else the number."""
@@ -161,8 +225,14 @@ class Draft:
 
     def toml(self) -> str:
         """The draft as TOML: the text it came from with its comments, and the changed values in place."""
-        import tomlkit
-
+        try:
+            import tomlkit
+        except ImportError:
+            raise MissingExtraError(
+                "writing a linkage file needs tomlkit; install it with: pip install 'sevenbar[design]'"
+            ) from None
+        if not self.text:
+            return tomlkit.dumps(self.raw)
         # tables out of order are put in order by a change only
         if tomllib.loads(self.text) == self.raw:
             return self.text
@@ -180,26 +250,31 @@ def _plain(value: float) -> float | int:
     return int(value) if abs(value) < 1e15 and value.is_integer() else value
 
 
-def _of_drawn(index: int, table: Mapping[str, Any], group: str, length: str) -> list[Dimension]:
+def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -> list[Dimension]:
     """The numbers of a joint as drawn."""
     place = ("joint", index)
-    found = _vector((*place, "at"), table["at"], "xyz", group, length)
+    whose = (joint.name, f"{joint.name} ({joint.kind})")
+    found = _vector((*place, "at"), table["at"], "xyz", whose, length)
     if "axis" in table:
-        found += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), group, "")
+        found += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), whose, "")
     for which, axis in enumerate(table.get("axes", ())):
         letters = [f"axis {which + 1} {letter}" for letter in "xyz"]
-        found += _vector((*place, "axes", which), axis, letters, group, "")
+        found += _vector((*place, "axes", which), axis, letters, whose, "")
     if "pitch" in table:
-        found.append(Dimension((*place, "pitch"), "pitch", group, f"{length}/turn", float(table["pitch"])))
+        name, group = whose
+        unit, pitch = f"{length}/turn", float(table["pitch"])
+        found.append(Dimension(f"{name}.pitch", (*place, "pitch"), "pitch", group, unit, pitch))
     return found
 
 
 def _vector(
-    place: Place, values: Sequence[float], letters: Sequence[str], group: str, unit: str
+    place: Place, values: Sequence[float], labels: Sequence[str], whose: tuple[str, str], unit: str
 ) -> list[Dimension]:
+    """The numbers of a vector; `whose`: the name of its owner, and what the owner is called among others."""
+    name, group = whose
     return [
-        Dimension((*place, axis), letter, group, unit, float(value))
-        for axis, (letter, value) in enumerate(zip(letters, values, strict=True))
+        Dimension(f"{name}.{label.replace(' ', '_')}", (*place, axis), label, group, unit, float(value))
+        for axis, (label, value) in enumerate(zip(labels, values, strict=True))
     ]
 
 

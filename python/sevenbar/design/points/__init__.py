@@ -1,0 +1,1 @@
+"""Points of moving links: acceleration poles, least acceleration, wanted paths, inertia."""

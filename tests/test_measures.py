@@ -1,0 +1,61 @@
+"""Measures are the numbers of the ordinary analysis, under names with units."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import sevenbar as sb
+from sevenbar.errors import RequestError
+from sevenbar.measures import MEASURES, measures_named, rows_of
+
+
+def test_the_papers_crank_rocker_is_measured_as_table_1_has_it() -> None:
+    motion = sb.load("rssr").motion()
+    rows = rows_of(motion, measures_named(["motion_type", "velocity_lowest", "velocity_highest", "swing"]))
+    assert [row["circuit"] for row in rows] == [0, 1]
+    assert rows[0]["motion_type"] == "crank-rocker"
+    assert rows[0]["velocity_lowest"] == pytest.approx(-5.445439, abs=5e-7)
+    assert rows[0]["velocity_highest"] == pytest.approx(7.959775, abs=5e-7)
+    assert rows[0]["swing"] == pytest.approx(math.degrees(1.189368 + 0.122185), abs=1e-4)
+
+
+def test_columns_tell_units_by_what_the_output_does() -> None:
+    turning, sliding = sb.load("rssr"), sb.load("rssp")
+    swing, velocity = MEASURES["swing"], MEASURES["velocity_highest"]
+    assert swing.column(turning, turning.drive.output) == "swing_deg"
+    assert velocity.column(turning, turning.drive.output) == "velocity_highest_rad_s"
+    assert swing.column(sliding, sliding.drive.output) == "swing_mm"
+    assert velocity.column(sliding, sliding.drive.output) == "velocity_highest_mm_s"
+
+
+def test_a_linkage_that_cannot_be_assembled_keeps_its_row() -> None:
+    motion = sb.rssr(M=700, N=700, L1=1, L3=1, L2=1).motion()
+    (row,) = rows_of(motion, measures_named(["motion_type", "swing"]))
+    assert row == {"circuit": None, "motion_type": "cannot-assemble", "swing": None}
+
+
+def test_a_function_of_the_motion_is_a_measure() -> None:
+    def greatest_residual(motion: sb.Motion) -> float:
+        """The greatest closure error."""
+        return max(float(c.residual.max()) for c in motion)
+
+    (measure,) = measures_named([greatest_residual])
+    (row,) = rows_of(sb.load("seven_r").motion(90), [measure])
+    assert measure.told == "The greatest closure error."
+    assert 0 < row["greatest_residual"] < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (["swng"], "measure: 'swng' is not a measure; did you mean 'swing'? give some of motion_type"),
+        ([], "measure: none given; give some of motion_type"),
+        (["swing", "swing"], "measure: 'swing' is given twice; leave one out"),
+    ],
+)
+def test_wrong_measures_are_told(given: list[str], message: str) -> None:
+    with pytest.raises(RequestError) as caught:
+        measures_named(given)
+    assert message in str(caught.value)
