@@ -15,6 +15,7 @@ from random_linkages import Dimensions
 from random_loops import general
 from reference_loops import Loop
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError
+from sevenbar.gallery import text
 from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.measured import Measured
 from sevenbar.measuring.rewrite import calibrated_toml
@@ -280,8 +281,6 @@ def test_differences_that_follow_each_other_are_told():
 
 @pytest.mark.parametrize("name", ["rssr", "seven_r"])
 def test_the_calibrated_file_is_the_old_one_with_new_dimensions(name):
-    from sevenbar.gallery import text
-
     linkage = sb.load(name)
     circuit = linkage.motion(72).circuits[0]
     moved = circuit.output + 1e-6 * np.sin(circuit.input)
@@ -372,5 +371,7 @@ def test_a_missing_tomlkit_is_named_with_its_extra(monkeypatch):
     inputs, angle = measured_rssr(PAPER, count=30)
     found = calibrate(sb.load("rssr"), table(input=inputs, angle=angle), free=["L1"])
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(MissingExtraError, match=r"pip install 'sevenbar\[calibrate\]'"):
-        calibrated_toml("", found)
+    with pytest.raises(
+        MissingExtraError, match=r"needs tomlkit; install it with: pip install 'sevenbar\[design\]'"
+    ):
+        calibrated_toml(text("rssr"), found)

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-from sevenbar.errors import MissingExtraError
-from sevenbar.files import loads
-from sevenbar.measuring.calibrate import Calibration, Parameter
-from sevenbar.units import ANGLES
+from sevenbar.draft import Draft
+from sevenbar.measuring.calibrate import Calibration
 
 
 def calibrated_toml(text: str, calibration: Calibration) -> str:
@@ -18,36 +15,13 @@ def calibrated_toml(text: str, calibration: Calibration) -> str:
     for, the zeros of the measured joints, stands in the comment above. Raises `MissingExtraError` without
     tomlkit.
     """
-    try:
-        import tomlkit
-    except ImportError:
-        raise MissingExtraError(
-            "calibrate needs scipy and tomlkit; install them with: pip install 'sevenbar[calibrate]'"
-        ) from None
-    document: Any = tomlkit.parse(text)
-    angle = ANGLES[str(document.get("angle_unit", "deg"))]
-    for parameter in calibration.calibrated:
-        name, _, number = parameter.name.partition("_")
-        if parameter.name.endswith("_offset"):
-            continue
-        if number:
-            document["link"][int(number) - 1][name] = _written(parameter, angle)
-        else:
-            document["rssr"][name] = parameter.value
-    if "rssr" in document and calibration.calibrated and "L2" not in document["rssr"]:
-        document["rssr"]["L2"] = calibration.parameter("L2").value
-    head = "".join(f"# {line}\n" for line in _head(calibration))
-    written = head + "\n" + tomlkit.dumps(document)
-    # what is written must be what was found
-    loads(written, "calibrated.toml")
-    return written
-
-
-def _written(parameter: Parameter, angle: float) -> float:
-    """A value in the file's unit."""
-    if parameter.kind != "angle":
-        return parameter.value
-    return math.degrees(parameter.value) if angle != 1.0 else parameter.value
+    draft = Draft.of(text, "calibrated.toml")
+    found = {p.name: p.value for p in calibration.calibrated if not p.name.endswith("_offset")}
+    if found and "L2" in calibration.linkage.dimensions:
+        found = {"L2": calibration.parameter("L2").value} | found
+    units = {dimension.name: dimension.scale for dimension in draft.dimensions}
+    written = draft.with_values({name: value / units[name] for name, value in found.items()}).toml()
+    return "".join(f"# {line}\n" for line in _head(calibration)) + "\n" + written
 
 
 def _head(calibration: Calibration) -> list[str]:
