@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 import uuid
+from asyncio import CancelledError
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
@@ -164,8 +165,14 @@ class Cluster:
                 f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
                 "that took it; look for their memory and their logs, and go on with --resume"
             ) from None
-        except Exception as error:
+        except (CancelledError, OSError, TimeoutError) as error:
             self._lost(error)
+        except Exception as error:
+            told = f"{type(error).__name__}: {error}".splitlines()[0]
+            raise EngineError(
+                f"scheduler: a worker cannot make part {part}: {told}; "
+                "give workers the same modules and versions as here, and go on with --resume"
+            ) from None
         return content, by
 
     def _lost(self, error: Exception) -> NoReturn:

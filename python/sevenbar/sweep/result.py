@@ -139,7 +139,8 @@ class Sweep:
                 else:
                     numbers = table[field.name].to_numpy(zero_copy_only=False).astype(np.float64)
                     ranges[field.name] = _wider(ranges.get(field.name), numbers, linkage)
-        return Totals(linkages, rows, invalid, words, ranges)
+        plain = {name: dict(counts) for name, counts in words.items()}
+        return Totals(linkages, rows, invalid, plain, ranges)
 
 
 def _wider(known: Range | None, numbers: Any, linkage: Any) -> Range | None:
