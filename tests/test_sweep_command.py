@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import json
+import re
 from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
 
 from commands import mistake, sevenbar
+from sevenbar.measures import MEASURES
 
 
 def test_a_sweep_prints_what_it_found_and_where_it_is(tmp_path: Path) -> None:
@@ -93,3 +97,22 @@ def test_a_folder_with_parts_is_gone_on_with_where_that_is_asked_for(tmp_path: P
     assert mistake(*sweep[:-4], "--part-size", "3", "--out", "found", cwd=tmp_path) == (
         "found: holds another sweep: part_size is 2 there and 3 here; give another folder, or ask for that sweep"
     )
+
+
+def test_the_page_on_sweeps_shows_what_the_program_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = (Path(__file__).parent.parent / "docs" / "sweep.md").read_text(encoding="utf-8")
+    first, second = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(first, {"__name__": "page"})
+    assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", first)
+    told = page[page.index("## What is measured") :]
+    assert set(re.findall(r"`(\w+)`", " ".join(re.findall(r"^\| (`.*?) \|", told, re.MULTILINE)))) >= set(
+        MEASURES
+    )
+    monkeypatch.chdir(tmp_path)
+    sweep = ["sweep", "rssr", "--over", "L1=200..600", "--count", "20", "--out", "crank_rockers"]
+    assert sevenbar(*sweep).returncode == 0
+    exec(second, {})

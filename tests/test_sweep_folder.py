@@ -241,7 +241,7 @@ def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) ->
 def test_a_sweep_killed_at_twenty_random_moments_loses_no_finished_part(tmp_path: Path) -> None:
     sweep = [
         sys.executable, "-m", "sevenbar.cli", "sweep", "seven_r", "--over", "twist_1=30..90", "--over",
-        "length_2=80..120", "--count", "1000", "--seed", "3", "--measure", "motion_type,circuits,swing",
+        "length_2=80..120", "--count", "400", "--seed", "3", "--measure", "motion_type,circuits,swing",
         "--samples", "24", "--part-size", "2",
     ]  # fmt: skip
     chance = random.Random(20)
@@ -251,10 +251,10 @@ def test_a_sweep_killed_at_twenty_random_moments_loses_no_finished_part(tmp_path
         process = subprocess.Popen(
             [*sweep, "--out", folder, "--resume"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
-        wanted = len(kept) + chance.randrange(20)
+        wanted = len(kept) + chance.randrange(6)
         while process.poll() is None and len(list(folder.glob("part*"))) < wanted:
             time.sleep(0.001)
-        time.sleep(chance.uniform(0.0, 0.1))
+        time.sleep(chance.uniform(0.0, 0.06))
         process.kill()
         assert process.wait() == -9
         marks = bits(folder) if folder.exists() else {}
@@ -265,7 +265,7 @@ def test_a_sweep_killed_at_twenty_random_moments_loses_no_finished_part(tmp_path
         }
         assert kept.items() <= now.items()
         kept = now
-    assert 0 < len(kept) < 500
+    assert 0 < len(kept) < 200
     subprocess.run([*sweep, "--out", folder, "--resume"], check=True, capture_output=True)
     subprocess.run([*sweep, "--out", tmp_path / "whole", "--threads", "1"], check=True, capture_output=True)
     assert bits(folder) == bits(tmp_path / "whole")
@@ -277,12 +277,12 @@ def test_memory_stays_flat_however_long_the_sweep(tmp_path: Path) -> None:
         "import resource, sys, sevenbar as sb\n"
         "from sevenbar.sweep import run, span\n"
         "run(sb.load('rssr'), {'L1': span(100, 900), 'L3': span(100, 900)}, method='random', threads=2,\n"
-        "    count=int(sys.argv[1]), part_size=1000, out=sys.argv[2]).totals\n"
+        "    count=int(sys.argv[1]), part_size=500, out=sys.argv[2]).totals\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
     )
     peaks = []
-    for count in (4_000, 40_000):
+    for count in (3_000, 24_000):
         command = [sys.executable, "-c", code, str(count), str(tmp_path / str(count))]
         peaks.append(int(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
-    # kilobytes: ten times the linkages may cost what the allocator does not give back, not ten times
+    # kilobytes: eight times the linkages may cost what the allocator keeps, not eight times
     assert peaks[1] < peaks[0] + 40_000

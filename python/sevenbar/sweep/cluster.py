@@ -175,7 +175,7 @@ class Cluster:
             ) from None
         return content, by
 
-    def _lost(self, error: Exception) -> NoReturn:
+    def _lost(self, error: BaseException) -> NoReturn:
         told = f"{type(error).__name__}: {error}".splitlines()[0]
         raise EngineError(
             f"scheduler: '{self._address}' is lost ({told}); start it again, and go on with --resume"
