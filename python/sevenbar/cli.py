@@ -31,6 +31,7 @@ from sevenbar.options import (
 )
 from sevenbar.simulation.command import simulate
 from sevenbar.studio.command import studio
+from sevenbar.sweep.command import sweep
 
 
 class _Commands(typer.core.TyperGroup):
@@ -233,7 +234,7 @@ def _points(
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
-for _command in (studio, compare, calibrate, simulate, export):
+for _command in (studio, compare, calibrate, simulate, export, sweep):
     app.command()(_command)
 
 

@@ -1,0 +1,199 @@
+"""A sweep's parts made by the workers of a Dask cluster: files come back, so no disk need be shared."""
+
+from __future__ import annotations
+
+import logging
+import time
+import uuid
+from asyncio import CancelledError
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from itertools import islice
+from typing import Any, NoReturn
+
+from sevenbar.errors import EngineError, MissingExtraError, RequestError, SevenbarError, shown
+from sevenbar.sweep.plan import Plan, maker
+from sevenbar.sweep.rows import part_bytes
+
+#: Time [s] in which a scheduler must answer.
+ANSWER_TIME = 10.0
+
+#: Time [s] without any worker after which a sweep is given up: one that died is started again within that.
+WORKER_TIME = 60.0
+
+#: Time [s] between two looks at the workers.
+LOOK_TIME = 1.0
+
+#: Parts in flight for each thread of the workers: one at work and one that waits.
+IN_FLIGHT = 2
+
+
+class Cluster:
+    """The workers of a scheduler, for one sweep; closed after use, whatever happened."""
+
+    def __init__(self, address: str, plan: Plan) -> None:
+        """Calls the scheduler at an address, as in "tcp://host:8786".
+
+        Raises `MissingExtraError` without dask, `RequestError` for an address where none answers, and for
+        measures that cannot be sent.
+        """
+        try:
+            distributed: Any = import_module("distributed")
+            pickle: Any = import_module("distributed.protocol.pickle")
+        except ImportError:
+            raise MissingExtraError(
+                "a cluster needs dask; install it with: pip install 'sevenbar[sweep]'"
+            ) from None
+        try:
+            pickle.dumps(plan)
+        except Exception as error:
+            told = f"{type(error).__name__}: {error}".splitlines()[0]
+            raise RequestError(
+                f"measure: a function cannot be sent to workers: {told}; "
+                "give functions of a module that the workers have, which hold nothing open"
+            ) from None
+        self._plan, self._address = plan, address
+        self._quiet = _quiet()
+        self._quiet.__enter__()
+        try:
+            self._client: Any = distributed.Client(
+                address, timeout=ANSWER_TIME, set_as_default=False, name="sevenbar-sweep"
+            )
+        except Exception:
+            self._quiet.__exit__(None, None, None)
+            raise RequestError(
+                f"scheduler: no Dask scheduler answers at {shown(address)}; "
+                "start one with 'dask scheduler', and give its address, as in tcp://host:8786"
+            ) from None
+
+    def __enter__(self) -> Cluster:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        try:
+            with suppress(Exception):
+                self._client.close()
+        finally:
+            self._quiet.__exit__(None, None, None)
+
+    def makers(self) -> Sequence[Mapping[str, str]]:
+        """What makes parts there, as of the workers that are there now; raises `EngineError` for none."""
+        self._wait_for_workers()
+        try:
+            found = self._client.run(maker, on_error="return")
+        except Exception as error:
+            self._lost(error)
+        makers: list[Mapping[str, str]] = []
+        for worker, told in found.items():
+            if not isinstance(told, dict):
+                raise EngineError(
+                    f"scheduler: worker {worker} cannot run Sevenbar: {told}; install the same version there"
+                )
+            if told not in makers:
+                makers.append(told)
+        return makers
+
+    def made(self, parts: Iterable[int]) -> Generator[tuple[int, bytes, Mapping[str, str]], None, None]:
+        """The parts as they are finished; raises `EngineError` where workers die of them, or all are gone."""
+        rest = iter(parts)
+        flying: dict[Any, int] = {}
+        # keys of this run alone: a scheduler may still know those of another
+        run = uuid.uuid4().hex
+        try:
+            while True:
+                for part in islice(rest, max(0, self._window() - len(flying))):
+                    future = self._client.submit(
+                        _made_by, self._plan, part, key=f"sweep-{run}-{part}", pure=False
+                    )
+                    flying[future] = part
+                if not flying:
+                    return
+                for future in self._finished(flying):
+                    content, by = self._result(future, flying[future])
+                    yield flying.pop(future), content, by
+                    future.release()
+        finally:
+            with suppress(Exception):
+                self._client.cancel(list(flying), force=True)
+
+    def _window(self) -> int:
+        return max(IN_FLIGHT, IN_FLIGHT * sum(self._threads().values()))
+
+    def _threads(self) -> Mapping[str, int]:
+        try:
+            threads: Mapping[str, int] = self._client.nthreads()
+        except Exception as error:
+            self._lost(error)
+        return threads
+
+    def _wait_for_workers(self) -> None:
+        begin = time.monotonic()
+        while not self._threads():
+            if time.monotonic() - begin > WORKER_TIME:
+                raise EngineError(
+                    f"scheduler: '{self._address}' has had no worker for {WORKER_TIME:g} s; "
+                    "start some with 'dask worker', and go on with --resume"
+                )
+            time.sleep(LOOK_TIME)
+
+    def _finished(self, flying: Mapping[Any, int]) -> Sequence[Any]:
+        """Those that are finished, at least one."""
+        distributed: Any = import_module("distributed")
+        while True:
+            try:
+                # not for the whole process: a caller may have clients of another cluster
+                with self._client.as_current():
+                    known = distributed.wait(list(flying), LOOK_TIME, "FIRST_COMPLETED")
+            except TimeoutError:
+                self._wait_for_workers()
+            except Exception as error:
+                self._lost(error)
+            else:
+                return list(known.done)
+
+    def _result(self, future: Any, part: int) -> tuple[bytes, Mapping[str, str]]:
+        from distributed.scheduler import KilledWorker
+
+        try:
+            content, by = future.result(timeout=ANSWER_TIME)
+        except SevenbarError:
+            raise
+        except KilledWorker:
+            first = self._plan.linkages(part)
+            raise EngineError(
+                f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
+                "that took it; look for their memory and their logs, and go on with --resume"
+            ) from None
+        except (CancelledError, OSError, TimeoutError) as error:
+            self._lost(error)
+        except Exception as error:
+            told = f"{type(error).__name__}: {error}".splitlines()[0]
+            raise EngineError(
+                f"scheduler: a worker cannot make part {part}: {told}; "
+                "give workers the same modules and versions as here, and go on with --resume"
+            ) from None
+        return content, by
+
+    def _lost(self, error: BaseException) -> NoReturn:
+        told = f"{type(error).__name__}: {error}".splitlines()[0]
+        raise EngineError(
+            f"scheduler: '{self._address}' is lost ({told}); start it again, and go on with --resume"
+        ) from None
+
+
+def _made_by(plan: Plan, part: int) -> tuple[bytes, Mapping[str, str]]:
+    """A part and what made it: run by a worker."""
+    return part_bytes(plan, part), maker()
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without the log of distributed, which would stand between the lines that are meant to be read."""
+    log = logging.getLogger("distributed")
+    level = log.level
+    log.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        log.setLevel(level)

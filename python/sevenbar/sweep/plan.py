@@ -1,0 +1,163 @@
+"""All that a sweep was asked for, which makes any of its parts anywhere; and how its folder tells it."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import numpy as np
+
+from sevenbar import __version__
+from sevenbar.draft import Draft
+from sevenbar.linkage import Linkage
+from sevenbar.many import simd_level
+from sevenbar.measures import MEASURES, Measure, measures_named
+from sevenbar.motion import Motion
+from sevenbar.sweep.axes import Given, whole_number
+from sevenbar.sweep.space import Space
+
+#: The format of a sweep's description.
+FORMAT = 1
+
+#: Linkages of a part: what a processor makes in some tenths of a second to seconds, and a file worth opening.
+PART_OF_TYPES, PART_OF_CIRCUITS, PART_OF_LOOPS = 65536, 16384, 256
+
+#: Most linkages of a part: some dozens of parts are in memory at once.
+MOST_IN_A_PART = 2**20
+
+#: Measures of an RSSR that its dimensions tell without its circuits.
+OF_TYPES = frozenset({"motion_type", "limits"})
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A sweep as it was asked for: which linkages, which measures, how many linkages to a part.
+
+    `measures` are names, or measures that have none of the known names. `input` and `output` are columns.
+    """
+
+    draft: Draft
+    space: Space
+    measures: tuple[str | Measure, ...]
+    samples: int
+    input: str
+    output: str
+    part_size: int
+
+    @staticmethod
+    def of(
+        linkage: Linkage | Draft,
+        axes: Mapping[str, Given],
+        measures: Sequence[str | Measure | Callable[[Motion], float]],
+        *,
+        method: str | None = None,
+        count: int | None = None,
+        seed: int | None = None,
+        samples: int = 90,
+        input: str | None = None,
+        output: str | None = None,
+        part_size: int | None = None,
+    ) -> Plan:
+        """The plan of what a caller asks for.
+
+        Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a linkage that is not
+        analysed.
+        """
+        draft = linkage if isinstance(linkage, Draft) else Draft.of_linkage(linkage)
+        space = Space.of(draft, axes, method, count, seed)
+        found = measures_named(measures)
+        # whatever is wrong with the request as a whole is wrong with the linkage that was given, too
+        motion = draft.linkage.motion(samples, input=input, output=output)
+        if part_size is None:
+            part_size = _part_size(draft, found)
+        size = whole_number("part_size", part_size, 1, MOST_IN_A_PART, "a count of linkages")
+        names = tuple(m.name if MEASURES.get(m.name) is m else m for m in found)
+        bare = replace(draft)  # without what it has cached
+        return Plan(bare, space, names, motion.samples, motion.input, motion.output, size)
+
+    @property
+    def measured(self) -> tuple[Measure, ...]:
+        """The measures themselves."""
+        return tuple(MEASURES[m] if isinstance(m, str) else m for m in self.measures)
+
+    @property
+    def parts(self) -> int:
+        """The number of parts."""
+        return -(-self.space.count // self.part_size)
+
+    def linkages(self, part: int) -> range:
+        """The linkages of a part."""
+        first = part * self.part_size
+        return range(first, min(first + self.part_size, self.space.count))
+
+    def request(self) -> dict[str, Any]:
+        """What the sweep is, as plain values: two sweeps with one request have the same parts."""
+        return {
+            "format": FORMAT,
+            "linkage": json.loads(json.dumps(dict(self.draft.raw))),
+            "input": self.input,
+            "output": self.output,
+            "samples": self.samples,
+            "dimensions": [axis.told for axis in self.space.axes],
+            "sampling": {"method": self.space.method, "count": self.space.count, "seed": self.space.seed},
+            "measures": [m if isinstance(m, str) else _told(m) for m in self.measures],
+            "part_size": self.part_size,
+        }
+
+    def digest(self) -> str:
+        """The mark that every part carries, so that no other sweep's part is taken for one."""
+        text = json.dumps(self.request(), sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def description(self, makers: Sequence[Mapping[str, str]]) -> dict[str, Any]:
+        """What a sweep's description holds: the request, and what it comes to; `makers` make its parts."""
+        return {
+            **self.request(),
+            "length_unit": self.draft.linkage.length_unit,
+            "toml": self.draft.toml(),
+            "linkages": self.space.count,
+            "parts": self.parts,
+            "mark": self.digest(),
+            "made_by": [dict(one) for one in makers],
+        }
+
+
+def _part_size(draft: Draft, measures: Sequence[Measure]) -> int:
+    """Linkages of a part, by how long they take: never by the machine, since resumed parts must fit."""
+    if "rssr" not in draft.raw or not all(MEASURES.get(m.name) is m for m in measures):
+        return PART_OF_LOOPS
+    return PART_OF_TYPES if OF_TYPES.issuperset(m.name for m in measures) else PART_OF_CIRCUITS
+
+
+def _told(measure: Measure) -> dict[str, Any]:
+    """A function as a description holds it: its name, and a mark of its text where that is known."""
+    function = measure.value
+    try:
+        source: str | None = hashlib.sha256(inspect.getsource(function).encode()).hexdigest()
+    except (OSError, TypeError):
+        source = None
+    module, name = (getattr(function, key, "") for key in ("__module__", "__qualname__"))
+    told = {"name": measure.name, "per": measure.per, "quantity": measure.quantity}
+    return {**told, "function": f"{module}:{name}", "source": source}
+
+
+def maker() -> dict[str, str]:
+    """What makes parts here: the versions and the vector unit on which their bits depend."""
+    return {
+        "sevenbar": __version__,
+        "simd_level": simd_level(),
+        "numpy": np.__version__,
+        **{name: _version(name) for name in ("pyarrow", "scipy")},
+    }
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""

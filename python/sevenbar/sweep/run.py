@@ -1,0 +1,193 @@
+"""Runs a sweep: parts on the threads of this machine or on a cluster, as many in flight as keep them busy."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import closing
+from functools import partial
+from itertools import islice
+from pathlib import Path
+
+from sevenbar.draft import Draft
+from sevenbar.errors import RequestError
+from sevenbar.linkage import Linkage
+from sevenbar.measures import Measure
+from sevenbar.motion import Motion
+from sevenbar.sweep.axes import Given, whole_number
+from sevenbar.sweep.parts import PartsFolder, other_maker
+from sevenbar.sweep.plan import Plan, maker
+from sevenbar.sweep.result import Sweep
+from sevenbar.sweep.rows import need_pyarrow, part_bytes, schema
+
+#: What is measured where nothing is said.
+USUAL = ("motion_type", "limits")
+
+#: Most linkages of a sweep that is kept in memory.
+MOST_IN_MEMORY = 10**7
+
+#: Most threads: beyond any machine.
+MOST_THREADS = 4096
+
+#: Parts in flight for each thread: one at work and one that waits, so that none is idle.
+IN_FLIGHT = 2
+
+
+#: A finished part: its number, its file, and what made it.
+Made = tuple[int, bytes, Mapping[str, str]]
+
+#: Makes parts and gives each when it is finished.
+Making = Callable[[Iterable[int]], Generator[Made, None, None]]
+
+
+def run(
+    linkage: Linkage | Draft,
+    axes: Mapping[str, Given],
+    measures: Sequence[str | Measure | Callable[[Motion], float]] = USUAL,
+    *,
+    method: str | None = None,
+    count: int | None = None,
+    seed: int | None = None,
+    samples: int = 90,
+    input: str | None = None,
+    output: str | None = None,
+    out: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    mixed: bool = False,
+    threads: int | None = None,
+    scheduler: str | None = None,
+    part_size: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Sweep:
+    """Measures of many linkages: named dimensions over grids, lists and samples.
+
+    `axes` names dimensions (`Draft.dimensions`) and what each takes: `grid(low, high, count)`, a list, or
+    `span(low, high)` of which `count` samples are drawn by `method` random, latin or sobol with `seed`.
+    `measures` are names of `measures.MEASURES` or functions of the Motion, taken with `samples` a turn.
+    With `out` the rows go to a folder of Parquet parts of `part_size` linkages; `resume` goes on with the
+    parts that are there, `mixed` also with those of other versions or vector units. It runs on `threads`
+    (all processors by default), or on the workers of a Dask `scheduler`; the rows are the same. `progress`
+    is told how many linkages are done, of how many.
+
+    Raises `RequestError` for an argument that does not fit, `OutputError` for a folder that cannot be
+    written or holds something else, `MissingExtraError` without the extra `[sweep]`.
+
+        >>> import sevenbar as sb
+        >>> from sevenbar.sweep import grid
+        >>> found = run(sb.load("rssr"), {"L1": grid(200, 500, 4)}, ["motion_type"])
+        >>> found.table()["motion_type"].to_pylist()
+        ['crank-rocker', 'crank-rocker', 'crank-rocker', 'double-rocker']
+    """
+    plan = Plan.of(
+        linkage, axes, measures, method=method, count=count, seed=seed, samples=samples,
+        input=input, output=output, part_size=part_size,
+    )  # fmt: skip
+    return carry_out(
+        plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler, progress=progress
+    )
+
+
+def carry_out(
+    plan: Plan,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    mixed: bool = False,
+    threads: int | None = None,
+    scheduler: str | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Sweep:
+    """The sweep of a plan; as `run` for the rest."""
+    need_pyarrow()
+    if scheduler is not None and threads is not None:
+        raise RequestError("threads: workers of a scheduler have their own; leave threads or scheduler out")
+    number = _threads(threads)
+    # a column that would stand twice is told before anything is made
+    schema(plan)
+    if out is None and plan.space.count > MOST_IN_MEMORY:
+        raise RequestError(
+            f"out: missing; {plan.space.count} linkages are more than memory should hold; "
+            f"give a folder, or at most {MOST_IN_MEMORY} linkages"
+        )
+    if scheduler is None:
+        on_threads = partial(_on_threads, plan, number)
+        return _filled(plan, [maker()], on_threads, out, resume=resume, mixed=mixed, progress=progress)
+    from sevenbar.sweep.cluster import Cluster
+
+    with Cluster(scheduler, plan) as cluster:
+        makers = cluster.makers()
+        return _filled(plan, makers, cluster.made, out, resume=resume, mixed=mixed, progress=progress)
+
+
+def _threads(threads: object) -> int:
+    if threads is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return whole_number("threads", threads, 1, MOST_THREADS, "a count of threads")
+
+
+def _filled(
+    plan: Plan,
+    makers: Sequence[Mapping[str, str]],
+    made: Making,
+    out: str | os.PathLike[str] | None,
+    *,
+    resume: bool,
+    mixed: bool,
+    progress: Callable[[int, int], None] | None,
+) -> Sweep:
+    """The sweep with all its parts, the missing ones made."""
+    unlike = [one for one in makers if one != makers[0]]
+    if unlike and not mixed:
+        raise RequestError(f"scheduler: {other_maker(makers[0], unlike[0])}")
+    folder = None if out is None else PartsFolder(Path(out), plan, makers, resume=resume, mixed=mixed)
+    contents: dict[int, bytes] = {}
+    try:
+        done = frozenset[int]() if folder is None else folder.done
+        linkages = sum(len(plan.linkages(part)) for part in done)
+        if progress is not None:
+            progress(linkages, plan.space.count)
+        known = list(makers)
+        missing = (part for part in range(plan.parts) if part not in done)
+        with closing(made(missing)) as finished:
+            for part, content, by in finished:
+                if by not in known:
+                    if not mixed:
+                        raise RequestError(f"scheduler: {other_maker(known[0], by)}")
+                    known.append(by)
+                    if folder is not None:
+                        folder.also_made_by(by)
+                if folder is None:
+                    contents[part] = content
+                else:
+                    folder.keep(part, content)
+                linkages += len(plan.linkages(part))
+                if progress is not None:
+                    progress(linkages, plan.space.count)
+    finally:
+        if folder is not None:
+            folder.close()
+    if folder is not None:
+        return Sweep.of_folder(folder.path)
+    return Sweep(plan.description(known), None, [contents[part] for part in range(plan.parts)])
+
+
+def _on_threads(plan: Plan, threads: int, parts: Iterable[int]) -> Generator[Made, None, None]:
+    """The parts as they are finished, by threads of this process."""
+    here = maker()
+    rest = iter(parts)
+    at_once = min(threads, plan.parts)
+    flying: dict[Future[bytes], int] = {}
+    with ThreadPoolExecutor(at_once, thread_name_prefix="sweep") as pool:
+        try:
+            while True:
+                for part in islice(rest, IN_FLIGHT * at_once - len(flying)):
+                    flying[pool.submit(part_bytes, plan, part)] = part
+                if not flying:
+                    return
+                finished, _ = wait(flying, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    yield flying.pop(future), future.result(), here
+        finally:
+            for future in flying:
+                future.cancel()

@@ -1,0 +1,288 @@
+"""A folder of parts: whole parts only, of one sweep only, whatever happens to the run that fills it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+
+import sevenbar as sb
+from sevenbar.draft import Draft
+from sevenbar.errors import OutputError
+from sevenbar.sweep import Sweep, run, span
+from sevenbar.sweep import plan as plan_module
+
+AXES = {"L1": span(100, 900), "L2": span(20, 1200)}
+ASKED = {"measures": ["motion_type", "limits", "swing"], "count": 300, "part_size": 25}
+
+
+def swept(folder: Path, *, threads: int = 2, **asked) -> Sweep:
+    return run(sb.load("rssr"), AXES, out=folder, threads=threads, **(ASKED | asked))
+
+
+def bits(folder: Path) -> dict[str, str]:
+    """A mark of each file of a folder."""
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in sorted(folder.iterdir())}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("sweep") / "whole"
+    swept(folder, threads=1)
+    return folder
+
+
+def test_a_folder_holds_the_description_and_the_parts_and_nothing_else(whole: Path) -> None:
+    assert sorted(bits(whole)) == [*(f"part-{part:06}.parquet" for part in range(12)), "sweep.json"]
+    told = json.loads((whole / "sweep.json").read_text(encoding="utf-8"))
+    assert sb.loads(told["toml"]).dimensions == sb.load("rssr").dimensions
+    assert told["sampling"] == {"method": "sobol", "count": 300, "seed": 0}
+    assert (told["measures"], told["samples"], told["part_size"]) == (ASKED["measures"], 90, 25)
+    assert (told["length_unit"], told["made_by"][0]["sevenbar"]) == ("mm", sb.__version__)
+    assert told["made_by"][0]["simd_level"] in ("avx512", "avx2", "neon", "baseline", "plain")
+    linkages = [
+        n
+        for part in range(12)
+        for n in pq.read_table(whole / f"part-{part:06}.parquet")["linkage"].to_pylist()
+    ]
+    assert sorted(set(linkages)) == list(range(300))
+    assert linkages == sorted(linkages)
+
+
+@pytest.mark.parametrize("threads", [2, 4])
+def test_the_bits_do_not_depend_on_the_threads(whole: Path, tmp_path: Path, threads: int) -> None:
+    swept(tmp_path / "again", threads=threads)
+    assert bits(tmp_path / "again") == bits(whole)
+
+
+def test_a_sweep_in_memory_has_the_rows_of_the_folder(whole: Path) -> None:
+    in_memory = run(sb.load("rssr"), AXES, **ASKED)
+    assert in_memory.table().equals(Sweep.of_folder(whole).table())
+
+
+def test_a_resumed_sweep_makes_the_missing_parts_only(whole: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "half"
+    swept(folder)
+    for part in (0, 5, 11):
+        (folder / f"part-{part:06}.parquet").unlink()
+    (folder / ".part-000005.parquet.aside").write_bytes(b"half")
+    times = {path.name: path.stat().st_mtime_ns for path in folder.glob("part*")}
+    with pytest.raises(
+        OutputError, match=r"half: 9 of 12 parts are there; give --resume to go on, or another"
+    ):
+        swept(folder)
+    with pytest.raises(OutputError, match=r"half: 9 of 12 parts are there; finish it with --resume"):
+        Sweep.of_folder(folder)
+    told = []
+    swept(folder, resume=True, progress=lambda done, total: told.append((done, total)))
+    assert told[0] == (225, 300)
+    assert told[-1] == (300, 300)
+    assert bits(folder) == bits(whole)
+    assert times.items() <= {path.name: path.stat().st_mtime_ns for path in folder.glob("part*")}.items()
+    assert swept(folder).table().num_rows == Sweep.of_folder(whole).table().num_rows
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"seed": 5}, "sampling.seed is 0 there and 5 here"),
+        (
+            {"measures": ["motion_type"]},
+            r"measures is \['motion_type', 'limits', 'swing'\] there and \['motion_",
+        ),
+        ({"count": 301}, "sampling.count is 300 there and 301 here"),
+        ({"samples": 91}, "samples is 90 there and 91 here"),
+        ({"part_size": 26}, "part_size is 25 there and 26 here"),
+        ({"input": "rocker"}, "input is 'crank' there and 'rocker' here, and 1 more differ"),
+    ],
+)
+def test_a_folder_of_another_sweep_is_refused_and_left(whole: Path, changed: dict, message: str) -> None:
+    before = bits(whole)
+    for resume in (False, True):
+        with pytest.raises(
+            OutputError, match=f"whole: holds another sweep: {message}.*; give another folder, or"
+        ):
+            swept(whole, resume=resume, **changed)
+    assert bits(whole) == before
+
+
+def test_another_linkage_or_another_range_is_another_sweep(whole: Path) -> None:
+    with pytest.raises(OutputError, match=r"linkage.rssr.L3 is 550 there and 551 here"):
+        run(Draft.of_linkage(sb.load("rssr")).with_values({"L3": 551.0}), AXES, out=whole, **ASKED)
+    with pytest.raises(OutputError, match=r"dimensions\[2\].high is 1200.0 there and 1201.0 here"):
+        run(sb.load("rssr"), AXES | {"L2": span(20, 1201)}, out=whole, **ASKED)
+
+
+def test_a_part_that_is_none_of_this_sweep_is_not_mixed_in(whole: Path, tmp_path: Path) -> None:
+    swept(tmp_path / "other", seed=9)
+    swept(tmp_path / "mine")
+    mine = tmp_path / "mine" / "part-000003.parquet"
+    for content in ((tmp_path / "other" / mine.name).read_bytes(), mine.read_bytes()[:-100], b""):
+        mine.write_bytes(content)
+        with pytest.raises(
+            OutputError, match=r"part-000003.parquet: is no part of this sweep; move it away and"
+        ):
+            swept(tmp_path / "mine", resume=True)
+    mine.unlink()
+    swept(tmp_path / "mine", resume=True)
+    assert bits(tmp_path / "mine") == bits(whole)
+
+
+def test_parts_of_another_vector_unit_are_mixed_only_where_that_is_asked_for(
+    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "moved"
+    swept(folder)
+    (folder / "part-000002.parquet").unlink()
+    here = plan_module.simd_level()
+    monkeypatch.setattr(plan_module, "simd_level", lambda: "elsewhere")
+    with pytest.raises(OutputError) as caught:
+        swept(folder, resume=True)
+    assert str(caught.value) == (
+        f"{folder}: its parts were made by simd_level {here} and elsewhere, whose last bits may differ; "
+        "go on where they were made, or give --mixed to have both"
+    )
+    assert not (folder / "part-000002.parquet").exists()
+    found = swept(folder, resume=True, mixed=True)
+    assert [maker["simd_level"] for maker in found.description["made_by"]] == [here, "elsewhere"]
+    assert found.table().equals(Sweep.of_folder(whole).table())
+
+
+def test_a_folder_of_other_things_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(
+        OutputError, match=r"holds 'notes.txt' and no sweep.json; give an empty folder or a new"
+    ):
+        swept(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+    with pytest.raises(OutputError, match=r"notes.txt: cannot be written: file exists; "):
+        swept(tmp_path / "notes.txt")
+    (tmp_path / "torn").mkdir()
+    (tmp_path / "torn" / "sweep.json").write_text('{"format": 1')
+    with pytest.raises(OutputError, match=r"torn/sweep.json: is no description of a sweep of format 1"):
+        swept(tmp_path / "torn", resume=True)
+    with pytest.raises(OutputError, match=r"none/sweep.json: cannot be read: no such file or directory"):
+        Sweep.of_folder(tmp_path / "none")
+
+
+def test_two_runs_do_not_fill_one_folder(tmp_path: Path) -> None:
+    def second(done: int, _total: int) -> None:
+        if done == 0:
+            with pytest.raises(
+                OutputError, match=r"another run fills this folder; wait for it, end it, or give"
+            ):
+                swept(tmp_path / "one", resume=True)
+
+    assert swept(tmp_path / "one", progress=second).totals.linkages == 300
+
+
+def test_what_fails_midway_keeps_the_finished_parts(whole: Path, tmp_path: Path) -> None:
+    def stopped(done: int, _total: int) -> None:
+        if done >= 100:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        swept(tmp_path / "one", progress=stopped)
+    kept = bits(tmp_path / "one")
+    assert len(kept) == 5
+    assert kept.items() <= bits(whole).items()
+
+
+#: A call of `sevenbar sweep` in which no file may grow beyond a size, as on a disk that is full.
+FULL = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
+from sevenbar.cli import main
+main()
+"""
+
+
+def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) -> None:
+    # couplers that reach nothing come first: their parts are small
+    sweep = [
+        "sweep", "rssr", "--over", "L2=1:1200:16", "--over", "L1=100:900:16", "--part-size", "32",
+        "--threads", "1", "--out", "one", "--resume",
+    ]  # fmt: skip
+    command = [sys.executable, "-c"]
+    run_whole = subprocess.run(
+        [*command, FULL, str(2**30), *sweep[:-2], "all"], cwd=tmp_path, check=True, capture_output=True
+    )
+    assert run_whole.returncode == 0
+    sizes = {path.name: path.stat().st_size for path in (tmp_path / "all").glob("part*")}
+    room = (min(sizes.values()) + max(sizes.values())) // 2
+    first = min(name for name, size in sizes.items() if size > room)
+    count = int(first[5:11])
+    assert count > 0
+    full = subprocess.run(
+        [*command, FULL, str(room), *sweep], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert full.returncode == 2
+    (message,) = [line for line in full.stderr.splitlines() if line.startswith("sevenbar:")]
+    assert message == (
+        "sevenbar: one: cannot be written: file too large; make room or give a folder that can be written; "
+        f"{count} of 8 parts are kept, --resume goes on with them"
+    )
+    assert sorted(bits(tmp_path / "one")) == [
+        *(f"part-{part:06}.parquet" for part in range(count)),
+        "sweep.json",
+    ]
+    subprocess.run([*command, FULL, str(2**30), *sweep], cwd=tmp_path, check=True, capture_output=True)
+    assert bits(tmp_path / "one") == bits(tmp_path / "all")
+
+
+@pytest.mark.slow
+def test_a_sweep_killed_at_twenty_random_moments_loses_no_finished_part(tmp_path: Path) -> None:
+    sweep = [
+        sys.executable, "-m", "sevenbar.cli", "sweep", "seven_r", "--over", "twist_1=30..90", "--over",
+        "length_2=80..120", "--count", "400", "--seed", "3", "--measure", "motion_type,circuits,swing",
+        "--samples", "24", "--part-size", "2",
+    ]  # fmt: skip
+    chance = random.Random(20)
+    folder = tmp_path / "killed"
+    kept: dict[str, tuple[str, int]] = {}
+    for _ in range(20):
+        process = subprocess.Popen(
+            [*sweep, "--out", folder, "--resume"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        wanted = len(kept) + chance.randrange(6)
+        while process.poll() is None and len(list(folder.glob("part*"))) < wanted:
+            time.sleep(0.001)
+        time.sleep(chance.uniform(0.0, 0.06))
+        process.kill()
+        assert process.wait() == -9
+        marks = bits(folder) if folder.exists() else {}
+        now = {
+            name: (mark, (folder / name).stat().st_mtime_ns)
+            for name, mark in marks.items()
+            if name.startswith("part")
+        }
+        assert kept.items() <= now.items()
+        kept = now
+    assert 0 < len(kept) < 200
+    subprocess.run([*sweep, "--out", folder, "--resume"], check=True, capture_output=True)
+    subprocess.run([*sweep, "--out", tmp_path / "whole", "--threads", "1"], check=True, capture_output=True)
+    assert bits(folder) == bits(tmp_path / "whole")
+
+
+@pytest.mark.slow
+def test_memory_stays_flat_however_long_the_sweep(tmp_path: Path) -> None:
+    code = (
+        "import resource, sys, sevenbar as sb\n"
+        "from sevenbar.sweep import run, span\n"
+        "run(sb.load('rssr'), {'L1': span(100, 900), 'L3': span(100, 900)}, method='random', threads=2,\n"
+        "    count=int(sys.argv[1]), part_size=500, out=sys.argv[2]).totals\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+    )
+    peaks = []
+    for count in (3_000, 24_000):
+        command = [sys.executable, "-c", code, str(count), str(tmp_path / str(count))]
+        peaks.append(int(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
+    # kilobytes: eight times the linkages may cost what the allocator keeps, not eight times
+    assert peaks[1] < peaks[0] + 40_000
