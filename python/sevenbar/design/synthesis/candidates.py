@@ -107,12 +107,15 @@ class Candidate:
         }
 
 
-def checked(draft: Draft, claim: Claim, limits: Limits | None = None) -> Candidate | Refusal:
+def checked(
+    draft: Draft, claim: Claim, limits: Limits | None = None, *, poses: Floats | None = None
+) -> Candidate | Refusal:
     """The design as the ordinary analysis finds it, or why it does not do what is claimed.
 
     All poses must lie on one circuit and on one pass of it, so that no dead centre of the input is between
-    any two, and follow each other in the order claimed; then come the limits. Raises nothing for a design
-    that cannot be a linkage: that is a refusal, too.
+    any two, and follow each other in the order claimed; then come the limits. `poses` (n, columns) hold all
+    joints, where circuits may share the values of input and output. Raises nothing for a design that cannot
+    be a linkage: that is a refusal, too.
     """
     limits = Limits() if limits is None else limits
     try:
@@ -122,7 +125,7 @@ def checked(draft: Draft, claim: Claim, limits: Limits | None = None) -> Candida
         return Refusal("assembly", str(error))
     if not motion.circuits:
         return Refusal("assembly", "cannot be assembled at any input")
-    ways = located(motion, claim.inputs, claim.outputs)
+    ways = located(motion, claim.inputs, claim.outputs, poses)
     fault = _one_way(ways)
     if fault is not None:
         return fault
@@ -157,20 +160,25 @@ class Ways:
     distance: Floats
 
 
-def located(motion: Motion, inputs: Floats, outputs: Floats) -> Ways:
-    """The circuits, branches and places of poses given by the values of input and output (n,)."""
+def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | None = None) -> Ways:
+    """The circuits, branches and places of poses given by the values of input and output (n,).
+
+    With `whole` (n, columns) by those of all joints, but the turns of balls.
+    """
+    owners = [joint.kind for joint in motion.linkage.joints for _ in joint.columns]
     count = len(inputs)
     best = Ways(np.full(count, -1), np.full(count, -1), np.full(count, np.nan), np.full(count, np.inf))
     for circuit in motion.circuits:
-        turning = [
-            motion.linkage.column_kinds[c] == "turn" for c in (circuit.input_column, circuit.output_column)
-        ]
-        rows = np.column_stack([circuit.input, circuit.output])
-        poses = np.column_stack([inputs, outputs])
+        columns = [circuit.input_column, circuit.output_column]
+        if whole is not None:
+            columns += [c for c, kind in enumerate(owners) if kind != "S" and c not in columns]
+        turning = [motion.linkage.column_kinds[c] == "turn" for c in columns]
+        rows = circuit.q[:, columns]
+        poses = np.column_stack([inputs, outputs]) if whole is None else whole[:, columns]
         steps = _apart(np.roll(rows, -1, axis=0) - rows, turning, circuit.size)
         if not circuit.closed:
             steps[-1] = 0.0
-        # (n, rows, 2)
+        # (n, rows, columns)
         off = _apart(poses[:, None, :] - rows[None], turning, circuit.size)
         length = np.maximum((steps**2).sum(axis=1), np.finfo(float).tiny)
         share = np.clip(np.nan_to_num((off * steps).sum(axis=2) / length), 0.0, 1.0)
@@ -187,7 +195,7 @@ def located(motion: Motion, inputs: Floats, outputs: Floats) -> Ways:
 
 
 def _apart(difference: Floats, turning: Sequence[bool], size: float) -> Floats:
-    """Differences of input and output (.., 2), angles to the nearest turn, slides in parts of the size."""
+    """Differences of joint values (.., columns), angles to the nearest turn, slides in parts of the size."""
     wrapped = (difference + math.pi) % math.tau - math.pi
     return np.where(turning, wrapped, difference / size)
 
