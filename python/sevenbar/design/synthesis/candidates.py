@@ -34,9 +34,9 @@ RANGE_SAMPLES = 361
 LIMIT_ROUNDING = 1e-9
 
 #: Two designs are one where no dimension, in parts of the longest [or rad], differs by more.
-SAME = 0.02
+SAME = 0.05
 
-Fault = Literal["assembly", "circuit", "dead centre", "order", "transmission", "size", "motion type"]
+Fault = Literal["assembly", "circuit", "dead centre", "order", "error", "transmission", "size", "motion type"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,9 @@ from sevenbar.motion import Floats
 #: The dimensions of a design, in the order of its row.
 NAMES = ("M", "N", "L1", "L2", "L3", "D")
 
+#: Part of the longest dimension that counts as zero.
+ROUNDING = 1e-15
+
 
 def row_of(dimensions: Mapping[str, float]) -> Floats:
     """The row (6,) of a linkage's dimensions."""
@@ -42,10 +45,21 @@ def draft_of(row: Floats, name: str, *, length_unit: str = "mm") -> Draft:
     return Draft("", raw, name)
 
 
-def outputs(designs: Floats, inputs: Floats, branch: int) -> Floats:
-    """The output angle (n, m) [rad] of a branch of each design; NaN where it cannot be reached."""
+def scaled(row: Floats, longest: float) -> Floats:
+    """A design (6,) whose longest dimension is `longest`; what is zero but for rounding is zero."""
+    row = row * (longest / np.abs(row).max())
+    return np.where(np.abs(row) < ROUNDING * longest, 0.0, row)
+
+
+def outputs(designs: Floats, inputs: Floats, branch: int, *, floor: float | None = None) -> Floats:
+    """The output angle (n, m) [rad] of a branch of each design; NaN where it cannot be reached.
+
+    With a `floor` no squared sine of the transmission angle counts as less: the output is held there.
+    """
     _, y, k, w = _terms(designs, inputs)
-    n, l3 = designs[:, 1, None], designs[:, 4, None]
+    n, l2, l3 = designs[:, 1, None], designs[:, 3, None], designs[:, 4, None]
+    if floor is not None:
+        w = np.maximum(w, floor * (l2 * l3) ** 2)
     with np.errstate(invalid="ignore"):
         turn = np.arctan2(k, np.sqrt(w))
     return np.asarray((np.pi - turn if branch else turn) - np.arctan2(l3 * y, l3 * n))

@@ -18,7 +18,7 @@ MOTION_TYPES = ("crank-rocker", "double-crank", "rocker-crank", "double-rocker")
 INPUT_TURNS = ("crank-rocker", "double-crank")
 
 #: Longest dimension over shortest link where no size is asked for: beyond, nobody could build it.
-MOST_RATIO = 100.0
+MOST_RATIO = 20.0
 
 #: Length of the longest dimension where no size is asked for [mm].
 USUAL_SIZE = 1000.0
