@@ -1,0 +1,375 @@
+"""Designs that were found, and the ordinary analysis that says whether each does what was claimed of it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from sevenbar.design.synthesis.closure import row_of, transmissions
+from sevenbar.design.synthesis.limits import Limits
+from sevenbar.draft import Draft
+from sevenbar.errors import DescriptionError, RequestError
+from sevenbar.files import loads
+from sevenbar.folder import fill_folder, write_csv
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Circuit, Floats, Integers, Motion
+
+#: Inputs of a turn with which a design is checked: rows stand half a degree apart.
+CHECK_SAMPLES = 720
+
+#: How far a claimed pose may lie from the polygon through a circuit's rows [rad, or parts of the size]; the
+#: polygon's own sagitta is below 1e-3 but next to dead centres.
+NEAR = 0.02
+
+#: Inputs over the used range at which the transmission angle is looked at.
+RANGE_SAMPLES = 361
+
+#: By how much a limit may be missed through rounding: [rad] and parts of a length.
+LIMIT_ROUNDING = 1e-9
+
+#: Two designs are one where no dimension, in parts of the longest [or rad], differs by more.
+SAME = 0.05
+
+Fault = Literal["assembly", "circuit", "dead centre", "order", "error", "transmission", "size", "motion type"]
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """What is claimed of a design: poses it takes, in this order and on one way; and how far off it is.
+
+    `inputs` and `outputs` (n,) are values of the drive's two joints [rad, or length]. `errors` (m,) are the
+    deviations from what was wanted, told in `error_unit` ("deg": they are in rad; else a length unit).
+    `figures` holds numbers of the task's own, by the names they have in tables.
+    """
+
+    inputs: Floats
+    outputs: Floats
+    errors: Floats
+    error_unit: str = "deg"
+    figures: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why a design was refused: the kind of fault, and a sentence with its numbers."""
+
+    fault: Fault
+    told: str
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A design that keeps what is claimed of it, with what was measured of it.
+
+    `error_greatest`, `error_rms` [rad, or length]; `transmission_lowest` [rad] over the used range of the
+    input, `None` where the loop has none; `size` [length], its longest dimension; `circuit` and `branch` the
+    one way that holds all `claim` poses; `position` (n,) their places along it, in rows of the circuit.
+    """
+
+    draft: Draft
+    claim: Claim
+    error_greatest: float
+    error_rms: float
+    motion_type: str
+    transmission_lowest: float | None
+    size: float
+    circuit: int
+    branch: int
+    position: Floats
+
+    @property
+    def name(self) -> str:
+        """The name of its linkage."""
+        return self.draft.linkage.name
+
+    @property
+    def columns(self) -> dict[str, float | str | int | None]:
+        """What is told of it, column by column; each number's name ends in its unit."""
+        linkage, unit = self.draft.linkage, self.claim.error_unit
+        scale = 180 / math.pi if unit == "deg" else 1.0
+        lowest = self.transmission_lowest
+        return {
+            f"error_greatest_{unit}": self.error_greatest * scale,
+            f"error_rms_{unit}": self.error_rms * scale,
+            "transmission_lowest_deg": None if lowest is None else math.degrees(lowest),
+            f"size_{linkage.length_unit}": self.size,
+            "motion_type": self.motion_type,
+            "circuit": self.circuit,
+            "branch": self.branch,
+            **self.claim.figures,
+            **{d.column: d.value for d in self.draft.dimensions if d.kind != "speed"},
+        }
+
+
+def checked(
+    draft: Draft, claim: Claim, limits: Limits | None = None, *, poses: Floats | None = None
+) -> Candidate | Refusal:
+    """The design as the ordinary analysis finds it, or why it does not do what is claimed.
+
+    All poses must lie on one circuit and on one pass of it, so that no dead centre of the input is between
+    any two, and follow each other in the order claimed; then come the limits. `poses` (n, columns) hold all
+    joints, where circuits may share the values of input and output. Raises nothing for a design that cannot
+    be a linkage: that is a refusal, too.
+    """
+    limits = Limits() if limits is None else limits
+    try:
+        linkage = draft.linkage
+        motion = linkage.motion(CHECK_SAMPLES)
+    except (DescriptionError, RequestError) as error:
+        return Refusal("assembly", str(error))
+    if not motion.circuits:
+        return Refusal("assembly", "cannot be assembled at any input")
+    ways = located(motion, claim.inputs, claim.outputs, poses)
+    fault = _one_way(ways)
+    if fault is not None:
+        return fault
+    circuit = motion.circuits[ways.circuit[0]]
+    fault = _in_order(circuit, ways.position)
+    if fault is not None:
+        return fault
+    lowest = used_transmission(linkage, circuit, claim.inputs, ways.position)
+    lengths = [abs(d.value) for d in draft.dimensions if d.kind == "length"]
+    found = Candidate(
+        draft,
+        claim,
+        float(np.abs(claim.errors).max()),
+        float(np.sqrt((claim.errors**2).mean())),
+        motion.motion_type,
+        lowest,
+        max(lengths),
+        int(ways.circuit[0]),
+        int(ways.branch[0]),
+        ways.position,
+    )
+    return _within(found, limits) or found
+
+
+@dataclass(frozen=True, eq=False)
+class Ways:
+    """Where poses lie: circuit and branch of each (n,), -1 where on none; place along its rows (n,)."""
+
+    circuit: Integers
+    branch: Integers
+    position: Floats
+    distance: Floats
+
+
+def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | None = None) -> Ways:
+    """The circuits, branches and places of poses given by the values of input and output (n,).
+
+    With `whole` (n, columns) by those of all joints, but the turns of balls.
+    """
+    owners = [joint.kind for joint in motion.linkage.joints for _ in joint.columns]
+    count = len(inputs)
+    best = Ways(np.full(count, -1), np.full(count, -1), np.full(count, np.nan), np.full(count, np.inf))
+    for circuit in motion.circuits:
+        columns = [circuit.input_column, circuit.output_column]
+        if whole is not None:
+            columns += [c for c, kind in enumerate(owners) if kind != "S" and c not in columns]
+        turning = [motion.linkage.column_kinds[c] == "turn" for c in columns]
+        rows = circuit.q[:, columns]
+        poses = np.column_stack([inputs, outputs]) if whole is None else whole[:, columns]
+        steps = _apart(np.roll(rows, -1, axis=0) - rows, turning, circuit.size)
+        if not circuit.closed:
+            steps[-1] = 0.0
+        # (n, rows, columns)
+        off = _apart(poses[:, None, :] - rows[None], turning, circuit.size)
+        length = np.maximum((steps**2).sum(axis=1), np.finfo(float).tiny)
+        share = np.clip(np.nan_to_num((off * steps).sum(axis=2) / length), 0.0, 1.0)
+        distance = np.linalg.norm(off - share[:, :, None] * steps, axis=2)
+        distance = np.where(np.isfinite(distance), distance, np.inf)
+        nearest = distance.argmin(axis=1)
+        every = np.arange(count)
+        better = (distance[every, nearest] < best.distance) & (distance[every, nearest] < NEAR)
+        best.circuit[better] = circuit.index
+        best.branch[better] = circuit.branch[nearest[better]]
+        best.position[better] = (nearest + share[every, nearest])[better]
+        best.distance[better] = distance[every, nearest][better]
+    return best
+
+
+def _apart(difference: Floats, turning: Sequence[bool], size: float) -> Floats:
+    """Differences of joint values (.., columns), angles to the nearest turn, slides in parts of the size."""
+    wrapped = (difference + math.pi) % math.tau - math.pi
+    return np.where(turning, wrapped, difference / size)
+
+
+def _one_way(ways: Ways) -> Refusal | None:
+    """Why poses are not on one pass of one circuit."""
+    lost = np.flatnonzero(ways.circuit < 0)
+    if lost.size:
+        return Refusal("assembly", f"point {lost[0] + 1} of {len(ways.circuit)} is reached by no circuit")
+    other = np.flatnonzero(ways.circuit != ways.circuit[0])
+    if other.size:
+        return Refusal(
+            "circuit",
+            f"point 1 lies on circuit {ways.circuit[0]}, point {other[0] + 1} on circuit "
+            f"{ways.circuit[other[0]]}: it must be taken apart between them",
+        )
+    other = np.flatnonzero(ways.branch != ways.branch[0])
+    if other.size:
+        return Refusal(
+            "dead centre",
+            f"point 1 lies on branch {ways.branch[0]}, point {other[0] + 1} on branch "
+            f"{ways.branch[other[0]]} of circuit {ways.circuit[0]}: a dead centre of the input lies between",
+        )
+    return None
+
+
+def _in_order(circuit: Circuit, position: Floats) -> Refusal | None:
+    """Why poses at places along a circuit do not follow each other; a closed pass may be entered anywhere."""
+    round_trip = len(circuit.input) if circuit.closed and circuit.input_range is None else 0
+    for way in (1.0, -1.0):
+        steps = way * np.diff(position)
+        if (steps > 0).all() or (round_trip and (steps % round_trip).sum() < round_trip):
+            return None
+    order = np.argsort(position, kind="stable") + 1
+    passed = ", ".join(str(k) for k in order[:12]) + (" .." if len(order) > 12 else "")
+    return Refusal("order", f"passes the points in the order {passed}")
+
+
+def used_transmission(linkage: Linkage, circuit: Circuit, inputs: Floats, position: Floats) -> float | None:
+    """The least transmission angle [rad] over the used part of a pass.
+
+    Of an RSSR given by its dimensions over the inputs from the first to the last; else that of the circuit.
+    """
+    if "L1" not in linkage.dimensions or circuit.input_column != 0:
+        return None if circuit.transmission is None else circuit.transmission.lowest
+    ends = inputs[0] + np.array([0.0, _travel(circuit, inputs, position)])
+    used = np.concatenate([np.linspace(ends.min(), ends.max(), RANGE_SAMPLES), inputs])
+    square = transmissions(row_of(linkage.dimensions)[None], used)[0].min()
+    return math.asin(math.sqrt(min(max(float(square), 0.0), 1.0)))
+
+
+def _travel(circuit: Circuit, inputs: Floats, position: Floats) -> float:
+    """How far the input turns from the first pose to the last [rad], against its sense where negative."""
+    if circuit.input_range is not None:
+        rough = float(np.diff(np.interp(position[[0, -1]], np.arange(len(circuit.input)), circuit.input))[0])
+    else:
+        rows = len(circuit.input)
+        steps = np.diff(position) % rows
+        travelled = steps.sum() if steps.sum() < rows else -((-np.diff(position)) % rows).sum()
+        rough = float(travelled * math.tau * circuit.turns / rows)
+    # rows say which turn, the inputs themselves the rest
+    last = float(inputs[-1] - inputs[0])
+    return last + math.tau * round((rough - last) / math.tau)
+
+
+def _within(found: Candidate, limits: Limits) -> Refusal | None:
+    """Which limit a design misses, if any."""
+    lowest = found.transmission_lowest
+    if lowest is not None and lowest < limits.transmission_lowest - LIMIT_ROUNDING:
+        told, asked = math.degrees(lowest), math.degrees(limits.transmission_lowest)
+        return Refusal(
+            "transmission", f"transmission angle down to {told:.4g} deg, {asked:g} deg are asked for"
+        )
+    if limits.size is not None:
+        low, high = limits.size
+        links = [d.value for d in found.draft.dimensions if d.kind == "length" and d.positive]
+        shortest = min(links, default=math.inf)
+        if shortest < low * (1 - LIMIT_ROUNDING) or found.size > high * (1 + LIMIT_ROUNDING):
+            return Refusal(
+                "size",
+                f"shortest link {shortest:.4g}, longest dimension {found.size:.4g}; "
+                f"{low:g} to {high:g} are allowed",
+            )
+    if limits.motion_type is not None and found.motion_type != limits.motion_type:
+        return Refusal("motion type", f"is a {found.motion_type}, asked for is a {limits.motion_type}")
+    return None
+
+
+def tally(refusals: Iterable[Refusal]) -> str:
+    """What was refused, the commonest first: "12 by transmission, 3 by order"."""
+    counts = Counter(refusal.fault for refusal in refusals)
+    return ", ".join(f"{count} by {fault}" for fault, count in counts.most_common())
+
+
+def likeness(draft: Draft, *, scale_free: bool) -> Floats:
+    """The dimensions in which designs are compared, lengths in parts of the longest, angles [rad].
+
+    `scale_free` where only ratios of the lengths matter; else the longest stands for itself as a logarithm.
+    """
+    dimensions = [d for d in draft.dimensions if d.kind != "speed"]
+    values = np.array([d.value * d.scale for d in dimensions])
+    lengths = np.array([d.kind in ("length", "pitch") for d in dimensions])
+    longest = np.abs(values[lengths]).max(initial=0.0) or 1.0
+    values[lengths] /= longest
+    return values if scale_free else np.append(values, math.log(longest))
+
+
+def distinct(
+    candidates: Iterable[Candidate], *, scale_free: bool, count: int | None = None
+) -> list[Candidate]:
+    """The candidates that differ, the first of those that are alike; at most `count`."""
+    kept: list[Candidate] = []
+    seen: list[Floats] = []
+    for candidate in candidates:
+        if count is not None and len(kept) >= count:
+            break
+        own = likeness(candidate.draft, scale_free=scale_free)
+        if all(len(own) != len(other) or np.abs(own - other).max() > SAME for other in seen):
+            kept.append(candidate)
+            seen.append(own)
+    return kept
+
+
+def ranked(
+    candidates: Iterable[Candidate], key: Callable[[Candidate], float] | None = None
+) -> list[Candidate]:
+    """The candidates, best first: by the greatest error, or by another figure that should be small."""
+    return sorted(candidates, key=key or (lambda candidate: candidate.error_greatest))
+
+
+def renamed(candidates: Sequence[Candidate], title: str) -> list[Candidate]:
+    """The candidates with the names `title, design 1`, .. in their order."""
+    return [
+        replace(c, draft=c.draft.with_value(("name",), f"{title}, design {i}"))
+        for i, c in enumerate(candidates, 1)
+    ]
+
+
+def toml_of(candidate: Candidate, head: Sequence[str]) -> str:
+    """The design as TOML: comments with what was wanted and what it does, then the description."""
+    told = [f"{name} = {_plain(value)}" for name, value in candidate.columns.items() if value is not None]
+    measured = told[: len(told) - sum(d.kind != "speed" for d in candidate.draft.dimensions)]
+    lines = [f"# {line}" if line else "#" for line in (*head, "", *measured)]
+    return "\n".join(lines) + "\n\n" + candidate.draft.toml()
+
+
+def _plain(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def write(
+    candidates: Sequence[Candidate],
+    folder: Path,
+    head: Sequence[str],
+    *,
+    also: Callable[[Path], None] | None = None,
+    force: bool = False,
+) -> list[Path]:
+    """Writes design_1.toml, .. and summary.csv into a folder, all or none; returns their paths.
+
+    `head` are the lines of comment that tell what was wanted; `also` writes more into the folder, figures
+    and the like. Raises `OutputError` for a file that exists without `force`.
+    """
+
+    def fill(staging: Path) -> None:
+        for i, candidate in enumerate(candidates, 1):
+            name = f"design_{i}.toml"
+            text = toml_of(candidate, head)
+            loads(text, name)  # what is written must open
+            (staging / name).write_text(text, encoding="utf-8")
+        rows = [{"design": i, **c.columns} for i, c in enumerate(candidates, 1)]
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        write_csv(staging / "summary.csv", names, ([row.get(name) for name in names] for row in rows))
+        if also is not None:
+            also(staging)
+
+    return fill_folder(folder, fill, force=force)

@@ -1,0 +1,135 @@
+"""What a design must keep to besides its task: transmission angle, size, motion type; as inequalities too."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.design.synthesis.closure import transmission_slopes, transmissions
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.motion import Floats
+
+#: What a linkage can be asked to be, seen from its input.
+MOTION_TYPES = ("crank-rocker", "double-crank", "rocker-crank", "double-rocker")
+
+#: Motion types whose input turns fully.
+INPUT_TURNS = ("crank-rocker", "double-crank")
+
+#: Longest dimension over shortest link where no size is asked for: beyond, nobody could build it.
+MOST_RATIO = 20.0
+
+#: Length of the longest dimension where no size is asked for [mm].
+USUAL_SIZE = 1000.0
+
+#: Inputs of a full turn at which a crank must be able to stand: the worst lies less than 0.1% of W's
+#: amplitude below the least of them.
+TURN_SAMPLES = 72
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of a design; each that is not given lets everything pass.
+
+    `transmission_lowest` [rad]: the least transmission angle over the range of the input that is used.
+    `size` (low, high) [length]: no link shorter than `low`, no dimension longer than `high`.
+    `motion_type`: one of `MOTION_TYPES`, of the linkage as its input drives it. Raises `RequestError`.
+    """
+
+    transmission_lowest: float = 0.0
+    size: tuple[float, float] | None = None
+    motion_type: str | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.transmission_lowest < math.pi / 2:
+            degrees = math.degrees(self.transmission_lowest)
+            raise RequestError(
+                f"transmission: {degrees:g} deg is no limit; give an angle from 0 to below 90 deg"
+            )
+        if self.size is not None:
+            low, high = self.size
+            if not (0 < low < high and math.isfinite(high)):
+                raise RequestError(
+                    f"size: {low:g}:{high:g} is no range of lengths; give the shortest link and the longest "
+                    "dimension, as in 50:1000"
+                )
+        if self.motion_type is not None and self.motion_type not in MOTION_TYPES:
+            raise RequestError(
+                f"motion type: {shown(self.motion_type)} is not offered; "
+                f"{suggestion(self.motion_type, MOTION_TYPES)}give one of {', '.join(MOTION_TYPES)}"
+            )
+
+    @property
+    def ratio(self) -> float:
+        """The most that the longest dimension may be of the shortest link."""
+        return MOST_RATIO if self.size is None else self.size[1] / self.size[0]
+
+    @property
+    def longest(self) -> float:
+        """The length that the longest dimension gets where the task leaves the scale open."""
+        return USUAL_SIZE if self.size is None else self.size[1]
+
+    def told(self) -> str:
+        """The limits in words."""
+        parts = []
+        if self.transmission_lowest:
+            parts.append(f"transmission angle >= {math.degrees(self.transmission_lowest):g} deg")
+        if self.size is not None:
+            parts.append(f"links >= {self.size[0]:g}, dimensions <= {self.size[1]:g}")
+        if self.motion_type is not None:
+            parts.append(self.motion_type)
+        return "; ".join(parts) or "none"
+
+
+def extent(row: Floats) -> tuple[float, float]:
+    """The shortest link and the longest dimension of a design (6,) [length]."""
+    return float(row[2:5].min()), float(np.abs(row).max())
+
+
+#: (longest dimension, its sign, shortest link) of each inequality of `size_room`, as columns of a row (6,).
+_PAIRS = [
+    (column, sign, short)
+    for column in range(6)
+    for sign in ((1.0,) if column in (2, 3, 4) else (1.0, -1.0))
+    for short in (2, 3, 4)
+    if column != short
+]
+
+
+def size_room(row: Floats, limits: Limits, *, scale_free: bool) -> tuple[Floats, Floats]:
+    """What must not be negative for the size, in parts of it (k,), and its derivatives (k, 6).
+
+    `scale_free` where all lengths may be made longer together: then only their ratio counts.
+    """
+    if scale_free or limits.size is None:
+        values, slopes = np.empty(len(_PAIRS)), np.zeros((len(_PAIRS), 6))
+        for k, (column, sign, short) in enumerate(_PAIRS):
+            values[k] = row[short] - sign * row[column] / limits.ratio
+            slopes[k, short] += 1.0
+            slopes[k, column] -= sign / limits.ratio
+        return values, slopes
+    low, high = limits.size
+    links, longest = np.eye(6)[2:5], np.concatenate([np.eye(6), -np.eye(6)])
+    values = np.concatenate([links @ row - low, high - longest @ row])
+    return values / high, np.concatenate([links, -longest]) / high
+
+
+def transmission_room(row: Floats, inputs: Floats, limits: Limits) -> tuple[Floats, Floats, Floats]:
+    """sin^2 of the transmission angle less that of its limit at inputs (m,); must not be negative.
+
+    With its derivatives by the dimensions (m, 6) and by the input (m,). Where no limit is given the input
+    must be reached at least.
+    """
+    by_dimension, by_input = transmission_slopes(row[None], inputs)
+    room = transmissions(row[None], inputs)[0] - math.sin(limits.transmission_lowest) ** 2
+    return room, by_dimension[0], by_input[0]
+
+
+def turning_room(row: Floats) -> tuple[Floats, Floats]:
+    """sin^2 of the transmission angle over a full turn of the input (72,), with its derivatives (72, 6).
+
+    Where none is negative the input turns fully.
+    """
+    inputs = np.arange(TURN_SAMPLES) * math.tau / TURN_SAMPLES
+    return transmissions(row[None], inputs)[0], transmission_slopes(row[None], inputs)[0][0]

@@ -1,0 +1,108 @@
+"""The least greatest of many heights by a sequence of linear programs, each within a reach.
+
+    minimise the greatest height,   with rooms >= 0                                                      (1)
+
+Heights and rooms are made straight by their exact slopes; a step may go as far as the reach, which grows and
+shrinks with what the last one kept of its promise. Where at the end one height more than there are unknowns is
+equal to the greatest, the solution is a corner, and the steps converge as Newton's do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.motion import Floats
+
+#: Most programs.
+MOST_STEPS = 60
+
+#: Reach of a step [units of the unknowns]: at first, at most, and where it gives up.
+FIRST_REACH, MOST_REACH, LEAST_REACH = 0.1, 1.0, 1e-9
+
+#: Promised gain, in parts of the greatest height, that ends the programs.
+WORTH = 1e-6
+
+#: Weight of a missed room beside the greatest height: above any multiplier, so that none is missed for a
+#: lower height.
+MISSED = 100.0
+
+#: Least unit of heights: what rounding leaves.
+LEAST_UNIT = 1e-13
+
+#: Parts of a promise: below the first a step is not taken, above the second the reach may grow.
+KEPT_LITTLE, KEPT_MOST = 0.1, 0.7
+
+
+@dataclass(frozen=True, eq=False)
+class Heights:
+    """Heights (h,) whose greatest is made least, rooms (r,) that must not be negative, and their slopes."""
+
+    height: Floats
+    height_slopes: Floats
+    room: Floats
+    room_slopes: Floats
+
+    @property
+    def unit(self) -> float:
+        """The greatest height, by which a program is scaled: solvers have absolute tolerances."""
+        return max(float(self.height.max()), LEAST_UNIT)
+
+    def merit(self, unit: float) -> float:
+        """The greatest height and the worst missed room, in parts of a unit."""
+        missed = max(float(-self.room.min()), 0.0)
+        return (float(self.height.max()) + MISSED * missed) / unit
+
+
+def lowered(heights: Callable[[Floats], Heights | None], start: Floats, held: tuple[int, ...] = ()) -> Floats:
+    """The unknowns (k,) near a start at which (1) is solved; those `held` stay.
+
+    `heights` gives `None` where there is nothing to measure; a step never leads there.
+    """
+    z, reach = start, FIRST_REACH
+    now = heights(z)
+    if now is None:
+        return z
+    for _ in range(MOST_STEPS):
+        step, promised = _step(now, reach, len(z), held)
+        if not promised > WORTH:
+            break
+        then = heights(z + step)
+        gained = -np.inf if then is None else now.merit(now.unit) - then.merit(now.unit)
+        longest = float(np.abs(step).max())
+        if then is None or not gained > KEPT_LITTLE * promised:
+            reach = longest / 4
+            if reach < LEAST_REACH:
+                break
+            continue
+        z, now = z + step, then
+        if gained > KEPT_MOST * promised and longest > 0.9 * reach:
+            reach = min(2 * reach, MOST_REACH)
+    return z
+
+
+def _step(now: Heights, reach: float, count: int, held: tuple[int, ...]) -> tuple[Floats, float]:
+    """The step (k,) of one program, and the gain it promises in parts of the unit."""
+    from scipy.optimize import linprog
+
+    unit = now.unit
+    rows, others = len(now.height), len(now.room)
+    matrix = np.block(
+        [
+            [now.height_slopes / unit, -np.ones((rows, 1)), np.zeros((rows, 1))],
+            [-now.room_slopes / unit, np.zeros((others, 1)), -np.ones((others, 1))],
+        ]
+    )
+    sides = np.concatenate([-now.height, now.room]) / unit
+    if not (np.isfinite(matrix).all() and np.isfinite(sides).all()):
+        return np.zeros(count), 0.0
+    bounds: list[tuple[float, float | None]] = [
+        (0.0, 0.0) if k in held else (-reach, reach) for k in range(count)
+    ]
+    cost = np.append(np.zeros(count), [1.0, MISSED])
+    found = linprog(cost, A_ub=matrix, b_ub=sides, bounds=[*bounds, (0.0, None), (0.0, None)], method="highs")
+    if found.x is None:
+        return np.zeros(count), 0.0
+    return found.x[:count], now.merit(unit) - float(cost @ found.x)
