@@ -1,0 +1,255 @@
+"""The motion of every point of a link over a cycle: place and rates, which are affine in the point."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.motion import Circuit, Floats, Law, Motion, Trace, chosen_circuit, finite_array
+
+#: Derivatives by time of a point's place, in the order of `LinkRates`.
+ORDERS = ("position", "velocity", "acceleration", "jerk")
+
+#: Rows in a turn of the input, at least: two greatest values of a rate nearer than a degree would count as
+#: one.
+LEAST_ROWS = 720
+
+#: Zooms of `Cycle.peaks`, each to a quarter: from half a degree to 2e-6 rad, where a greatest value is right
+#: to 1e-12.
+ZOOMS = 6
+
+#: A row lower than this part of the greatest is not followed between rows: rows half a degree apart differ by
+#: less.
+NEAR_GREATEST = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class LinkRates:
+    """How all points of a link move at n rows: `constant[order] + gradient[order] @ at`, report frame.
+
+    `constant` (4, n, 3) is the motion [length/s^order] of the point written (0, 0, 0), `gradient` (4, n, 3,
+    3) [1/s^order] what a change of the written point adds; `input` (n,) [rad, or length], `time` (n,) [s].
+
+    The acceleration's gradient is `(alpha x + omega x omega x) R`.
+    """
+
+    input: Floats
+    time: Floats
+    constant: Floats
+    gradient: Floats
+
+    def of(self, order: str, at: npt.ArrayLike) -> Floats:
+        """The position, velocity, acceleration or jerk of a point as it is written, (n, 3)."""
+        index = ORDERS.index(order)
+        value: Floats = self.constant[index] + self.gradient[index] @ np.asarray(at, dtype=np.float64)
+        return value
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """A link along one cycle of a circuit: its `rates` row by row, and at inputs between the rows.
+
+    A cycle is the circuit until it closes, or where a law drives the law's rows on one pass.
+    """
+
+    motion: Motion
+    circuit: Circuit
+    link: int
+    branch: int
+    rates: LinkRates
+
+    @property
+    def closed(self) -> bool:
+        """Whether the rows go round at constant speed, so that what lies between them can be computed."""
+        return self.motion.law is None and _goes_round(self.circuit)
+
+    @property
+    def step(self) -> float:
+        """The way of the input [rad] from row to row of a closed cycle."""
+        return float(self.rates.input[1] - self.rates.input[0])
+
+    @property
+    def period(self) -> float:
+        """The time [s] of a closed cycle; of a law's rows that from the first to the last."""
+        if self.closed:
+            return abs(self.step * len(self.rates.input) / self.motion.speed)
+        return float(self.rates.time[-1] - self.rates.time[0])
+
+    def at(self, inputs: Floats) -> LinkRates:
+        """The rates at any inputs (n,) [rad, or length], at the motion's constant speed."""
+        return link_rates(*driven(self.motion, self.circuit, self.branch, inputs), self.link)
+
+    def geometry(self) -> LinkRates:
+        """The rates at the cycle's rows for an input that moves by 1 in 1 s: derivatives by the input."""
+        return link_rates(
+            *driven(self.motion, self.circuit, self.branch, self.rates.input, speed=1.0), self.link
+        )
+
+    @property
+    def shares(self) -> Floats:
+        """The share of each row (n,) in a mean by time: alike in a closed cycle, by trapezoids over a law."""
+        count = len(self.rates.input)
+        if self.closed or count < 2:
+            return np.full(count, 1 / count)
+        steps = np.diff(self.rates.time, prepend=self.rates.time[0], append=self.rates.time[-1])
+        shares: Floats = (steps[:-1] + steps[1:]) / (2 * self.period)
+        return shares
+
+    def mean(self, values: Floats) -> float:
+        """The mean by time of values (n,); over a closed cycle exact to rounding."""
+        return float(self.shares @ values)
+
+    def peaks(self, order: str, at: Floats) -> tuple[Floats, Floats]:
+        """Inputs and sizes of the greatest velocities, accelerations or jerks of a point, (k,) each.
+
+        Every row that is greater than its neighbours and near the greatest is followed between the rows; of a
+        law's rows the greatest is told as it stands.
+        """
+        sizes = np.linalg.norm(self.rates.of(order, at), axis=1)
+        if not self.closed:
+            top = np.flatnonzero(sizes == sizes.max())[:1]
+            return self.rates.input[top], sizes[top]
+        tops = (sizes >= np.roll(sizes, 1)) & (sizes > np.roll(sizes, -1))
+        tops &= sizes >= NEAR_GREATEST * sizes.max()
+        if not tops.any():
+            tops[int(np.argmax(sizes))] = True
+        centres, half = self.rates.input[tops], self.step
+        offsets, rows = np.linspace(-1.0, 1.0, 9), np.arange(len(centres))
+        for _ in range(ZOOMS):
+            grid = centres[:, None] + half * offsets
+            found = np.linalg.norm(self.at(grid.ravel()).of(order, at), axis=1).reshape(grid.shape)
+            best = found.argmax(axis=1)
+            centres, values = grid[rows, best], found[rows, best]
+            half /= 4
+        return centres, values
+
+
+def cycle_of(
+    motion: Motion,
+    link: int,
+    circuit: int = 0,
+    branch: int = 0,
+    *,
+    order: str = "jerk",
+    rows: int = LEAST_ROWS,
+) -> Cycle:
+    """The cycle of a link with rates up to `order`, of so many `rows` a turn unless a law drives.
+
+    Raises `RequestError` for the ground, a circuit or link that does not exist, a circuit that rocks at
+    constant speed where rates are asked for, and rows without a value.
+    """
+    chosen = chosen_circuit(motion, circuit)
+    _refuse_link(motion, link)
+    if motion.law is None and order != "position" and not _goes_round(chosen):
+        raise RequestError(_unbounded(motion, chosen))
+    branches = int(chosen.branch.max(initial=0)) + 1
+    if isinstance(branch, bool) or not isinstance(branch, (int, np.integer)) or not 0 <= branch < branches:
+        allowed = f"0 to {branches - 1}" if branches > 1 else "0"
+        raise RequestError(f"branch: {shown(branch)} is not a pass of circuit {circuit}; give {allowed}")
+    if motion.law is None and _goes_round(chosen):
+        turn = math.copysign(math.tau * chosen.turns, motion.speed)
+        inputs = chosen.input[0] + turn * np.arange(rows * chosen.turns) / (rows * chosen.turns)
+        time = np.abs(inputs - inputs[0]) / abs(motion.speed)
+        rates = replace(link_rates(*driven(motion, chosen, 0, inputs), link), input=inputs, time=time)
+    else:
+        rates = link_rates(chosen, chosen.branch == branch, link)
+    _refuse_gaps(motion, chosen, rates, ORDERS.index(order))
+    return Cycle(motion, chosen, int(link), int(branch), rates)
+
+
+def driven(
+    motion: Motion, circuit: Circuit, branch: int, inputs: Floats, *, speed: float | None = None
+) -> tuple[Circuit, npt.NDArray[np.bool_]]:
+    """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
+    law = Law.of(np.arange(float(len(inputs))), inputs, motion.speed if speed is None else speed, 0.0)
+    if not _goes_round(circuit):
+        # a pose alone does not tell the passes apart
+        all_of_them = motion.linkage.motion(input=motion.input, output=motion.output, law=law)
+        again = all_of_them.circuits[circuit.index]
+        return again, again.branch == branch
+    pose = circuit.q[np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0]]
+    again = motion.linkage.circuit(pose, input=motion.input, output=motion.output, law=law)
+    return again, np.ones(len(inputs), dtype=bool)
+
+
+def told_input(motion: Motion, value: float) -> str:
+    """A value of the input as people read it: degrees, or lengths."""
+    slides = motion.linkage.column_kinds[motion.linkage.columns.index(motion.input)] == "slide"
+    return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
+
+
+def _goes_round(circuit: Circuit) -> bool:
+    """Whether the input of a circuit turns without a limit until the circuit closes."""
+    return circuit.closed and circuit.input_range is None
+
+
+def _refuse_link(motion: Motion, link: object) -> None:
+    count = len(motion.linkage.joints)
+    if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
+        raise RequestError(f"link: {shown(link)} is not a link; give 1 to {count - 1}")
+    if link == count:
+        raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
+
+
+def link_rates(circuit: Circuit, rows: npt.NDArray[np.bool_], link: int) -> LinkRates:
+    """The rates of a link at rows of a circuit, from four points that are the circuit's size apart."""
+    places = [np.zeros(3), *(circuit.size * np.eye(3))]
+    traces = [circuit.point(link, (float(x), float(y), float(z))) for x, y, z in places]
+
+    def told(trace: Trace) -> Floats:
+        return np.stack([getattr(trace, order)[rows] for order in ORDERS])
+
+    origin, *ends = map(told, traces)
+    gradient = np.stack([(end - origin) / circuit.size for end in ends], axis=-1)
+    return LinkRates(circuit.input[rows], circuit.time[rows], origin, gradient)
+
+
+def box_of(box: npt.ArrayLike, *, name: str = "box") -> tuple[Floats, Floats]:
+    """The lowest and highest coordinates (3,) of a box written ((u, u), (v, v), (w, w)) [length].
+
+    Raises `RequestError` for another shape, a number that is not finite, an empty box.
+    """
+    try:
+        array = np.asarray(box, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.array([])
+    if array.shape != (3, 2):
+        raise RequestError(f"{name}: {shown(box)} is no box; give three pairs, lowest and highest")
+    finite_array(name, array.ravel())
+    for letter, (low, high) in zip("uvw", array, strict=True):
+        if low > high:
+            raise RequestError(
+                f"{name}: empty along {letter}: lowest {low:g} above highest {high:g}; give the lower first"
+            )
+    return array[:, 0].copy(), array[:, 1].copy()
+
+
+def _unbounded(motion: Motion, circuit: Circuit) -> str:
+    name = f"circuit: circuit {circuit.index}"
+    if not circuit.closed:
+        return f"{name} ends at a change point, so it has no cycle; change a dimension a little"
+    others = ", ".join(str(c.index) for c in motion if _goes_round(c))
+    other = f", or a circuit whose input goes round: {others}" if others else ""
+    return (
+        f"{name} rocks: at constant speed of {motion.input} its rates grow without bound at the limits; "
+        f"give a law that stays off them{other}"
+    )
+
+
+def _refuse_gaps(motion: Motion, circuit: Circuit, rates: LinkRates, order: int) -> None:
+    """`RequestError` where a row has no value up to this order."""
+    good = np.isfinite(rates.constant[: order + 1]).all(axis=2).all(axis=0)
+    bad = np.flatnonzero(~good)
+    if not bad.size:
+        return
+    count = f"at {bad.size} of {good.size} rows, the first at {motion.input} = "
+    where = count + told_input(motion, float(rates.input[bad[0]]))
+    if motion.law is not None:
+        raise RequestError(
+            f"law: circuit {circuit.index} has no rates {where}; give a law that stays within its limits"
+        )
+    raise RequestError(f"circuit: circuit {circuit.index} has no value {where}; give another circuit or link")
