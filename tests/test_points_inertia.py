@@ -72,9 +72,7 @@ def test_a_law_s_torque_lets_a_crank_feel_its_own_mass():
 
 
 def test_a_sliding_input_takes_a_force():
-    linkage = sb.load("screw_drill")
-    slides = [c for c, kind in zip(linkage.columns, linkage.column_kinds, strict=True) if kind == "slide"]
-    linkage = sb.load("rscr") if not slides else linkage
+    linkage = sb.load("rscr")
     (column,) = [c for c, kind in zip(linkage.columns, linkage.column_kinds, strict=True) if kind == "slide"]
     low, high = linkage.motion(input=column).circuits[0].input_range
     t = np.linspace(0, 1, 201)

@@ -26,7 +26,7 @@ def greatest(circuit, link, at, of="acceleration"):
     return float(np.linalg.norm(getattr(circuit.point(link, tuple(at)), of), axis=1).max())
 
 
-def dense_search(motion, link, box, *, of="acceleration", per_side=17, rounds=9):
+def dense_search(motion, link, box, *, of="acceleration", per_side=17, rounds=10):
     """The least over a grid of points, again and again on finer grids round the best: no gradients, no cones.
 
     Rates of a rigid link are affine in the point, so four points of the circuit tell those of all.
@@ -53,7 +53,7 @@ def dense_search(motion, link, box, *, of="acceleration", per_side=17, rounds=9)
         k = int(squares.argmin())
         if squares[k] < best**2:
             best, where = float(np.sqrt(squares[k])), points[k]
-        middle, half = where, half / 4
+        middle, half = where, half / 3
     return best, where
 
 

@@ -20,8 +20,8 @@ import numpy as np
 from sevenbar.errors import MissingExtraError
 from sevenbar.motion import Floats
 
-#: What Clarabel is asked for, relative and absolute, in scaled variables; rounding is in its way below.
-TOLERANCE = 1e-10
+#: What Clarabel is asked for, relative and absolute, in scaled variables; below, rounding is in its way.
+TOLERANCE = 1e-9
 
 #: Most steps of the interior-point method; some 15 are usual.
 MOST_STEPS = 200
@@ -29,14 +29,13 @@ MOST_STEPS = 200
 
 @dataclass(frozen=True, eq=False)
 class ConeSolution:
-    """A point (3,), the greatest size there, the lower bound over the box, and what Clarabel says.
+    """A point (3,), the lower bound over the box, and what Clarabel says.
 
     `weights` (n,) are the sizes of the dual vectors, whose sum is 1: 0 but at rows that decide. `primal` and
     `dual` are Clarabel's objectives, `residual` the larger of its two residuals, in scaled variables.
     """
 
     at: Floats
-    greatest: float
     bound: float
     weights: Floats
     status: str
@@ -86,13 +85,11 @@ def least_greatest(constant: Floats, gradient: Floats, low: Floats, high: Floats
     )
     found = solver.solve()
     at = np.clip(centre + half * np.array(found.x)[:3], low, high)
-    greatest = float(np.linalg.norm(constant + gradient @ at, axis=1).max())
     dual = -np.array(found.z)[: 4 * count].reshape(count, 4)[:, 1:]
     sizes = np.linalg.norm(dual, axis=1)
     total = float(sizes.sum()) or 1.0
     return ConeSolution(
         at=at,
-        greatest=greatest,
         bound=lower_bound(constant, gradient, low, high, dual / total),
         weights=sizes / total,
         status=str(found.status),

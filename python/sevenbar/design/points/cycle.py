@@ -73,10 +73,15 @@ class Cycle:
         return float(self.rates.input[1] - self.rates.input[0])
 
     @property
+    def turn(self) -> float:
+        """The way of the input [rad] round a closed cycle, > 0."""
+        return abs(self.step) * len(self.rates.input)
+
+    @property
     def period(self) -> float:
         """The time [s] of a closed cycle; of a law's rows that from the first to the last."""
         if self.closed:
-            return abs(self.step * len(self.rates.input) / self.motion.speed)
+            return self.turn / abs(self.motion.speed)
         return float(self.rates.time[-1] - self.rates.time[0])
 
     def at(self, inputs: Floats) -> LinkRates:
@@ -166,8 +171,8 @@ def driven(
 ) -> tuple[Circuit, npt.NDArray[np.bool_]]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
     law = Law.of(np.arange(float(len(inputs))), inputs, motion.speed if speed is None else speed, 0.0)
-    if not _goes_round(circuit):
-        # a pose alone does not tell the passes apart
+    if not _goes_round(circuit) or circuit.turns > 1:
+        # a pose alone tells neither passes nor turns apart
         all_of_them = motion.linkage.motion(input=motion.input, output=motion.output, law=law)
         again = all_of_them.circuits[circuit.index]
         return again, again.branch == branch

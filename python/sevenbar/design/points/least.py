@@ -62,10 +62,10 @@ class LeastPoint:
 
     `value` is the greatest over the cycle, or the root mean square, of the quantity `of` [length/s, /s^2,
     /s^3]: no point of the box has less than `bound`. `inputs` (k,) [rad, or length] are those at which the
-    greatest is met, `weights` (k,) their shares in the bound, rising with the gain if that input did not
-    count; of a root mean square none. `sides` names the sides of the box on which the point lies; `free` (m,
-    3) are directions in which moving it changes nothing. `before` tells the points of the file; `solver`
-    Clarabel's last solution of `rounds`.
+    greatest is met and by which the bound is proved, `weights` (k,) their shares in it, whose sum is 1; of a
+    root mean square none. `sides` names the sides of the box on which the point lies; `free` (m, 3) are
+    directions, in parts of the box's sides, in which moving it changes nothing. `before` tells the points of
+    the file; `solver` Clarabel's last solution of `rounds`.
     """
 
     cycle: Cycle
@@ -275,8 +275,7 @@ def _deciding(cycle: Cycle, inputs: Floats, weights: Floats) -> tuple[Floats, Fl
     """The inputs with a weight, rising within the cycle, and the weights; those of one peak together."""
     inputs, weights = inputs[weights > DECIDING], weights[weights > DECIDING]
     if cycle.closed:
-        turn = abs(cycle.step) * len(cycle.rates.input)
-        inputs = (inputs + SAME) % turn - SAME
+        inputs = (inputs + SAME) % cycle.turn - SAME
     order = np.argsort(inputs)
     inputs, weights = inputs[order], weights[order]
     first = np.flatnonzero(np.diff(inputs, prepend=-np.inf) > SAME)

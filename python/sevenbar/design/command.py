@@ -1,0 +1,17 @@
+"""The commands `sevenbar design ..`: linkages for a wanted motion, and points of their links."""
+
+from __future__ import annotations
+
+import typer
+
+from sevenbar.design.points.command import inertia, point
+from sevenbar.design.synthesis.command import function, swing
+
+design = typer.Typer(
+    name="design",
+    no_args_is_help=True,
+    help="Find linkages for a wanted motion, and points of links; each is a file that opens in the studio.",
+)
+
+for _command in (function, swing, point, inertia):
+    design.command()(_command)

@@ -1,0 +1,186 @@
+"""Figures of points: rates over a cycle and poles in the link; a path on its curve; torque and forces."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.design.points.cycle import Cycle
+from sevenbar.design.points.inertia import Inertia
+from sevenbar.design.points.least import ZERO, LeastPoint
+from sevenbar.design.points.nearest import NearestPath
+from sevenbar.design.points.poles import AccelerationPoles
+from sevenbar.figure import CIRCUIT_COLOURS, LINE_STYLES, STYLE, input_label, new_figure, slides
+from sevenbar.motion import Floats
+from sevenbar.scene import prepare_view
+from sevenbar.skeleton import short
+
+#: The point found, and what it is compared with.
+FOUND, BOUND = CIRCUIT_COLOURS[1], "#8a8a8a"
+
+#: Poles farther from the box than this part of its longest side are not drawn.
+FARTHEST = 0.75
+
+#: Most points of the file, or masses, with a line of their own: more cannot be told apart.
+MOST_LINES = 6
+
+
+def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figure:
+    """The rate over the cycle of the file's points and of the new one, and the poles' path in the link."""
+    cycle, linkage = found.cycle, found.cycle.motion.linkage
+    with rc_context(STYLE):
+        figure = new_figure(11.0, 5.0)
+        axes = figure.add_axes((0.065, 0.12, 0.44, 0.70))
+        across = _across(cycle, cycle.rates.input)
+        for i, point in enumerate(found.before[:MOST_LINES]):
+            look: dict[str, Any] = {"color": _other(i), "ls": LINE_STYLES[1 + i % 3], "lw": 1.4}
+            axes.plot(
+                across, _sizes(cycle, found.of, np.array(point.at)), label=short(point.name, 24), **look
+            )
+        axes.plot(across, _sizes(cycle, found.of, found.at), color=FOUND, lw=1.8, label=short(name, 24))
+        told = "least root mean square" if found.measure == "rms" else "lower bound of the greatest"
+        axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=told)
+        if len(found.inputs):
+            marks = _across(cycle, found.inputs)
+            axes.plot(marks, np.full(len(marks), found.value), "o", color=FOUND, mfc="white", ms=5)
+        _input_axis(axes, cycle, across)
+        # a point that stands still is at the foot of what others of the box have
+        axes.set_ylim(0, None if found.value > ZERO * found.scale else found.scale)
+        axes.set_ylabel(f"{found.of} [{found.unit.replace('^2', '²').replace('^3', '³')}]")
+        axes.set_title("(a) over the cycle", fontsize=10)
+        axes.legend(frameon=False, fontsize=8.5)
+        _poles_in_the_link(figure, found, poles, name)
+        word = "root mean square" if found.measure == "rms" else "greatest"
+        figure.suptitle(
+            f"{short(linkage.name, 60)}\n"
+            f"link {found.link}, circuit {cycle.circuit.index}: least {word} {found.of}",
+            fontsize=11,
+        )
+    return figure
+
+
+def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPoles, name: str) -> None:
+    axes: Any = figure.add_axes((0.52, 0.07, 0.48, 0.79), projection="3d")
+    low, high = found.low, found.high
+    corners = np.array(list(product(*zip(low, high, strict=True))))
+    away = np.maximum(low - poles.at, poles.at - high).max(axis=1)
+    near = away <= FARTHEST * float((high - low).max())
+    path = np.where(near[:, None], poles.at, np.nan)
+    points = np.array([point.at for point in found.before[:MOST_LINES]]).reshape(-1, 3)
+    shown = [corners, points[np.isfinite(points).all(axis=1)], path[near]]
+    prepare_view(axes, np.concatenate(shown), found.cycle.motion.linkage.length_unit, fill=0.8)
+    for letter, scale in zip("uvw", (axes.xaxis, axes.yaxis, axes.zaxis), strict=True):
+        scale.set_label_text(f"{letter} [{found.cycle.motion.linkage.length_unit}]")
+    for a, b in product(corners, corners):
+        if (a <= b).all() and np.count_nonzero(a != b) == 1:
+            axes.plot(*np.stack([a, b]).T, color="#b8b8b8", lw=0.8)
+    if near.any():
+        single = (poles.status[near] == "pole").any()
+        label = "acceleration poles" if single else "points of least acceleration"
+        axes.plot(*_closed(path, found.cycle).T, color=CIRCUIT_COLOURS[2], lw=1.3, label=label)
+    for i, point in enumerate(found.before[:MOST_LINES]):
+        axes.plot(*np.array([point.at]).T, "s", color=_other(i), ms=5, label=short(point.name, 24))
+    axes.plot(*found.at[:, None], "o", color=FOUND, ms=6, label=short(name, 24))
+    part = "" if near.all() else f"; {np.count_nonzero(near)} of {len(near)} poles near the box"
+    if not near.any():
+        part = "; no pole near the box"
+    axes.set_title(f"(b) in the link: the box{part}", fontsize=10, y=0.99)
+    axes.legend(frameon=False, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3)
+
+
+def nearest_figure(found: NearestPath, name: str) -> Figure:
+    """The path of the point in space on the wanted places, and the distance of each from it."""
+    cycle, linkage = found.cycle, found.cycle.motion.linkage
+    with rc_context(STYLE):
+        figure = new_figure(10.6, 4.9)
+        axes: Any = figure.add_axes((0.0, 0.07, 0.5, 0.79), projection="3d")
+        path = cycle.rates.of("position", found.at)
+        prepare_view(axes, np.concatenate([path, found.wanted]), linkage.length_unit, fill=0.8)
+        axes.plot(*_closed(path, cycle).T, color=FOUND, lw=1.4, label=f"path of {short(name, 24)}")
+        axes.plot(*found.wanted.T, "o", color=CIRCUIT_COLOURS[0], mfc="none", ms=4, label="wanted")
+        axes.legend(frameon=False, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2)
+        axes.set_title("(a) in space", fontsize=10, y=0.99)
+        below = figure.add_axes((0.59, 0.12, 0.39, 0.70))
+        below.plot(np.arange(1, len(found.distances) + 1), found.distances, "o-", color=FOUND, ms=3, lw=1.0)
+        below.grid(lw=0.6)
+        below.set_ylim(bottom=0)
+        below.xaxis.set_major_locator(MaxNLocator(integer=True))
+        below.set_xlabel("wanted place")
+        below.set_ylabel(f"distance [{linkage.length_unit}]")
+        below.set_title("(b) distance of the path from it", fontsize=10)
+        figure.suptitle(
+            f"{short(linkage.name, 60)}\nlink {found.link}, circuit {cycle.circuit.index}: "
+            f"path nearest the curve, rms {found.rms:.4g} {linkage.length_unit}",
+            fontsize=11,
+        )
+    return figure
+
+
+def inertia_figure(found: Inertia) -> Figure:
+    """The torque of the input over the cycle, and the sizes of the inertia forces."""
+    cycle, linkage = found.cycle, found.cycle.motion.linkage
+    with rc_context(STYLE):
+        figure = new_figure(7.0, 6.6)
+        figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+        torque, force = figure.subplots(2, 1, sharex=True)
+        across = _across(cycle, found.input)
+        torque.axhline(0, color=BOUND, lw=0.8)
+        torque.plot(across, found.torque, color=FOUND, lw=1.7)
+        torque.fill_between(across, found.torque, color=FOUND, alpha=0.15, lw=0)
+        torque.set_ylabel(f"input {'force' if found.slides else 'torque'} [{found.unit}]")
+        torque.grid(lw=0.6)
+        for i, (mass, sizes) in enumerate(zip(found.masses[:MOST_LINES], found.sizes, strict=False)):
+            label = f"{short(mass.name, 24)}, {mass.mass:g} kg"
+            force.plot(across, sizes, color=_other(i), ls=LINE_STYLES[i % 4], lw=1.5, label=label)
+        if len(found.masses) > 1:
+            total = np.linalg.norm(found.shaking, axis=1)
+            force.plot(across, total, color="#303030", lw=1.0, label="sum of all")
+        force.set_ylim(0, 1.08 * float(np.linalg.norm(found.force, axis=2).max() or 1.0))
+        figure.align_ylabels()
+        force.set_ylabel("inertia force [N]")
+        _input_axis(force, cycle, across)
+        figure.legend(loc="outside lower center", ncols=3, frameon=False)
+        figure.suptitle(
+            f"{short(linkage.name, 60)}\ncircuit {cycle.circuit.index}: what masses ask of the input",
+            fontsize=11,
+        )
+    return figure
+
+
+def _other(index: int) -> str:
+    """The colour of a point of the file, or of a mass."""
+    others = [colour for colour in CIRCUIT_COLOURS if colour != FOUND]
+    return others[index % len(others)]
+
+
+def _sizes(cycle: Cycle, of: str, at: Floats) -> Floats:
+    sizes: Floats = np.linalg.norm(cycle.rates.of(of, at), axis=1)
+    return sizes
+
+
+def _across(cycle: Cycle, inputs: Floats) -> Floats:
+    """Inputs as they are drawn: degrees, or lengths."""
+    return inputs if slides(cycle.motion, cycle.motion.input) else np.degrees(inputs)
+
+
+def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:
+    axes.grid(lw=0.6)
+    ends = [across.min(), across.max()]
+    if cycle.closed:
+        ends = sorted([across[0], across[0] + math.copysign(math.degrees(cycle.turn), cycle.step)])
+    axes.set_xlim(*ends)
+    if not slides(cycle.motion, cycle.motion.input):
+        axes.xaxis.set_major_locator(MaxNLocator(8, steps=[1, 1.5, 3, 4.5, 6, 9, 10]))
+    axes.set_xlabel(input_label(cycle.motion))
+
+
+def _closed(path: Floats, cycle: Cycle) -> Floats:
+    """A path with its first row again at its end, where it closes."""
+    return np.concatenate([path, path[:1]]) if cycle.closed else path

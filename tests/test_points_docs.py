@@ -1,0 +1,49 @@
+"""The page on points: its example and its searches are those of today."""
+
+import contextlib
+import doctest
+import importlib
+import io
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PAGE = (ROOT / "docs" / "points.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["inertia", "least", "poles"])
+def test_docstring_examples_give_what_they_show(name):
+    result = doctest.testmod(importlib.import_module(f"sevenbar.design.points.{name}"))
+    assert result.attempted > 0
+    assert result.failed == 0
+
+
+def test_the_example_prints_what_its_comments_say():
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    promised = re.findall(r"print\(.*\)  # (.*)", code)
+    assert printed.getvalue().splitlines() == promised
+
+
+@pytest.mark.slow
+def test_the_dense_search_of_the_page_is_that_of_today_and_never_beats_the_bound():
+    run = subprocess.run(
+        [sys.executable, "benches/least_acceleration.py"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    shown = re.findall(r"^    search +([\d.]+) over", PAGE, flags=re.MULTILINE)
+    today = re.findall(r"^search +([\d.]+) over", run.stdout, flags=re.MULTILINE)
+    assert len(today) == 6
+    assert [float(x) for x in shown] == pytest.approx([float(x) for x in today], rel=1e-6)
+    bound = float(re.search(r"lower bound +([\d.]+)", run.stdout)[1])
+    assert min(float(x) for x in today) >= bound
+    assert min(float(x) for x in today) == pytest.approx(bound, rel=1e-4)
