@@ -100,9 +100,10 @@ def _columns(raw: Mapping[str, Any], speed: Floats) -> dict[str, Floats]:
 
 def _time_ratio(raw: Mapping[str, Any]) -> Floats:
     """The slower stroke over the quicker, of a full turn of the input with a rocking output."""
-    rocks = np.isfinite(raw["output_range"]).all(axis=1) & np.isnan(raw["input_range"][:, 0])
-    ends = raw["output_dead_centres"][rocks]
+    ends = raw["output_dead_centres"]
     stroke = (ends[:, 3] - ends[:, 1]) % math.tau
-    ratio = np.full(len(rocks), np.nan)
-    ratio[rocks] = np.maximum(stroke, math.tau - stroke) / np.minimum(stroke, math.tau - stroke)
+    slower, quicker = np.maximum(stroke, math.tau - stroke), np.minimum(stroke, math.tau - stroke)
+    rocks = np.isfinite(raw["output_range"]).all(axis=1) & np.isnan(raw["input_range"][:, 0])
+    ratio = np.full(len(stroke), np.nan)
+    np.divide(slower, quicker, out=ratio, where=rocks & (quicker > 0))
     return ratio

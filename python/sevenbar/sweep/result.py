@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from io import BytesIO
@@ -75,18 +75,17 @@ class Sweep:
     @property
     def parts(self) -> Iterator[pa.Table]:
         """The rows (a pyarrow Table) of each part, in the order of the linkages; one in memory at a time."""
-        return self._read(None)
+        return self._read(())
 
-    def _read(self, columns: Sequence[str] | None) -> Iterator[pa.Table]:
+    def _read(self, without: Collection[str]) -> Iterator[pa.Table]:
+        """The rows of each part, without some columns."""
         import pyarrow.parquet as pq
 
-        if self.folder is None:
-            for content in self.contents:
-                yield pq.read_table(BytesIO(content), columns=columns)
-            return
         for part in range(self.description["parts"]):
-            # not its folder as a data set, whose columns would be guessed from the path
-            yield pq.ParquetFile(self.folder / part_name(part)).read(columns)
+            path = None if self.folder is None else self.folder / part_name(part)
+            # not as a data set, which would guess columns from the path
+            with pq.ParquetFile(BytesIO(self.contents[part]) if path is None else path) as file:
+                yield file.read([name for name in file.schema_arrow.names if name not in without])
 
     def table(self) -> pa.Table:
         """All rows in one pyarrow Table; raises `RequestError` for more than memory should hold."""
@@ -124,14 +123,14 @@ class Sweep:
         linkages = rows = invalid = 0
         words: dict[str, Counter[str]] = {}
         ranges: dict[str, Range | None] = {}
-        for table in self.parts:
+        for table in self._read(dimensions):
             linkage = table["linkage"].to_numpy()
             firsts = np.flatnonzero(np.diff(linkage, prepend=-1))
             linkages, rows = linkages + len(firsts), rows + len(linkage)
             ok = pc.equal(table["status"], OK).to_numpy()
             invalid += int(np.count_nonzero(~ok[firsts]))
             for field in table.schema:
-                if field.name in {"linkage", "status", "circuit", *dimensions}:
+                if field.name in {"linkage", "status", "circuit"}:
                     continue
                 if str(field.type) == "string":
                     # a word of a circuit is counted by circuits, one of a linkage once
