@@ -36,6 +36,14 @@ def test_a_linkage_that_cannot_be_assembled_keeps_its_row() -> None:
     assert row == {"circuit": None, "motion_type": "cannot-assemble", "swing": None}
 
 
+def test_a_stroke_without_time_has_no_time_ratio() -> None:
+    # a change point, where the circuit goes over to its other branch at both ends of the output
+    motion = sb.rssr(M=0, N=300, L1=300, L3=300, L2=600, D=300).motion()
+    strokes = [(c.angle.highest_at - c.angle.lowest_at) % math.tau for c in motion if c.angle]
+    assert [row["time_ratio"] for row in rows_of(motion, measures_named(["time_ratio"]))] == [None]
+    assert strokes == [0.0]
+
+
 def test_a_function_of_the_motion_is_a_measure() -> None:
     def greatest_residual(motion: sb.Motion) -> float:
         """The greatest closure error."""

@@ -215,11 +215,15 @@ class Circuit:
 
     @property
     def time_ratio(self) -> float | None:
-        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output."""
+        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
+
+        `None` also at a change point where both ends of the output are at one input: a stroke without time.
+        """
         if self.angle is None or self.input_range is not None:
             return None
         stroke = (self.angle.highest_at - self.angle.lowest_at) % math.tau
-        return max(stroke, math.tau - stroke) / min(stroke, math.tau - stroke)
+        slower, quicker = max(stroke, math.tau - stroke), min(stroke, math.tau - stroke)
+        return slower / quicker if quicker > 0 else None
 
     def point(self, link: int, at: tuple[float, float, float]) -> Trace:
         """A point of link 1, 2, .. along the circuit.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from io import BytesIO
@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
+from sevenbar.sweep.block import OK
 from sevenbar.sweep.parts import part_name, parts_there, read_description
-from sevenbar.sweep.rows import OK, need_pyarrow
+from sevenbar.sweep.rows import need_pyarrow
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,18 +75,17 @@ class Sweep:
     @property
     def parts(self) -> Iterator[pa.Table]:
         """The rows (a pyarrow Table) of each part, in the order of the linkages; one in memory at a time."""
-        return self._read(None)
+        return self._read(())
 
-    def _read(self, columns: Sequence[str] | None) -> Iterator[pa.Table]:
+    def _read(self, without: Collection[str]) -> Iterator[pa.Table]:
+        """The rows of each part, without some columns."""
         import pyarrow.parquet as pq
 
-        if self.folder is None:
-            for content in self.contents:
-                yield pq.read_table(BytesIO(content), columns=columns)
-            return
         for part in range(self.description["parts"]):
-            # not its folder as a data set, whose columns would be guessed from the path
-            yield pq.ParquetFile(self.folder / part_name(part)).read(columns)
+            path = None if self.folder is None else self.folder / part_name(part)
+            # not as a data set, which would guess columns from the path
+            with pq.ParquetFile(BytesIO(self.contents[part]) if path is None else path) as file:
+                yield file.read([name for name in file.schema_arrow.names if name not in without])
 
     def table(self) -> pa.Table:
         """All rows in one pyarrow Table; raises `RequestError` for more than memory should hold."""
@@ -117,25 +117,28 @@ class Sweep:
     @cached_property
     def totals(self) -> Totals:
         """Counts and ranges of all rows, read part by part."""
+        import pyarrow.compute as pc
+
         dimensions = {axis["column"] for axis in self.description["dimensions"]}
         linkages = rows = invalid = 0
         words: dict[str, Counter[str]] = {}
         ranges: dict[str, Range | None] = {}
-        for table in self.parts:
+        for table in self._read(dimensions):
             linkage = table["linkage"].to_numpy()
             firsts = np.flatnonzero(np.diff(linkage, prepend=-1))
             linkages, rows = linkages + len(firsts), rows + len(linkage)
-            ok = np.asarray(table["status"].to_numpy(zero_copy_only=False) == OK)
+            ok = pc.equal(table["status"], OK).to_numpy()
             invalid += int(np.count_nonzero(~ok[firsts]))
             for field in table.schema:
-                if field.name in {"linkage", "status", "circuit", *dimensions}:
+                if field.name in {"linkage", "status", "circuit"}:
                     continue
                 if str(field.type) == "string":
                     # a word of a circuit is counted by circuits, one of a linkage once
                     column = table[field.name]
                     counted = column if field.name == "circuit_type" else column.take(firsts)
-                    counts = Counter(word for word in counted.to_pylist() if word is not None)
-                    words.setdefault(field.name, Counter()).update(counts)
+                    counts = dict(zip(*counted.drop_null().value_counts().flatten(), strict=True))
+                    named = {word.as_py(): count.as_py() for word, count in counts.items()}
+                    words.setdefault(field.name, Counter()).update(named)
                 else:
                     numbers = table[field.name].to_numpy(zero_copy_only=False).astype(np.float64)
                     ranges[field.name] = _wider(ranges.get(field.name), numbers, linkage)
