@@ -12,6 +12,7 @@ import typer
 import typer.core
 
 import sevenbar as sb
+from sevenbar.design.command import design
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.export.command import export
 from sevenbar.folder import check_targets
@@ -235,6 +236,7 @@ def _points(
 
 for _command in (studio, compare, calibrate, simulate, export):
     app.command()(_command)
+app.add_typer(design)
 
 
 @app.command()

@@ -27,6 +27,9 @@ CHECK_SAMPLES = 720
 #: polygon's own sagitta is below 1e-3 but next to dead centres.
 NEAR = 0.02
 
+#: By how much a pose may lie behind the one before it [rows]: several see one corner of the polygon.
+PLACE_SLACK = 0.1
+
 #: Inputs over the used range at which the transmission angle is looked at.
 RANGE_SAMPLES = 361
 
@@ -224,14 +227,27 @@ def _one_way(ways: Ways) -> Refusal | None:
 
 def _in_order(circuit: Circuit, position: Floats) -> Refusal | None:
     """Why poses at places along a circuit do not follow each other; a closed pass may be entered anywhere."""
-    round_trip = len(circuit.input) if circuit.closed and circuit.input_range is None else 0
-    for way in (1.0, -1.0):
-        steps = way * np.diff(position)
-        if (steps > 0).all() or (round_trip and (steps % round_trip).sum() < round_trip):
-            return None
+    if _rising(circuit, position) or _rising(circuit, -position):
+        return None
     order = np.argsort(position, kind="stable") + 1
     passed = ", ".join(str(k) for k in order[:12]) + (" .." if len(order) > 12 else "")
     return Refusal("order", f"passes the points in the order {passed}")
+
+
+def _rising(circuit: Circuit, position: Floats) -> bool:
+    """Whether places go forwards along a circuit, over less than a round of it."""
+    steps = np.diff(position)
+    if circuit.closed and circuit.input_range is None:
+        steps = _forwards(steps, len(circuit.input))
+        if steps.sum() >= len(circuit.input):
+            return False
+    return bool((steps > -PLACE_SLACK).all())
+
+
+def _forwards(steps: Floats, around: int) -> Floats:
+    """Steps along a round of so many rows, each taken forwards."""
+    forwards = steps % around
+    return np.where(forwards > around - PLACE_SLACK, forwards - around, forwards)
 
 
 def used_transmission(linkage: Linkage, circuit: Circuit, inputs: Floats, position: Floats) -> float | None:
@@ -253,8 +269,8 @@ def _travel(circuit: Circuit, inputs: Floats, position: Floats) -> float:
         rough = float(np.diff(np.interp(position[[0, -1]], np.arange(len(circuit.input)), circuit.input))[0])
     else:
         rows = len(circuit.input)
-        steps = np.diff(position) % rows
-        travelled = steps.sum() if steps.sum() < rows else -((-np.diff(position)) % rows).sum()
+        steps = _forwards(np.diff(position), rows)
+        travelled = steps.sum() if steps.sum() < rows else -_forwards(-np.diff(position), rows).sum()
         rough = float(travelled * math.tau * circuit.turns / rows)
     # rows say which turn, the inputs themselves the rest
     last = float(inputs[-1] - inputs[0])
@@ -343,7 +359,7 @@ def toml_of(candidate: Candidate, head: Sequence[str]) -> str:
 
 
 def _plain(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 def write(

@@ -56,8 +56,7 @@ ENDS_APART = 1e-3
 class Synthesis:
     """Designs found for a wish, best first, and what was refused on the way.
 
-    `searched` designs were looked at and `fitted` of them refined; `nearest` is the best one refused, with
-    the reason, where none was kept.
+    `searched` designs were looked at and `fitted` of them refined; `refusals` begin with the nearest.
     """
 
     told: str
@@ -67,6 +66,8 @@ class Synthesis:
     searched: int
     fitted: int
     seed: int
+    #: The wanted function, `None` for another wish.
+    wish: Wish | None = None
 
     def required(self) -> tuple[Candidate, ...]:
         """The candidates; `RequestError` saying what was nearest where there are none."""
@@ -158,7 +159,7 @@ def _found(wish: Wish, limits: Limits, tolerance: float, count: int, seed: int) 
             break
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
-        wish.told, limits, tuple(renamed(best, wish.told)), refusals, len(rows), len(chosen), seed
+        wish.told, limits, tuple(renamed(best, wish.told)), refusals, len(rows), len(chosen), seed, wish
     )
 
 

@@ -3,8 +3,8 @@
     minimise the greatest height,   with rooms >= 0                                                      (1)
 
 Heights and rooms are made straight by their exact slopes; a step may go as far as the reach, which grows and
-shrinks with what the last one kept of its promise. Where at the end one height more than there are unknowns is
-equal to the greatest, the solution is a corner, and the steps converge as Newton's do.
+shrinks with what the last one kept of its promise. Where at the end one height more than there are unknowns
+is equal to the greatest, the solution is a corner, and the steps converge as Newton's do.
 """
 
 from __future__ import annotations

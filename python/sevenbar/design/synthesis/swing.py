@@ -87,7 +87,7 @@ class Ends:
 
 
 def ends_of_swing(row: Floats, branch: int) -> Ends | None:
-    """The ends of the swing of a design (6,) on a branch; `None` where the crank or the output does not fit."""
+    """The ends of the swing of a design (6,) on a branch; `None` where crank or output does not fit."""
     inputs = np.linspace(0.0, math.tau, END_SAMPLES)
     angles = np.unwrap(outputs(row[None], inputs, branch)[0])
     # an output that comes back a turn on does not rock
@@ -190,7 +190,7 @@ class _Wish:
     limits: Limits
 
     def missed(self, ends: Ends, rising: bool) -> tuple[Floats, Floats]:
-        """By how much swing and stroke are off (2,) [rad], and slopes (2, 5); `rising`: that stroke is slow."""
+        """How far off swing and stroke are (2,) [rad], and slopes (2, 5); `rising`: that stroke is slow."""
         stroke = self.slow if rising else math.tau - self.slow
         off = np.array([ends.swing - self.swing, ends.stroke - stroke])
         slopes = [ends.output_slopes[1] - ends.output_slopes[0], ends.crank_slopes[1] - ends.crank_slopes[0]]

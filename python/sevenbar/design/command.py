@@ -1,0 +1,16 @@
+"""The commands `sevenbar design ..`: linkages for a wanted motion."""
+
+from __future__ import annotations
+
+import typer
+
+from sevenbar.design.synthesis.command import function, swing
+
+design = typer.Typer(
+    name="design",
+    no_args_is_help=True,
+    help="Find linkages for a wanted motion; each design is a file that opens in the studio.",
+)
+
+for _command in (function, swing):
+    design.command()(_command)
