@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+import numpy as np
 import numpy.typing as npt
 
 from sevenbar.design.synthesis.candidates import Candidate, Refusal, distinct, ranked, renamed, tally
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.design.synthesis.path_check import checked_path
 from sevenbar.design.synthesis.path_refine import LOOK, Refined, refined
-from sevenbar.design.synthesis.path_search import Seed, apart, seeds
+from sevenbar.design.synthesis.path_search import Seed, apart, looked_at, seeds
 from sevenbar.design.synthesis.path_task import MOST_POINTS, PathTask, Where, path_task
 from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, shown
@@ -18,6 +19,9 @@ from sevenbar.linkage import Linkage
 
 #: Starts where none are asked for, the most, and the most designs.
 STARTS, MOST_STARTS, MOST_DESIGNS = 256, 65536, 50
+
+#: How often a design that passes its points in a wrong order is matched with them anew.
+MATCHED_ANEW = 2
 
 #: Of the starts so many for each design wanted are looked at closer, and of these so many to the end.
 LOOKED_AT, TAKEN = 8, 3
@@ -105,8 +109,7 @@ def generated(
         if len(distinct(ranked(kept), scale_free=False)) >= count and i >= TAKEN * count:
             break
         _tell(progress, min(len(rough) + i, steps), steps)
-        whole = refined(task, Seed(look.varied, look.inputs, look.poses, 0.0, _phase(task, look)))
-        answer = checked_path(task, whole or look)
+        answer = _answer(task, look)
         if isinstance(answer, Candidate):
             kept.append(answer)
         else:
@@ -116,6 +119,23 @@ def generated(
         raise RequestError(_nothing(task, found, refusals))
     best = distinct(ranked(kept), scale_free=False, count=count)
     return tuple(renamed(best, task.draft.linkage.name))
+
+
+def _answer(task: PathTask, look: Refined) -> Candidate | Refusal:
+    """The design that a first look leads to; matched anew where it passes the points in a wrong order."""
+    start = Seed(look.varied, look.inputs, look.poses, 0.0, _phase(task, look))
+    answer: Candidate | Refusal | None = None
+    for _ in range(MATCHED_ANEW + 1):
+        whole = refined(task, start)
+        if whole is None:
+            break
+        answer = checked_path(task, whole)
+        if isinstance(answer, Candidate) or answer.fault != "order":
+            break
+        start = min(looked_at(task, whole.varied), key=lambda one: one.error, default=start)
+        if not np.isfinite(start.error):
+            break
+    return answer or checked_path(task, look)
 
 
 def _tell(progress: Callable[[int, int], None] | None, done: int, total: int) -> None:

@@ -18,29 +18,40 @@ from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.linkage import Linkage
 from sevenbar.motion import Floats, Law
 
+#: How much further off than the solution, in parts of its error and of the path's extent, the points may be
+#: on one pass: more, and the solution lies on several.
+TORN = 1e-6
+
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """What a linkage makes of the wanted points at given inputs, on one pass.
+    """What a linkage makes of the wanted points at given inputs, on one pass: a branch of a circuit.
 
-    `places` (n, 3) as placed, `poses` (n, columns), `errors` (n,) how far each place is from its point.
+    `places` (n, 3) as placed, `poses` (n, columns), `left` (n, 3) from each place to its point.
     """
 
+    circuit: int
+    branch: int
     places: Floats
     poses: Floats
     placing: Placing
-    errors: Floats
+    left: Floats
+
+    @property
+    def rms(self) -> float:
+        """The root mean square of the distances."""
+        return float(np.sqrt((self.left**2).sum(axis=1).mean()))
 
 
-def made(linkage: Linkage, name: str, inputs: Floats, wanted: Floats, *, place: bool) -> Made | None:
-    """The pass of the ordinary analysis that comes nearest to the wanted points (n, 3) at inputs (n,).
+def made(linkage: Linkage, name: str, inputs: Floats, wanted: Floats, *, place: bool) -> list[Made]:
+    """What each pass of the ordinary analysis makes of the wanted points (n, 3) at inputs (n,), best first.
 
-    `None` where no pass reaches all of the inputs.
+    Passes that do not reach all of the inputs are left out.
     """
     count = len(inputs)
     law = Law.of(np.arange(count, dtype=np.float64), inputs, 1.0, 0.0)
     point = next(p for p in linkage.points if p.name == name)
-    best: Made | None = None
+    found: list[Made] = []
     for circuit in linkage.motion(law=law).circuits:
         trace = circuit.point(point.link, point.at).position
         # a circuit that rocks has the inputs once for each of its passes
@@ -50,10 +61,33 @@ def made(linkage: Linkage, name: str, inputs: Floats, wanted: Floats, *, place: 
                 continue
             placing = placed(wanted, places) if place else STILL
             put = placing.put(places)
-            errors = np.linalg.norm(put - wanted, axis=1)
-            if best is None or (errors**2).sum() < (best.errors**2).sum():
-                best = Made(put, poses, placing, errors)
-    return best
+            found.append(Made(circuit.index, begin // count, put, poses, placing, wanted - put))
+    return sorted(found, key=lambda one: one.rms)
+
+
+def _torn(found: list[Made], wanted: Floats, solution: Refined) -> Refusal | None:
+    """Why no pass holds all the points that were solved for, each of which some pass comes near."""
+    best = found[0]
+    if best.rms <= solution.rms * (1 + TORN) + TORN * float(np.ptp(wanted)):
+        return None
+    off = [np.linalg.norm(best.placing.put(one.placing.back(one.places)) - wanted, axis=1) for one in found]
+    nearest = np.argmin(off, axis=0)
+    first = found[nearest[0]]
+    for k, place in enumerate(nearest):
+        other = found[place]
+        if other.circuit != first.circuit:
+            return Refusal(
+                "circuit",
+                f"point 1 lies on circuit {first.circuit}, point {k + 1} on circuit {other.circuit}: it must "
+                "be taken apart between them",
+            )
+        if other.branch != first.branch:
+            return Refusal(
+                "dead centre",
+                f"point 1 lies on branch {first.branch}, point {k + 1} on branch {other.branch} of circuit "
+                f"{first.circuit}: a dead centre of the input lies between",
+            )
+    return Refusal("circuit", "no pass goes through the poses that were solved for")
 
 
 def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
@@ -67,16 +101,21 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
         found = made(linkage, task.point.name, solution.inputs, task.wanted, place=task.place)
     except (DescriptionError, RequestError) as error:
         return Refusal("assembly", str(error))
-    if found is None:
+    if not found:
         return Refusal(
             "dead centre", "no pass reaches the inputs of all points without a dead centre between"
         )
-    figures = _standing(found.placing, linkage.length_unit) if task.place else {}
+    torn = _torn(found, task.wanted, solution)
+    if torn is not None:
+        return torn
+    best = found[0]
+    figures = _standing(best.placing, linkage.length_unit) if task.place else {}
     if task.place and "joint" in task.draft.raw:
-        draft, figures = moved(draft, found.placing), {}
-    outputs = found.poses[:, linkage.columns.index(linkage.drive.output)]
-    claim = Claim(solution.inputs, outputs, found.errors, linkage.length_unit, figures)
-    candidate = checked(draft, claim, task.limits, poses=found.poses)
+        draft, figures = moved(draft, best.placing), {}
+    outputs = best.poses[:, linkage.columns.index(linkage.drive.output)]
+    errors = np.linalg.norm(best.left, axis=1)
+    claim = Claim(solution.inputs, outputs, errors, linkage.length_unit, figures)
+    candidate = checked(draft, claim, task.limits, poses=best.poses)
     if isinstance(candidate, Candidate) and task.closed:
         circuit = draft.linkage.motion(SAMPLES).circuits[candidate.circuit]
         if circuit.input_range is not None:

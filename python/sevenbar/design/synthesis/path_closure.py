@@ -343,6 +343,30 @@ class PointClosure:
         """What is 1 of each column (columns,): a radian, or the size."""
         return np.where(self._slides, self.size, 1.0)
 
+    def poses(self, values: Floats, q: Floats) -> Floats:
+        """Rows of the analysis (n, columns) as poses of the word.
+
+        A ball whose link is held from spinning has two turns here, about the axis before and square to it.
+        """
+        q = q.copy()
+        column = carried = 0
+        steps = self.word(values).steps if self._spun and "joint" in self._raw else ()
+        for i, joint in enumerate(self._linkage.joints):
+            if i in self._spun and steps:
+                first, second = steps[carried].axis, steps[carried + 1].axis
+                turns = [_turning(axis, q[:, column + k]) for k, axis in enumerate((_Z, _Y, _X))]
+                turn = turns[0] @ turns[1] @ turns[2]
+                square = np.cross(first, second)
+                q[:, column] = np.arctan2(turn @ second @ square, turn @ second @ second)
+                rest = _turning(first, -q[:, column]) @ turn @ first
+                q[:, column + 1] = np.arctan2(rest @ -square, rest @ first)
+                q[:, column + 2] = 0.0
+                carried += 2
+            else:
+                carried += len(joint.columns)
+            column += len(joint.columns)
+        return q
+
     def position(self, values: Floats, q: Floats) -> Floats:
         """The point (n, 3) at poses (n, columns)."""
         return self.walk(values, q, sensitive=False).point
@@ -477,14 +501,23 @@ def _after(
         origin = origin + np.reshape(length, (-1, 1)) * (turn @ step.axis)
     if not (np.ndim(angle) or angle):
         return turn, origin
-    x, y, z = step.axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    half = np.reshape(angle, (-1, 1, 1))
-    less_one = np.sin(half) * cross + 2 * np.sin(half / 2) ** 2 * (cross @ cross)
-    changed = turn @ less_one
+    changed = turn @ _less_one(step.axis, angle)
     if step.place.any():
         origin = origin - changed @ step.place
     return turn + changed, origin
+
+
+def _less_one(axis: Floats, angle: Floats | float) -> Floats:
+    """Rotations (n, 3, 3) about a unit axis (3,), less the identity."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    whole = np.reshape(angle, (-1, 1, 1))
+    return np.asarray(np.sin(whole) * cross + 2 * np.sin(whole / 2) ** 2 * (cross @ cross))
+
+
+def _turning(axis: Floats, angle: Floats) -> Floats:
+    """Rotations (n, 3, 3) about a unit axis (3,)."""
+    return np.asarray(np.eye(3) + _less_one(axis, angle))
 
 
 def _adjoined(turn: Floats, origin: Floats, twist: Floats) -> Floats:

@@ -39,6 +39,10 @@ class Placing:
         """Places (.., 3) as they are moved."""
         return np.asarray(self.scale * places @ self.rotation.T + self.shift)
 
+    def back(self, places: Floats) -> Floats:
+        """Places (.., 3) as they were before."""
+        return np.asarray((places - self.shift) @ self.rotation / self.scale)
+
 
 STILL = Placing(np.eye(3), np.zeros(3))
 

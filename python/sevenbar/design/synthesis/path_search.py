@@ -124,7 +124,7 @@ def passes(circuit: Circuit, curve: Floats, *, turns: bool) -> Iterator[Pass]:
     """The passes of a circuit with a point's path (rows, 3); rows without a pose are left out."""
     good = np.isfinite(np.column_stack([curve, circuit.q])).all(axis=1)
     if circuit.closed and circuit.input_range is None and good.all():
-        yield Pass(circuit, np.arange(len(good)), curve, True, turns)
+        yield Pass(circuit, np.arange(len(curve)), curve, True, turns)
         return
     for branch in np.unique(circuit.branch):
         rows = np.flatnonzero((circuit.branch == branch) & good)
@@ -174,7 +174,7 @@ def _seed(task: PathTask, one: Pass, varied: Floats, match: Match) -> Seed:
         steps = np.diff(match.rows)
         way = 1.0 if (steps > 0).sum() >= (steps < 0).sum() else -1.0
         inputs[1:] += way * one.period * np.cumsum(way * steps < 0)
-    poses = one.circuit.q[rows]
+    poses = task.closure.poses(task.values(varied), one.circuit.q[rows])
     return _scaled(task, Seed(varied, inputs, poses, match.error), match.placing)
 
 
@@ -209,7 +209,8 @@ def _timed(task: PathTask, one: Pass, varied: Floats) -> Seed | None:
         placing = placed(task.wanted, curve) if task.place else STILL
         error = float(((placing.put(curve) - task.wanted) ** 2).sum(axis=1).mean())
         if best is None or error < best.error:
-            best = Seed(varied, inputs, one.circuit.q[one.rows[rows]], error, phase if task.phase else 0.0)
+            poses = task.closure.poses(task.values(varied), one.circuit.q[one.rows[rows]])
+            best = Seed(varied, inputs, poses, error, phase if task.phase else 0.0)
     return best
 
 

@@ -270,12 +270,8 @@ def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
     chosen.sort()
     opening = _opening(replace(task, varied=tuple(chosen)))
     if vary is None:
+        # the point's own coordinates open nothing
         chosen = [i for i in chosen if i not in opening]
-        if not chosen:
-            raise NotCoveredError(
-                "vary: every dimension would open this loop if it changed alone; it moves by a relation "
-                "between its dimensions that is not held here"
-            )
     elif opening:
         told = ", ".join(names[i] for i in opening[:4]) + (" .." if len(opening) > 4 else "")
         raise RequestError(
@@ -291,7 +287,8 @@ def _opening(task: PathTask) -> tuple[int, ...]:
     for circuit in motion.circuits:
         good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
         if good.size:
-            q = task.closure.closed(task.closure.start, circuit.input[good], circuit.q[good])
+            start = task.closure.start
+            q = task.closure.closed(start, circuit.input[good], task.closure.poses(start, circuit.q[good]))
             q = q[np.isfinite(q).all(axis=1)]
             if len(q):
                 return task.closure.openings(task.closure.start, q)

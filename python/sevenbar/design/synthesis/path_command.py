@@ -1,0 +1,176 @@
+"""The command `sevenbar design path`."""
+
+from __future__ import annotations
+
+import math
+import shlex
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.folder import check_targets
+from sevenbar.options import Figures, Force, Source, figure_formats, progress_bar, tell_written, words
+
+if TYPE_CHECKING:
+    from sevenbar.design.synthesis.candidates import Candidate
+    from sevenbar.design.synthesis.limits import Limits
+    from sevenbar.design.synthesis.path_task import PathTask, Where
+
+
+def path(
+    linkage: Source,
+    wanted: Annotated[Path, typer.Option("--path", help="Table of wanted points in order: x, y, z.")],
+    point: Annotated[str | None, typer.Option(help="A named point of the linkage.")] = None,
+    link: Annotated[int | None, typer.Option(help="The link of a point given by --at.")] = None,
+    at: Annotated[str | None, typer.Option(help="Where on the link, as in '-100,-90,-80'.")] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(help="A dimension that may change, or a pattern; may be repeated. All by default."),
+    ] = None,
+    bound: Annotated[
+        list[str] | None,
+        typer.Option(help="Bounds of a dimension, as in L1=100:400; may be repeated."),
+    ] = None,
+    place: Annotated[bool, typer.Option("--place", help="The linkage may stand anywhere in space.")] = False,
+    timing: Annotated[
+        bool, typer.Option("--timing", help="Reach each point at the input that the table has for it.")
+    ] = False,
+    phase: Annotated[
+        bool, typer.Option("--phase", help="With --timing: inputs count from an unknown start.")
+    ] = False,
+    transmission: Annotated[
+        str | None, typer.Option(help="Least transmission angle of an RSSR, as in '40deg'.")
+    ] = None,
+    size: Annotated[
+        str | None, typer.Option(help="Shortest link and longest dimension, as in 50:1000.")
+    ] = None,
+    motion_type: Annotated[str | None, typer.Option(help="Motion type, as in crank-rocker.")] = None,
+    designs: Annotated[int, typer.Option(help="How many designs that differ.")] = 5,
+    starts: Annotated[int, typer.Option(help="Linkages within the bounds that are tried.")] = 256,
+    seed: Annotated[int, typer.Option(help="Seed of the starts.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for design_1.toml, .., summary.csv and a figure of each.")
+    ] = None,
+    figures: Figures = None,
+    force: Force = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the designs as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """Linkages of a type whose point goes through wanted points in order (extra 'design')."""
+    from sevenbar.design.synthesis import path_report
+    from sevenbar.design.synthesis.path import generated, path_task
+    from sevenbar.design.synthesis.path_table import read_path
+    from sevenbar.draft import Draft
+    from sevenbar.files import text_of
+
+    endings = figure_formats(figures, out)
+    draft = Draft.of(text_of(linkage), linkage)
+    check_targets([] if out is None else _targets(out, designs, endings), force=force)
+    points, inputs = read_path(wanted, draft.linkage, point=point or "", timed=timing)
+    if phase and not timing:
+        raise RequestError(
+            "--phase: the inputs have no say without --timing; give both, or leave --phase out"
+        )
+    task = path_task(
+        draft,
+        points,
+        _where(point, link, at),
+        vary=words(vary) if vary is not None else None,
+        bounds=dict(_bound(word) for word in words(bound or [])),
+        timing=inputs,
+        phase=phase,
+        place=place,
+        limits=_limits(transmission, size, motion_type),
+    )
+    with progress_bar("designing") as progress:
+        found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
+    written = [] if out is None else _written(task, found, (str(wanted), seed), out, endings, force=force)
+    if json:
+        typer.echo(path_report.as_json(task, found, str(wanted), seed))
+        return
+    path_report.print_text(task, found, str(wanted), seed)
+    tell_written(written)
+
+
+def _targets(out: Path, designs: int, endings: tuple[str, ...]) -> list[Path]:
+    """The files that may be written, for a look before long work."""
+    names = [f"design_{i}.{end}" for i in range(1, designs + 1) for end in ("toml", *endings)]
+    return [out / name for name in (*names, "summary.csv", "summary.json")]
+
+
+def _written(
+    task: PathTask,
+    found: tuple[Candidate, ...],
+    asked: tuple[str, int],
+    out: Path,
+    endings: tuple[str, ...],
+    *,
+    force: bool,
+) -> list[Path]:
+    from sevenbar import plot
+    from sevenbar.design.synthesis.candidates import write
+    from sevenbar.design.synthesis.path_figure import path_figure
+    from sevenbar.design.synthesis.path_report import as_json, head
+
+    def also(folder: Path) -> None:
+        (folder / "summary.json").write_text(as_json(task, found, *asked) + "\n", encoding="utf-8")
+        for i, candidate in enumerate(found, 1):
+            figure = path_figure(task, candidate)
+            for ending in endings:
+                plot.save(figure, folder / f"design_{i}.{ending}")
+
+    command = shlex.join(["sevenbar", *sys.argv[1:]])
+    return write(found, out, head(task, asked[0], command), also=also, force=force)
+
+
+def _where(name: str | None, link: int | None, at: str | None) -> Where:
+    """The point that was asked for."""
+    if name is not None:
+        if link is not None or at is not None:
+            raise RequestError("--point: a name or --link with --at, not both; give one of them")
+        return name
+    if link is None or at is None:
+        missing = "--point" if link is None and at is None else "--at" if at is None else "--link"
+        raise RequestError(f"{missing}: missing; give --point NAME, or --link with --at")
+    try:
+        place = tuple(float(word) for word in at.split(","))
+    except ValueError:
+        place = (math.nan,)
+    if len(place) != 3 or not all(map(math.isfinite, place)):
+        raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
+    return link, place
+
+
+def _bound(word: str) -> tuple[str, tuple[float, float]]:
+    """Name and bounds of words like "L1=100:400"."""
+    name, _, ends = word.partition("=")
+    low, _, high = ends.partition(":")
+    return name.strip(), _range(low, high, f"--bound: {shown(word)}", "L1=100:400")
+
+
+def _range(low: str, high: str, where: str, example: str) -> tuple[float, float]:
+    try:
+        return float(low), float(high)
+    except ValueError:
+        raise RequestError(f"{where} is not understood; give the two ends, as in {example}") from None
+
+
+def _limits(transmission: str | None, size: str | None, motion_type: str | None) -> Limits:
+    from sevenbar.design.synthesis.limits import Limits
+    from sevenbar.units import ANGLES, amount
+
+    angle = 0.0
+    if transmission is not None:
+        value = amount(transmission, ANGLES, "deg")
+        if value is None:
+            raise RequestError(f"--transmission: {shown(transmission)} is no angle; give one, as in 40deg")
+        angle = value
+    ends = None
+    if size is not None:
+        low, _, high = size.partition(":")
+        ends = _range(low, high, f"--size: {shown(size)}", "50:1000")
+    return Limits(angle, ends, motion_type)

@@ -1,0 +1,146 @@
+"""The point of a loop and its derivatives, beside the core's analysis of linkages written anew."""
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.synthesis.path_closure import PointClosure
+from sevenbar.design.synthesis.path_refine import PathProblem
+from sevenbar.design.synthesis.path_search import Seed
+from sevenbar.design.synthesis.path_task import path_task
+from sevenbar.draft import Draft
+
+#: Every form and every kind of joint: dimensions, rows, drawings; S S with its spin held, U, H, C, P.
+LINKAGES = (
+    "rssr",
+    "seven_r",
+    "spherical_4r",
+    "planar_4r",
+    "rscr",
+    "rsur",
+    "rssp",
+    "sarrus",
+    "screw_drill",
+    "six_bar",
+)
+
+#: Part of the size by which dimensions are changed for differences, and what these are good for.
+STEP, GOOD = 1e-4, 2e-6
+
+
+def drawn(name, link, at):
+    """A linkage of the gallery with a point, its closure, and one closed pose away from the drawn one."""
+    draft = Draft.of_linkage(sb.load(name)).with_point("Q", link, at)
+    point = draft.linkage.points[-1]
+    whole = PointClosure(draft, point)
+    closure = PointClosure(draft, point, range(len(whole.dimensions)))
+    circuit = draft.linkage.motion(12).circuits[0]
+    return draft, closure, circuit
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
+    for link in range(1, len(sb.load(name).links) + 1):
+        size = sb.load(name).motion(12).circuits[0].size
+        at = (0.3 * size, -0.2 * size, 0.15 * size)
+        _, closure, circuit = drawn(name, link, at)
+        rows = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
+        q = circuit.q[rows]
+        # some way off, and closed again
+        off = (
+            closure.poses(closure.start, q)
+            + 1e-3 * np.cos(np.arange(q.size)).reshape(q.shape) * closure.units
+        )
+        closed = closure.closed(closure.start, q[:, closure.input], off)
+        reached = closure.reached(closure.start, closed[np.isfinite(closed).all(axis=1)])
+        trace = circuit.point(link, at)
+        assert len(reached.position) == len(rows)
+        assert reached.position == pytest.approx(trace.position[rows], abs=1e-9 * size)
+        speed = circuit.dq[rows, closure.input, None]
+        velocity = trace.velocity[rows]
+        assert reached.by_input * speed == pytest.approx(velocity, abs=1e-8 * np.abs(velocity).max())
+
+
+@pytest.mark.parametrize(
+    ("name", "link"),
+    [("rssr", 2), ("seven_r", 4), ("planar_4r", 2), ("rsur", 2), ("rssp", 2), ("six_bar", 3)],
+)
+def test_derivatives_by_dimensions_are_those_of_linkages_written_with_other_dimensions(name, link):
+    size = sb.load(name).motion(12).circuits[0].size
+    draft, closure, circuit = drawn(name, link, (0.3 * size, -0.2 * size, 0.15 * size))
+    row = int(np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))[2])
+    pose = closure.poses(closure.start, circuit.q[row : row + 1])
+    x = pose[:, closure.input]
+    here = circuit.point(link, draft.linkage.points[-1].at).position[row]
+    assert closure.position(closure.start, pose)[0] == pytest.approx(here, abs=1e-9 * size)
+    exact = closure.reached(closure.start, pose).by_dimension[0]
+    opening = closure.openings(closure.start, pose)
+    compared = 0
+    for number, dimension in enumerate(closure.dimensions):
+        if number in opening or dimension.follows:
+            continue
+        step = (
+            STEP
+            * {"length": size, "pitch": size, "number": 1.0, "angle": 1 / dimension.scale}[dimension.kind]
+        )
+        sides = []
+        for way in (-2, -1, 1, 2):
+            changed = {dimension.name: dimension.value + way * step}
+            if name == "rssr":  # else the coupler follows the others
+                changed = {"L2": draft.dimension("L2").value} | changed
+            linkage = draft.with_values(changed).linkage
+            motion = linkage.motion(law=sb.Law.of([0.0], x, 1.0, 0.0))
+            point = linkage.points[-1]
+            places = np.concatenate([c.point(point.link, point.at).position for c in motion])
+            sides.append(places[np.linalg.norm(places - here, axis=1).argmin()])
+        a, b, c, d = sides
+        difference = (8 * (c - b) - (d - a)) / (12 * step)
+        most = np.abs(difference).max() + size * 1e-3
+        assert exact[:, number] == pytest.approx(difference, abs=GOOD * most), dimension.name
+        compared += 1
+    assert compared >= 6
+
+
+def rough(task, circuit, rows):
+    return PathProblem(
+        task, Seed(task.closure.start[list(task.varied)], circuit.input[rows], circuit.q[rows], 0.0), 1.0
+    )
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"place": True},
+        {"timing": True},
+        {"timing": True, "phase": True, "place": True},
+        {"limits": Limits(np.radians(30.0), None, "crank-rocker")},
+        {"limits": Limits(np.radians(30.0)), "timing": True, "phase": True},
+    ],
+)
+def test_the_gradient_of_the_sum_of_squares_is_that_of_differences(more):
+    draft = Draft.of_linkage(sb.load("rssr")).with_point("Q", 2, (300.0, 120.0, -80.0))
+    circuit = draft.linkage.motion(36).circuits[0]
+    rows = np.arange(3, 30, 3)
+    wanted = circuit.point(2, (280.0, 100.0, -40.0)).position[rows] + 7 * np.cos(np.arange(27)).reshape(9, 3)
+    more = dict(more)
+    if "timing" in more:
+        more["timing"] = circuit.input[rows]
+    task = path_task(draft, wanted, "Q", **more)
+    problem = rough(task, circuit, rows)
+    z = problem.start
+    gradient = problem.jacobian(z).T @ problem.residuals(z)
+    for k, scale in enumerate(problem.scales):
+        step = np.zeros(len(z))
+        step[k] = 1e-5 * scale
+        up, down = (float((problem.residuals(z + way * step) ** 2).sum() / 2) for way in (1, -1))
+        difference = (up - down) / (2e-5 * scale)
+        most = np.abs(gradient * problem.scales).max() / scale
+        assert gradient[k] == pytest.approx(difference, abs=1e-6 * most)
+
+
+def test_a_twist_of_a_planar_loop_opens_it_and_a_length_does_not():
+    _, closure, circuit = drawn("planar_4r", 2, (0.0, 1.0, 1.0))
+    names = {closure.dimensions[number].name for number in closure.openings(closure.start, circuit.q)}
+    assert names == {f"{key}_{link}" for key in ("offset", "twist") for link in (1, 2, 3, 4)}
