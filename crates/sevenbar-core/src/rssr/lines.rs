@@ -6,8 +6,8 @@
 //! `q (g2 - g1) = b`, `g1 g2 = (C + v)/2`. There is always such a root: the cubic is `-2 b^2` at -1 and `2 a^2` at 1. A line has
 //! two zeros where `|g| < 1`, `acos(-g)` to both sides of its own direction, and none where `|g| > 1`: so the two
 //! numbers count the limits. The root is sought by its distance w from an end, since p or q is the square root of half of it:
-//!
-//!     w^3 - (k + 3) w^2 + (a^2 + b^2 + 2 + 2 k) w - 2 t^2 = 0,   k = C, t = a at v = 1 - w;   k = -C, t = b at v = w - 1
+//! `w^3 - (k + 3) w^2 + (a^2 + b^2 + 2 + 2 k) w - 2 t^2 = 0`, with `k = C`, `t = a` at `v = 1 - w`, and with `k = -C`, `t = b` at
+//! `v = w - 1`.
 //!
 //! How far the product misses W is measured, not assumed, and set beside the margins on which the count and the
 //! zeros stand. A direction that does not stand clear is doubtful, and for the solver that counts by signs.
