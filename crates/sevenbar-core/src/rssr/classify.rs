@@ -30,7 +30,8 @@ const CHUNK: usize = 64 * BLOCK;
 /// A length below this share of the greatest dimension is left to the other solver, which knows when it is lost.
 const SHORT: f64 = 1e-10;
 
-/// The code of each linkage as of [`MotionType`], or [`INVALID`], and its input dead centres in [0, 2 pi), rising, NaN after the last.
+/// The motion type of each linkage as a number, or [`INVALID`], and its input dead centres in [0, 2 pi), rising, NaN after
+/// the last.
 ///
 /// `dimensions` are M, N, L1, L2, L3, D of the paper's square axes, in any unit of length. The answer for a linkage does not
 /// depend on the others, nor on the number of threads.
@@ -234,7 +235,7 @@ mod tests {
     /// Six columns: lengths uniform or over four decades, couplers short or not, M, N, D of either sign and often 0.
     fn columns(count: usize) -> Vec<Vec<f64>> {
         let mut random = Random(88_172_645_463_325_252);
-        let mut columns = vec![Vec::with_capacity(count); 6];
+        let mut columns = vec![Vec::new(); 6];
         for index in 0..count {
             for (k, column) in columns.iter_mut().enumerate() {
                 let spread = if index % 4 == 0 { 4.0 } else { 1.0 };

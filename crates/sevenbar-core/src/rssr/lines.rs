@@ -5,9 +5,9 @@
 //! `p^2 = (1 - v)/2`, `q^2 = (1 + v)/2` with a root v in [-1, 1] of a cubic, and `p (g1 + g2) = a`,
 //! `q (g2 - g1) = b`, `g1 g2 = (C + v)/2`. There is always such a root: the cubic is `-2 b^2` at -1 and `2 a^2` at 1. A line has
 //! two zeros where `|g| < 1`, `acos(-g)` to both sides of its own direction, and none where `|g| > 1`: so the two
-//! numbers count the limits. The root is sought by its distance w from the nearer end, since p or q is a root of that:
-//!
-//!     w^3 - (k + 3) w^2 + (a^2 + b^2 + 2 + 2 k) w - 2 t^2 = 0,   k = C, t = a at v = 1 - w;   k = -C, t = b at v = w - 1
+//! numbers count the limits. The root is sought by its distance w from an end, since p or q is the square root of half of it:
+//! `w^3 - (k + 3) w^2 + (a^2 + b^2 + 2 + 2 k) w - 2 t^2 = 0`, with `k = C`, `t = a` at `v = 1 - w`, and with `k = -C`, `t = b` at
+//! `v = w - 1`.
 //!
 //! How far the product misses W is measured, not assumed, and set beside the margins on which the count and the
 //! zeros stand. A direction that does not stand clear is doubtful, and for the solver that counts by signs.
@@ -32,7 +32,7 @@ pub(super) const ARC: f64 = 2.0;
 /// or of two.
 pub(super) const ARCS: f64 = 3.0;
 
-/// Halley steps for the root w. What has not converged by then is doubtful, and wants no more steps but more digits.
+/// Halley steps for the root w: of uniform dimensions one linkage in a thousand has not converged by then, and is doubtful.
 const STEPS: usize = 7;
 
 /// How far from 1 the number |g| of a line must be: two zeros, real or complex, are then 9e-3 rad apart, ten
@@ -241,17 +241,16 @@ impl Lines {
     ) {
         for (slot, lane) in limits.iter_mut().enumerate() {
             let (line, side) = (slot / 2, if slot % 2 == 0 { 1.0 } else { -1.0 });
-            for i in 0..BLOCK {
-                lane[i] = self.limit::<FUSED>(&Drive::new(dimensions, input, i), input, line, side, i);
+            for (i, limit) in lane.iter_mut().enumerate() {
+                *limit = self.limit::<FUSED>(&Drive::new(dimensions, input, i), input, line, side, i);
             }
         }
-        for (first, second) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
-            for i in 0..BLOCK {
-                let (a, b) = (limits[first][i], limits[second][i]);
-                limits[first][i] = if a < b { a } else { b };
-                limits[second][i] = if a < b { b } else { a };
-            }
-        }
+        let [a, b, c, d] = &mut *limits;
+        order(a, b);
+        order(c, d);
+        order(a, c);
+        order(b, d);
+        order(b, c);
         for lane in limits {
             for x in lane {
                 *x = if *x < f64::INFINITY { *x } else { f64::NAN };
@@ -300,11 +299,8 @@ impl Lines {
             );
         }
         let there = g.abs() < 1.0;
-        self.doubt[i] += if there & !(step.abs() <= SETTLED) {
-            1.0
-        } else {
-            0.0
-        };
+        let settled = step.abs() <= SETTLED;
+        self.doubt[i] += if there & !settled { 1.0 } else { 0.0 };
         let (s, c) = match input {
             Input::Crank => (s, c),
             Input::Rocker => (c, s),
@@ -313,6 +309,15 @@ impl Lines {
         let angle = if angle < 0.0 { angle + TAU } else { angle };
         let angle = if angle < TAU { angle } else { 0.0 };
         if there { angle } else { f64::INFINITY }
+    }
+}
+
+/// Exchanges numbers so that none of the first lane is greater than that of the second.
+#[inline(always)]
+fn order(first: &mut Lane, second: &mut Lane) {
+    for (x, y) in first.iter_mut().zip(second) {
+        let (a, b) = (*x, *y);
+        (*x, *y) = if a < b { (a, b) } else { (b, a) };
     }
 }
 
@@ -331,7 +336,7 @@ fn start<const FUSED: bool>(c: f64, a: f64, b: f64) -> f64 {
     let rising = linear > 0.0;
     let top = if rising { 4.0 * tt } else { root - linear };
     let w = top / if rising { linear + root } else { 2.0 * bend };
-    if (w >= 0.0) & (w <= 1.0) { w } else { 0.5 }
+    if (0.0..=1.0).contains(&w) { w } else { 0.5 }
 }
 
 /// A step of Halley's for the root w, or half the bracket where the step leaves it.
@@ -351,7 +356,7 @@ fn halley_step<const FUSED: bool>(cubic: &mut Cubic, i: usize) {
     cubic.high[i] = high;
 }
 
-/// `t^2` and the factors of `w^2` and `w` in the cubic of the nearer end.
+/// `t^2` and the factors of `w^2` and `w` in the cubic of the end that is sought from.
 #[inline(always)]
 fn powers<const FUSED: bool>(c: f64, a: f64, b: f64) -> (f64, f64, f64) {
     let (aa, bb) = (a * a, b * b);
@@ -370,7 +375,8 @@ fn zero_of_line<const FUSED: bool>(p: f64, q: f64, g: f64, side: f64) -> (f64, f
     )
 }
 
-/// True where the zeros of a line, if it has any, are clear of those of the other line, `p cos - q sin + other`, and of the error of W.
+/// True where the zeros of a line, if it has any, are clear of those of the other line, `p cos - q sin + other`, and of the
+/// error of W.
 #[inline(always)]
 fn zeros_stand<const FUSED: bool>(p: f64, q: f64, g: f64, other: f64, error: f64) -> bool {
     let steepness = ((1.0 - g) * (1.0 + g)).max(0.0).sqrt();
