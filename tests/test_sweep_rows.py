@@ -13,6 +13,10 @@ from sevenbar.draft import Draft
 from sevenbar.errors import RequestError
 from sevenbar.measures import MEASURES
 from sevenbar.sweep import grid, run, span
+from sevenbar.sweep.batches import batched
+from sevenbar.sweep.ordinary import analysed as analysed_by_themselves
+from sevenbar.sweep.plan import Plan
+from sevenbar.sweep.rows import part_table
 
 #: A crank too long, a drive that stands still, a linkage that cannot be assembled, crank-rockers, others.
 AXES = {"L1": [-1.0, 0.0, 1.0, 250.0, 400.0, 900.0], "L2": [20.0, 1000.0], "speed": [0.0, -10.0, 3.0]}
@@ -198,3 +202,44 @@ def test_totals_are_those_of_the_rows() -> None:
         frame["swing_deg"].min(), frame["swing_deg"].max(), frame["swing_deg"].count(),
     )  # fmt: skip
     assert extent.highest_at == frame["linkage"][frame["swing_deg"].idxmax()]
+
+
+@pytest.mark.parametrize("measures", [["motion_type", "limits"], ["motion_type", "circuits"], list(MEASURES)])
+@pytest.mark.parametrize("input", ["crank", "rocker"])
+def test_linkages_measured_all_at_once_have_the_rows_of_linkages_one_by_one(
+    measures: list[str], input: str
+) -> None:
+    places = {
+        "M": span(-900, 900),
+        "N": span(-900, 900),
+        "L1": span(-20, 900),
+        "L3": span(20, 900),
+        "D": span(-90, 90),
+    }
+    # the same lengths and offsets again and again make change points; some sizes are refused, some are lost
+    even = {
+        "M": [0.0, 300.0],
+        "L1": [0.0, 1e-120, 1e-40, 300.0, 600.0],
+        "L2": [300.0, 600.0, 1e101],
+        "D": [0.0, 300.0],
+    }
+    draft = Draft.of_linkage(sb.rssr(M=300, N=300, L1=300, L3=300, L2=300, speed=-3.0))
+    for linkage, axes, asked in (
+        (sb.load("rssr"), places, {"method": "random", "count": 250, "seed": 1}),
+        (draft, even, {}),
+    ):
+        plan = Plan.of(linkage, axes, measures, input=input, part_size=300, **asked)
+        found = part_table(plan, 0).to_pylist()
+        values = plan.space.values(0, plan.space.count)
+        assert len(batched(plan, values, 1)[1]) < plan.space.count
+        wanted = analysed_by_themselves(plan, values, 0, np.arange(plan.space.count))
+        assert [row["linkage"] for row in found] == wanted.linkage.tolist()
+        assert [row["status"] for row in found] == wanted.status.tolist()
+        for name, column in wanted.columns.items():
+            key = next(field for field in found[0] if field == name or field.startswith(f"{name}_"))
+            for row, value in zip(found, column.tolist(), strict=True):
+                if value is None or isinstance(value, str):
+                    assert row[key] == value
+                else:
+                    near = None if math.isnan(value) else pytest.approx(value, rel=1e-8, abs=1e-8)
+                    assert row[key] == near, (row["linkage"], name)

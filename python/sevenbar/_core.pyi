@@ -5,7 +5,16 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["CoreError", "Loop", "Rows", "Rssr", "__version__", "simd_level"]
+__all__ = [
+    "CoreError",
+    "Loop",
+    "Rows",
+    "Rssr",
+    "__version__",
+    "classify_rssr",
+    "measure_rssr",
+    "simd_level",
+]
 
 _Floats = npt.NDArray[np.float64]
 
@@ -65,4 +74,6 @@ class Rows:
 
     def point(self, link: int, at: _Floats) -> _Floats: ...
 
+def classify_rssr(dimensions: _Floats, input: str, threads: int) -> tuple[npt.NDArray[np.uint8], _Floats]: ...
+def measure_rssr(dimensions: _Floats, input: str, threads: int) -> dict[str, npt.NDArray[Any]]: ...
 def simd_level() -> str: ...

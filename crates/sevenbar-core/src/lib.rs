@@ -9,6 +9,7 @@ pub mod outcome;
 pub mod rigid;
 pub mod rssr;
 pub mod simd;
+pub mod sweep;
 pub mod taylor;
 mod trigonometric;
 mod twofold;

@@ -1,6 +1,7 @@
 //! The only crate that knows Python: arrays in, arrays out, the interpreter free while the core works.
 
 mod loops;
+mod sweep;
 
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -244,6 +245,7 @@ fn circuit_dict<'py>(py: Python<'py>, circuit: &Circuit, rows: &[Row]) -> PyResu
     result.set_item("transmission", extremes(circuit.transmission))?;
     result.set_item("velocity", circuit.velocity.map(extremes))?;
     result.set_item("acceleration", circuit.acceleration.map(extremes))?;
+    result.set_item("jerk", circuit.jerk.map(extremes))?;
     Ok(result)
 }
 
@@ -288,6 +290,8 @@ fn simd_level() -> &'static str {
 mod _core {
     #[pymodule_export]
     use super::loops::{Loop, Rows};
+    #[pymodule_export]
+    use super::sweep::{classify_rssr, measure_rssr};
     #[pymodule_export]
     use super::{CoreError, Rssr, simd_level};
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
+from sevenbar.sweep.block import OK
 from sevenbar.sweep.parts import part_name, parts_there, read_description
-from sevenbar.sweep.rows import OK, need_pyarrow
+from sevenbar.sweep.rows import need_pyarrow
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -117,6 +118,8 @@ class Sweep:
     @cached_property
     def totals(self) -> Totals:
         """Counts and ranges of all rows, read part by part."""
+        import pyarrow.compute as pc
+
         dimensions = {axis["column"] for axis in self.description["dimensions"]}
         linkages = rows = invalid = 0
         words: dict[str, Counter[str]] = {}
@@ -125,7 +128,7 @@ class Sweep:
             linkage = table["linkage"].to_numpy()
             firsts = np.flatnonzero(np.diff(linkage, prepend=-1))
             linkages, rows = linkages + len(firsts), rows + len(linkage)
-            ok = np.asarray(table["status"].to_numpy(zero_copy_only=False) == OK)
+            ok = pc.equal(table["status"], OK).to_numpy()
             invalid += int(np.count_nonzero(~ok[firsts]))
             for field in table.schema:
                 if field.name in {"linkage", "status", "circuit", *dimensions}:
@@ -134,8 +137,9 @@ class Sweep:
                     # a word of a circuit is counted by circuits, one of a linkage once
                     column = table[field.name]
                     counted = column if field.name == "circuit_type" else column.take(firsts)
-                    counts = Counter(word for word in counted.to_pylist() if word is not None)
-                    words.setdefault(field.name, Counter()).update(counts)
+                    counts = dict(zip(*counted.drop_null().value_counts().flatten(), strict=True))
+                    named = {word.as_py(): count.as_py() for word, count in counts.items()}
+                    words.setdefault(field.name, Counter()).update(named)
                 else:
                     numbers = table[field.name].to_numpy(zero_copy_only=False).astype(np.float64)
                     ranges[field.name] = _wider(ranges.get(field.name), numbers, linkage)

@@ -177,12 +177,13 @@ def _on_threads(plan: Plan, threads: int, parts: Iterable[int]) -> Generator[Mad
     here = maker()
     rest = iter(parts)
     at_once = min(threads, plan.parts)
+    each = threads // at_once
     flying: dict[Future[bytes], int] = {}
     with ThreadPoolExecutor(at_once, thread_name_prefix="sweep") as pool:
         try:
             while True:
                 for part in islice(rest, IN_FLIGHT * at_once - len(flying)):
-                    flying[pool.submit(part_bytes, plan, part)] = part
+                    flying[pool.submit(part_bytes, plan, part, each)] = part
                 if not flying:
                     return
                 finished, _ = wait(flying, return_when=FIRST_COMPLETED)

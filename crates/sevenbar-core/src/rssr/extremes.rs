@@ -21,16 +21,16 @@ pub struct Extreme {
 }
 
 /// The derivatives of the output by the input, from order 0.
-type Derivatives = [f64; 5];
+type Derivatives = [f64; 6];
 
-/// Lowest and highest first derivative, then lowest and highest second, on a branch without dead centres.
-pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 2] {
+/// Lowest and highest first derivative, then second, then third, on a branch without dead centres.
+pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 3] {
     let at = |input: f64| -> Derivatives {
-        pair.follower_taylor(Taylor::<5>::variable(input), branch)
-            .map_or([f64::NAN; 5], |x| std::array::from_fn(|k| x.derivative(k)))
+        pair.follower_taylor(Taylor::<6>::variable(input), branch)
+            .map_or([f64::NAN; 6], |x| std::array::from_fn(|k| x.derivative(k)))
     };
     let nodes: Vec<(f64, Derivatives)> = nodes(pair).into_iter().map(|input| (input, at(input))).collect();
-    [1, 2].map(|order| {
+    [1, 2, 3].map(|order| {
         let mut candidates = vec![(nodes[0].0, nodes[0].1[order])];
         for cell in nodes.windows(2) {
             for input in stationary(&at, cell[0], cell[1], order) {

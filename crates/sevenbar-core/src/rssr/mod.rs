@@ -7,17 +7,22 @@
 
 mod batch;
 mod circuits;
+mod classify;
 mod domain;
 mod extremes;
 mod frames;
+mod lines;
+mod measures;
 mod motion;
 mod pair;
 mod rates;
 
 pub use batch::{BatchRates, MAX_ORDER};
 pub use circuits::Row;
+pub use classify::{INVALID, MOST_LIMITS, classify};
 pub use domain::Extent;
 pub use extremes::Extreme;
+pub use measures::{CircuitMeasures, Ends, MotionMeasures, measure};
 pub use motion::{Circuit, Motion, MotionType};
 pub use pair::{Pair, Reach};
 
@@ -137,6 +142,29 @@ impl Rssr {
             }
         }
         Ok(Self { unit, crank, rocker, coupler, base, links, ground })
+    }
+
+    /// From M, N, L1, L2, L3, D of the paper's square axes: the crank about z at height N, the rocker about x at (M, D, 0).
+    ///
+    /// # Errors
+    /// As of [`Rssr::new`].
+    ///
+    /// Source: Sun and Zhou, Figure 2.
+    pub fn square([m, n, l1, l2, l3, d]: [f64; 6]) -> Result<Self, Error> {
+        let straight = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        // joint 4 turns the ground against the rocker, about -x
+        let towards_rocker = [[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let half_turn = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
+        let pose = |rotation, translation| Pose { rotation, translation };
+        Self::new(
+            pose(straight, [0.0, 0.0, n]),
+            pose(towards_rocker, [m, d, 0.0]),
+            [
+                pose(straight, [l1, 0.0, 0.0]),
+                pose(straight, [l2, 0.0, 0.0]),
+                pose(half_turn, [l3, 0.0, 0.0]),
+            ],
+        )
     }
 
     /// The lengths of crank, coupler and rocker.

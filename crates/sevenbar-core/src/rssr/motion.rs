@@ -7,21 +7,22 @@ use super::{Input, Rssr};
 use crate::outcome::{DeadCentre, DeadCentreKind};
 use std::f64::consts::TAU;
 
-/// What input and output can do.
+/// What input and output can do; as numbers they are the codes of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 pub enum MotionType {
     /// The input turns fully, the output rocks.
-    CrankRocker,
+    CrankRocker = 0,
     /// The input rocks, the output turns fully.
-    RockerCrank,
+    RockerCrank = 1,
     /// Both turn fully.
-    DoubleCrank,
+    DoubleCrank = 2,
     /// Both rock.
-    DoubleRocker,
+    DoubleRocker = 3,
     /// Two limits meet, or nearly do: the least change of a dimension decides.
-    ChangePoint,
+    ChangePoint = 4,
     /// No input closes the loop.
-    CannotAssemble,
+    CannotAssemble = 5,
 }
 
 impl MotionType {
@@ -62,6 +63,8 @@ pub struct Circuit {
     pub velocity: Option<[Extreme; 2]>,
     /// Lowest and highest second derivative of output by input.
     pub acceleration: Option<[Extreme; 2]>,
+    /// Lowest and highest third derivative of output by input.
+    pub jerk: Option<[Extreme; 2]>,
 }
 
 /// All circuits of a linkage for one choice of input.
@@ -111,6 +114,13 @@ impl Rssr {
         [self.pair(input), self.pair(output)]
     }
 
+    /// The motion type and the input dead centres alone.
+    pub(super) fn type_and_limits(&self, input: Input) -> (MotionType, Vec<f64>) {
+        let [forward, backward] = self.pairs(input);
+        let (inputs, outputs) = (Domain::new(&forward), Domain::new(&backward));
+        (Self::motion_type(&inputs, &outputs), inputs.limits)
+    }
+
     /// Every circuit, with its dead centres and measures.
     pub fn motion(&self, input: Input) -> Motion {
         let [forward, backward] = self.pairs(input);
@@ -150,6 +160,7 @@ impl Rssr {
                         transmission: transmission_extremes(&forward, *extent, first_branch),
                         velocity: None,
                         acceleration: None,
+                        jerk: None,
                     },
                 ));
             }
@@ -201,7 +212,8 @@ fn circuit(forward: &Pair, outputs: &Domain, mut circuit: Circuit) -> Circuit {
             });
         }
     } else if circuit.motion_type != MotionType::ChangePoint {
-        [circuit.velocity, circuit.acceleration] = rate_extremes(forward, circuit.first_branch).map(Some);
+        [circuit.velocity, circuit.acceleration, circuit.jerk] =
+            rate_extremes(forward, circuit.first_branch).map(Some);
     }
     circuit
 }

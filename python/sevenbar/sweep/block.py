@@ -1,0 +1,62 @@
+"""Rows of a part on their way into its table, and which columns they have."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.measures import Measure
+from sevenbar.motion import Integers
+from sevenbar.sweep.plan import Plan
+
+#: The status of a linkage that was measured.
+OK = "ok"
+
+#: What stands in `circuit` of a linkage that has none.
+NO_CIRCUIT = -1
+
+#: Limits of an RSSR's input: the zeros of a quartic.
+MOST_LIMITS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Rows of linkages, in any order: the linkage by its place in the part, its circuit, status and measures.
+
+    Numbers are floats (r,), NaN where there is none; words are objects (r,), `None` where there is none.
+    """
+
+    linkage: Integers
+    circuit: Integers
+    status: npt.NDArray[np.object_]
+    columns: dict[str, npt.NDArray[Any]]
+
+    @staticmethod
+    def joined(blocks: Sequence[Block]) -> Block:
+        """The rows of several blocks with the same columns, by linkage and circuit."""
+        linkage, circuit, status = (
+            np.concatenate([getattr(block, name) for block in blocks])
+            for name in ("linkage", "circuit", "status")
+        )
+        order = np.lexsort((circuit, linkage))
+        columns = {
+            name: np.concatenate([block.columns[name] for block in blocks])[order]
+            for name in blocks[0].columns
+        }
+        return Block(linkage[order], circuit[order], status[order], columns)
+
+
+def per_circuit(measures: tuple[Measure, ...]) -> bool:
+    """Whether a linkage has a row for each of its circuits."""
+    return any(measure.per == "circuit" for measure in measures)
+
+
+def limit_names(plan: Plan) -> tuple[str, ...]:
+    """Columns that hold the limits themselves, where those are asked for: of an RSSR at most four."""
+    if "limits" not in plan.measures or plan.draft.linkage.kind != "RSSR":
+        return ()
+    return tuple(f"limit_{place}" for place in range(1, MOST_LIMITS + 1))

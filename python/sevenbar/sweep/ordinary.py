@@ -1,0 +1,98 @@
+"""Linkages of a part analysed one by one, which any linkage and any measure can be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.draft import Draft
+from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.measures import Measure, rows_of
+from sevenbar.motion import Floats, Integers, Motion
+from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
+from sevenbar.sweep.plan import Plan
+
+#: Measures of a linkage or circuit, by name.
+Row = dict[str, float | int | str | None]
+
+
+def analysed(plan: Plan, values: Floats, first: int, which: Integers) -> Block:
+    """The rows of some linkages of a part: `values` (axes, n) of all, the first one's number, and which.
+
+    Raises `RequestError` for a function of the caller that does not take a motion.
+    """
+    measures = plan.measured
+    limits = limit_names(plan)
+    linkage: list[int] = []
+    status: list[str] = []
+    rows: list[Row] = []
+    for index in which:
+        told, found = OK, _nothing(measures)
+        try:
+            motion = _motion(plan, values[:, index])
+        except SevenbarError as error:
+            told = "; ".join(str(error).splitlines())
+        else:
+            found = list(_measured(motion, measures, first + int(index)))
+            inputs = np.degrees(motion.limits)
+            found = [row | dict(zip(limits, inputs, strict=False)) for row in found]
+        linkage += [int(index)] * len(found)
+        status += [told] * len(found)
+        rows += found
+    columns: dict[str, npt.NDArray[Any]] = {}
+    for measure in measures:
+        column = [row[measure.name] for row in rows]
+        columns[measure.name] = np.array(column, dtype=object if measure.quantity == "word" else np.float64)
+    for limit in limits:
+        columns[limit] = np.array([row.get(limit) for row in rows], dtype=np.float64)
+    circuit = [NO_CIRCUIT if row.get("circuit") is None else row["circuit"] for row in rows]
+    return Block(
+        np.array(linkage, dtype=np.int64),
+        np.array(circuit, dtype=np.int64),
+        np.array(status, dtype=object),
+        columns,
+    )
+
+
+def _nothing(measures: tuple[Measure, ...]) -> list[Row]:
+    row: Row = {"circuit": None, **{measure.name: None for measure in measures}}
+    return [row]
+
+
+def _motion(plan: Plan, values: Floats) -> Motion:
+    draft: Draft = plan.draft
+    for axis, value in zip(plan.space.axes, values, strict=True):
+        draft = draft.with_value(axis.dimension.place, draft.written(axis.dimension, float(value)))
+    return draft.linkage.motion(plan.samples, input=plan.input, output=plan.output)
+
+
+def _measured(motion: Motion, measures: tuple[Measure, ...], linkage: int) -> Iterator[Row]:
+    """The measures of a motion, those of a caller's functions looked at."""
+    try:
+        rows = rows_of(motion, measures)
+    except Exception:
+        for measure in measures:
+            _told_of(motion, measure, linkage)
+        raise
+    for row in rows:
+        for measure in measures:
+            value = row[measure.name]
+            fits = value is None or isinstance(value, int | float | np.number)
+            if measure.quantity != "word" and not fits:
+                told = f"{measure.name} gives {shown(value)} for linkage {linkage}"
+                raise RequestError(f"measure: {told}; give a number or None")
+        yield row
+
+
+def _told_of(motion: Motion, measure: Measure, linkage: int) -> None:
+    """Raises `RequestError` where a caller's function cannot take a motion."""
+    try:
+        rows_of(motion, [measure])
+    except Exception as error:
+        told = f"{type(error).__name__}: {error}".splitlines()[0]
+        raise RequestError(
+            f"measure: {measure.name} fails for linkage {linkage}: {told}; give a function of every Motion"
+        ) from None
