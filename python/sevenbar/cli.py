@@ -13,6 +13,7 @@ import typer.core
 
 import sevenbar as sb
 from sevenbar.design.command import design
+from sevenbar.design.maps.command import map_
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.export.command import export
 from sevenbar.folder import check_targets
@@ -237,6 +238,7 @@ def _points(
 
 for _command in (studio, compare, calibrate, simulate, export, sweep):
     app.command()(_command)
+app.command("map")(map_)
 app.add_typer(design)
 
 

@@ -1,0 +1,268 @@
+"""A map: the kinds of linkages over two dimensions, their boundaries and regions, and the design on it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
+from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions, within
+from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
+from sevenbar.design.maps.rssr_plane import RssrPlane
+from sevenbar.design.maps.window import Axis, Range, axes_of
+from sevenbar.draft import Draft
+from sevenbar.errors import RequestError, shown
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Floats, Integers, Motion
+
+#: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
+GRID, LOOP_GRID = 61, 25
+
+#: Fewest and most lines of a grid.
+GRID_ENDS = (3, 1001)
+
+#: Inputs in a turn: an RSSR's extremes do not depend on them, a loop's are refined from them.
+SAMPLES, LOOP_SAMPLES = 8, 72
+
+#: Squares along a range where boundaries are followed: an RSSR's, and a loop's, whose points are dear.
+FINE, LOOP_FINE = 800, 0
+
+#: How near chords keep to boundaries [share of the ranges]: a bend of half the window's radius at `FINE`.
+TOLERANCE, LOOP_TOLERANCE = 1e-6, 1e-3
+
+#: How exactly the design's distances are found [share of a range]: below what a drawing shows.
+EXACT = 1e-10
+
+
+@dataclass(frozen=True)
+class Step:
+    """How far the design is from a change along one dimension: the boundary's `value`, and the kind beyond.
+
+    `value` [the dimension's unit] is `None`, and so is `kind`, where no boundary is met inside the window.
+    """
+
+    axis: Axis
+    way: Literal["down", "up"]
+    value: float | None
+    kind: Kind | None
+
+
+@dataclass(frozen=True)
+class Design:
+    """The design as it is: its two dimensions [their units], its kind, and the nearest changes."""
+
+    x: float
+    y: float
+    inside: bool
+    kind: Kind
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """The kinds of linkages over two dimensions of a draft.
+
+    Boundaries and regions hold places (n, 2) in shares of the two ranges; `values` turns such into the
+    dimensions' units. `tolerance` [share] is how far lines may be from the true boundary; a region narrower
+    than `widest` [share] may be missing, in `open` of the area. `grid` (lines, lines) has the number of the
+    kind at each crossing of grid lines, y first.
+    """
+
+    draft: Draft
+    input: str
+    axes: tuple[Axis, Axis]
+    kinds: tuple[Kind, ...]
+    grid: Integers
+    boundaries: tuple[Boundary, ...]
+    regions: tuple[Region, ...]
+    design: Design
+    tolerance: float
+    widest: float
+    open: float
+    plane: Plane = field(repr=False)
+
+    @property
+    def linkage(self) -> Linkage:
+        """The design's linkage."""
+        return self.draft.linkage
+
+    def values(self, places: Floats) -> Floats:
+        """Places (n, 2) given in shares, in the dimensions' units."""
+        return np.column_stack([axis.value(p) for axis, p in zip(self.axes, places.T, strict=True)])
+
+    def shares_of(self, values: Floats) -> Floats:
+        """Places (n, 2) given in the dimensions' units, in shares."""
+        return np.column_stack([axis.share(v) for axis, v in zip(self.axes, values.T, strict=True)])
+
+    @cached_property
+    def areas(self) -> dict[Kind, float]:
+        """The share of the map's area that each kind has, the greatest first."""
+        found: dict[Kind, float] = {}
+        for region in self.regions:
+            kind = self.kinds[region.kind]
+            found[kind] = found.get(kind, 0.0) + region.area
+        return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+    def numbers_at(self, places: Floats) -> Integers:
+        """The number of the kind at places (n, 2) [shares] by the drawn regions; -1 outside."""
+        found = np.full(len(places), -1, dtype=np.int64)
+        for region in self.regions:
+            found[within([region.outline, *region.holes], places)] = region.kind
+        return found
+
+    def kind_at(self, x: float, y: float) -> Kind | None:
+        """The kind at values of the two dimensions [their units] by the drawn regions; `None` outside."""
+        number = int(self.numbers_at(self.shares_of(np.array([[x, y]], dtype=np.float64)))[0])
+        return self.kinds[number] if number >= 0 else None
+
+    def name(self, kind: Kind) -> str:
+        """A kind in words: its circuits are told where kinds on the map differ in them only."""
+        alike = {k.circuits for k in self.areas if k.motion_type == kind.motion_type}
+        return kind.told if len(alike | {kind.circuits}) > 1 else kind.motion_type
+
+
+def motion_map(
+    of: Linkage | Draft,
+    over: Mapping[str, Range],
+    *,
+    grid: int | None = None,
+    input: str | None = None,
+    progress: Progress | None = None,
+) -> Map:
+    """The motion types of a linkage over two of its dimensions, the first along x.
+
+    `over` has a range for each: two numbers in the file's unit, or a text as "20cm:40cm". Of an RSSR in the
+    paper's dimensions the boundaries do not depend on `grid`, the count of lines along each range; of other
+    loops, each point of which is a motion of its own, they are looked for between those lines. `input` is the
+    joint that drives, the file's by default; `progress` is told how many motions are done and in sight.
+
+    Raises `RequestError` for dimensions and ranges that do not fit.
+
+        >>> import sevenbar as sb
+        >>> found = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": (300, 800)})
+        >>> found.kind_at(250, 550)
+        Kind(motion_type='crank-rocker', circuits=2)
+    """
+    draft = Draft.of_linkage(of) if isinstance(of, Linkage) else of
+    axes = axes_of(draft, over)
+    linkage = draft.linkage
+    column = linkage.column(linkage.drive.joint if input is None else input, "input")
+    driver = linkage.columns[column]
+    places = {axis.dimension.place[0] for axis in axes}
+    plane: Plane
+    if "rssr" in draft.raw and places <= {"rssr", "drive", "point"}:
+        lines = _lines(grid, GRID)
+        scheme = _scheme(lines, FINE, TOLERANCE)
+        plane = RssrPlane(draft, axes, driver, SAMPLES, progress)
+    else:
+        lines = _lines(grid, LOOP_GRID)
+        scheme = _scheme(lines, LOOP_FINE, LOOP_TOLERANCE)
+        plane = LoopPlane(draft, axes, driver, LOOP_SAMPLES, progress)
+    # what is not covered is said of the design itself
+    motion = linkage.motion(SAMPLES, input=driver)
+    mesh = meshed(plane, scheme)
+    lines_between, parts = boundaries(mesh), regions(mesh)
+    return Map(
+        draft=draft,
+        input=driver,
+        axes=axes,
+        kinds=tuple(plane.kinds),
+        grid=_grid(mesh),
+        boundaries=lines_between,
+        regions=parts,
+        design=_design(plane, axes, motion, lines_between, scheme.tolerance),
+        tolerance=scheme.tolerance,
+        widest=mesh.widest,
+        open=mesh.open,
+        plane=plane,
+    )
+
+
+def _lines(grid: object, default: int) -> int:
+    """How many lines a grid has, once looked at."""
+    if grid is None:
+        return default
+    low, high = GRID_ENDS
+    if isinstance(grid, bool) or not isinstance(grid, (int, np.integer)) or not low <= grid <= high:
+        raise RequestError(f"grid: {shown(grid)} is not a count of lines; give {low} to {high}")
+    return int(grid)
+
+
+def _scheme(lines: int, fine: int, tolerance: float) -> Scheme:
+    cells = lines - 1
+    regular = max(0, int(np.ceil(np.log2(fine / cells)))) if fine > cells else 0
+    finest = max(regular, int(np.ceil(np.log2(1.0 / (tolerance * cells)))))
+    return Scheme(cells, regular, finest, tolerance)
+
+
+def _grid(mesh: Mesh) -> Integers:
+    width = 1 << mesh.scheme.finest
+    count = mesh.scheme.cells + 1
+    return np.array([[mesh.corners[x * width, y * width] for x in range(count)] for y in range(count)])
+
+
+def _design(
+    plane: Plane, axes: tuple[Axis, Axis], motion: Motion, lines: tuple[Boundary, ...], tolerance: float
+) -> Design:
+    values = [axis.dimension.value for axis in axes]
+    here = np.array([float(axis.share(value)) for axis, value in zip(axes, values, strict=True)])
+    inside = bool(((here >= 0) & (here <= 1)).all())
+    if motion.motion_type == "change-point":
+        kind = Kind("change-point", 0)
+    else:
+        kind = plane.kinds[int(plane.kinds_at(here[None, :])[0])]
+    steps: list[Step] = []
+    for place, axis in enumerate(axes) if inside else ():
+        crossings = _crossings(lines, here, place)
+        for way, sign in (("down", -1), ("up", 1)):
+            ahead = [
+                (sign * (at - here[place]), at, k) for at, *k in crossings if sign * (at - here[place]) > 0
+            ]
+            if not ahead:
+                steps.append(Step(axis, way, None, None))  # type: ignore[arg-type]
+                continue
+            _, at, (low, high) = min(ahead)
+            exact = _exact(plane, here, place, at, tolerance)
+            beyond = plane.kinds[high if sign > 0 else low]
+            steps.append(Step(axis, way, float(axis.value(exact)), beyond))  # type: ignore[arg-type]
+    return Design(values[0], values[1], inside, kind, tuple(steps))
+
+
+def _crossings(lines: tuple[Boundary, ...], here: Floats, place: int) -> list[tuple[float, int, int]]:
+    """Where the line through a place along one axis meets boundaries, and the kinds before and after."""
+    found = []
+    for line in lines:
+        start, end = line.places[:-1], line.places[1:]
+        away = start[:, 1 - place] - here[1 - place], end[:, 1 - place] - here[1 - place]
+        for i in np.flatnonzero((away[0] > 0) != (away[1] > 0)):
+            part = away[0][i] / (away[0][i] - away[1][i])
+            at = start[i, place] + part * (end[i, place] - start[i, place])
+            # going up along x a line that runs down has its left hand beyond, and along y the other way
+            beyond_left = (away[1][i] < 0) == (place == 0)
+            kinds = (line.right, line.left) if beyond_left else (line.left, line.right)
+            found.append((float(at), *kinds))
+    return found
+
+
+def _exact(plane: Plane, here: Floats, place: int, at: float, tolerance: float) -> float:
+    """The boundary near `at` along one axis, by halving; `at` itself where none is met."""
+    points = np.array([here, here])
+    points[:, place] = at - 2 * tolerance, at + 2 * tolerance
+    low, high = points[0, place], points[1, place]
+    first, second = plane.numbers_at(points).tolist()
+    if first == second:
+        return at
+    while high - low > EXACT:
+        middle = 0.5 * (low + high)
+        points[0, place] = middle
+        if not low < middle < high:
+            break
+        if int(plane.numbers_at(points[:1])[0]) == first:
+            low = middle
+        else:
+            high = middle
+    return float(0.5 * (low + high))

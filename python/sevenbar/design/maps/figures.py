@@ -1,0 +1,408 @@
+"""The map as a figure to pin to the wall: regions, boundaries, contours, the design and what changes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+
+from sevenbar.design.maps.atlas import Map
+from sevenbar.design.maps.heights import Heights
+from sevenbar.design.maps.outline import within
+from sevenbar.design.maps.plane import Kind
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.figure import STYLE, new_figure
+from sevenbar.motion import Floats
+from sevenbar.skeleton import short
+
+#: Sheets of paper, width and height [inch].
+SIZES = {"A4": (11.69, 8.27), "A3": (16.54, 11.69), "A2": (23.39, 16.54), "A1": (33.11, 23.39)}
+
+#: Letters and lines grow slower than the sheet: a wall map is read from nearer than its size.
+GROWTH = 0.8
+
+#: Fill and hatch of each motion type; the fills differ in lightness, so grey copies can be read.
+LOOKS: dict[str, tuple[str, str]] = {
+    "double-crank": ("#3f7f5a", ""),
+    "crank-rocker": ("#7fb0dc", ""),
+    "rocker-crank": ("#c4785f", ""),
+    "double-rocker": ("#f3e3ae", ""),
+    "cannot-assemble": ("#ffffff", "///"),
+    "invalid": ("#ffffff", "xxx"),
+    "change-point": ("#b0b0b0", "..."),
+}
+
+#: Fills of motion types that no table foresees, and of a type with other counts of circuits.
+OTHERS = ("#c7b8dd", "#e9c3d3", "#bfe0dc", "#d9d9d9", "#dfe3b4", "#b9bfd9")
+
+#: How much lighter each further count of circuits of one type is than the one before, or darker.
+SHADE = -0.16
+
+HATCH = "#c4c4c4"
+LINE = "#1c1c1c"
+CONTOUR = "#7a1f5c"
+MARK = "#c1121f"
+
+#: Places across a map where the name of a region is tried.
+RASTER = 160
+
+#: Height and width of a letter, in parts of the size of the font.
+LETTER = (1.35, 0.56)
+
+
+def sheet(size: str) -> tuple[float, float]:
+    """Width and height [inch] of a sheet of this name; raises `RequestError` for another."""
+    known = SIZES.get(size.strip().upper())
+    if known is None:
+        raise RequestError(
+            f"size: {shown(size)} is not a sheet; {suggestion(size, SIZES)}give one of {', '.join(SIZES)}"
+        )
+    return known
+
+
+def draw(of: Map, heights: Heights | None = None, *, size: str = "A4") -> Figure:
+    """The map on a sheet, with the contours of a measure where one is given."""
+    width, height = sheet(size)
+    scale = (width / SIZES["A4"][0]) ** GROWTH
+    with rc_context({**STYLE, "font.size": 9.5 * scale, "hatch.linewidth": 0.7 * scale}):
+        figure = new_figure(width, height)
+        margin = 0.62 * scale
+        wide = 2.75 * scale
+        axes = figure.add_axes(
+            (
+                (margin + 0.2 * scale) / width,
+                margin / height,
+                1 - (2 * margin + wide) / width,
+                1 - (1.45 * margin + 0.15 * scale) / height,
+            )
+        )
+        _fill(axes, of, scale, faint=heights is not None)
+        taken = np.zeros((RASTER, RASTER), dtype=bool)
+        _design(axes, of, scale, taken)
+        if heights is not None:
+            _contours(axes, heights, of, scale)
+        _names(axes, of, scale, taken, (width, height))
+        _frame(axes, of, scale)
+        _side(figure, axes, of, heights, scale)
+        _title(figure, axes, of, heights, scale)
+    return figure
+
+
+def look(of: Map, kind: Kind) -> dict[str, Any]:
+    """Fill and hatch of a kind on a map."""
+    types = list(dict.fromkeys(k.motion_type for k in of.areas))
+    if kind.motion_type in LOOKS:
+        fill, hatch = LOOKS[kind.motion_type]
+    else:
+        others = [t for t in types if t not in LOOKS]
+        fill, hatch = OTHERS[others.index(kind.motion_type) % len(OTHERS)], ""
+    counts = sorted(k.circuits for k in of.areas if k.motion_type == kind.motion_type)
+    place = counts.index(kind.circuits) if kind.circuits in counts else 0
+    return {"facecolor": _shaded(fill, place * SHADE), "edgecolor": HATCH, "hatch": hatch, "lw": 0.0}
+
+
+def _shaded(colour: str, by: float) -> tuple[float, ...]:
+    """A colour moved towards white, or for a number below 0 towards black."""
+    from matplotlib.colors import to_rgb
+
+    rgb = np.array(to_rgb(colour))
+    return tuple(float(c) for c in (rgb + (1 - rgb) * by if by > 0 else rgb * max(0.35, 1 + by)))
+
+
+def _fill(axes: Axes, of: Map, scale: float, *, faint: bool) -> None:
+    for region in of.regions:
+        path = Path.make_compound_path(*(_closed(of, loop) for loop in (region.outline, *region.holes)))
+        own = look(of, of.kinds[region.kind])
+        if faint:
+            own["facecolor"] = _shaded_rgb(own["facecolor"], 0.55)
+        axes.add_patch(PathPatch(path, zorder=1, **own))
+    for line in of.boundaries:
+        alike = of.kinds[line.left].motion_type == of.kinds[line.right].motion_type
+        style: dict[str, Any] = {"ls": (0, (4, 2)), "lw": 1.0 * scale} if alike else {"lw": 1.6 * scale}
+        axes.plot(*of.values(line.places).T, color=LINE, solid_capstyle="round", zorder=4, **style)
+
+
+def _shaded_rgb(rgb: Sequence[float], by: float) -> tuple[float, ...]:
+    return tuple(c + (1 - c) * by for c in rgb)
+
+
+def _closed(of: Map, loop: Floats) -> Path:
+    return Path(of.values(np.vstack([loop, loop[:1]])), closed=True)
+
+
+def _contours(axes: Axes, heights: Heights, of: Map, scale: float) -> None:
+    """Contour lines with their values written on them."""
+    if not heights.contours:
+        return
+    segments = [
+        [of.values(line.places) for line in heights.contours if line.level == level]
+        for level in heights.levels
+    ]
+    drawn = ContourSet(
+        axes, list(heights.levels), segments, colors=CONTOUR, linewidths=1.05 * scale, zorder=3
+    )
+    unit = _suffix(heights.unit)
+    labels = axes.clabel(drawn, fmt=lambda value: f"{value:g}{unit}", fontsize=7.5 * scale, inline=False)
+    for label in labels:
+        label.set_path_effects([withStroke(linewidth=2.6 * scale, foreground="white")])
+        label.set_zorder(5)
+        label.set_clip_on(True)
+
+
+def _unit(unit: str) -> str:
+    """A unit of a column's name as it is written."""
+    return unit.replace("_s3", "/s³").replace("_s2", "/s²").replace("_s", "/s")
+
+
+def _suffix(unit: str) -> str:
+    """A unit behind a number."""
+    return "°" if unit == "deg" else f" {_unit(unit)}" if unit else ""
+
+
+def _design(axes: Axes, of: Map, scale: float, taken: np.ndarray) -> None:
+    """The design, and arms from it to the boundaries that are nearest along each dimension."""
+    design = of.design
+    if not design.inside:
+        return
+    here = (design.x, design.y)
+    stroke: list[AbstractPathEffect] = [withStroke(linewidth=2.8 * scale, foreground="white")]
+    share = of.shares_of(np.array([here]))[0]
+    _take(taken, share, (0.03, 0.03))
+    for step in design.steps:
+        if step.value is None:
+            continue
+        place = of.axes.index(step.axis)
+        end = (step.value, here[1]) if place == 0 else (here[0], step.value)
+        axes.annotate(
+            "",
+            end,
+            here,
+            arrowprops={
+                "arrowstyle": "-|>",
+                "lw": 1.0 * scale,
+                "color": MARK,
+                "shrinkA": 0,
+                "shrinkB": 0,
+                "mutation_scale": 9 * scale,
+            },
+            zorder=6,
+        )
+        far = of.shares_of(np.array([end]))[0]
+        middle = 0.5 * (far + share)
+        reach = np.abs(far - share) / 2
+        _take(taken, middle, (reach[0] + 0.012, reach[1] + 0.012))
+        text = f"{step.value - here[place]:+.4g}"
+        if abs(far[place] - share[place]) < 0.07:
+            middle = far + (0.03 if step.way == "up" else -0.03) * np.eye(2)[place]
+        else:
+            middle = middle + 0.014 * np.eye(2)[1 - place]
+        x, y = of.values(middle[None, :])[0]
+        label = axes.text(
+            x,
+            y,
+            text,
+            color=MARK,
+            fontsize=8 * scale,
+            ha="center",
+            va="center" if place else "bottom",
+            rotation=90 * place,
+            zorder=7,
+            clip_on=True,
+        )
+        label.set_path_effects(stroke)
+        _take(taken, middle, (0.035, 0.02) if place == 0 else (0.02, 0.035))
+    axes.plot(*here, "o", ms=8.5 * scale, mfc="white", mec=MARK, mew=1.8 * scale, zorder=8)
+    axes.plot(*here, "o", ms=2.6 * scale, color=MARK, zorder=9)
+
+
+def _take(taken: np.ndarray, middle: Floats, half: Sequence[float]) -> None:
+    """Marks a box [shares] as taken, so that no name is written there."""
+    low = np.clip(((middle - half) * RASTER).astype(int), 0, RASTER)
+    high = np.clip(np.ceil((middle + half) * RASTER).astype(int), 0, RASTER)
+    taken[low[1] : high[1], low[0] : high[0]] = True
+
+
+def _names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[float, float]) -> None:
+    """Writes the name of each region where it fits, lying or standing, in the place with most room."""
+    ticks = (np.arange(RASTER) + 0.5) / RASTER
+    x, y = np.meshgrid(ticks, ticks)
+    numbers = np.full(x.size, -1)
+    places = np.column_stack([x.ravel(), y.ravel()])
+    for index, region in enumerate(of.regions):
+        numbers[within([region.outline, *region.holes], places)] = index
+    owner = numbers.reshape(RASTER, RASTER)
+    box = axes.get_position()
+    size = np.array([box.width * inches[0], box.height * inches[1]])
+    for index, region in enumerate(of.regions):
+        free = (owner == index) & ~taken
+        name = of.name(of.kinds[region.kind])
+        for points in (15.0, 12.0, 9.5):
+            letter = points * scale / 72
+            text = np.array([LETTER[1] * letter * len(name), LETTER[0] * letter])
+            found = None
+            for rotation, extent in ((0, text), (90, text[::-1])):
+                found = found or _room(free, extent / size, rotation)
+            if found:
+                (px, py), rotation = found
+                at = of.values(np.array([[px, py]]))[0]
+                label = axes.text(
+                    float(at[0]),
+                    float(at[1]),
+                    name,
+                    fontsize=points * scale,
+                    ha="center",
+                    va="center",
+                    rotation=rotation,
+                    zorder=7,
+                    color=LINE,
+                )
+                label.set_path_effects([withStroke(linewidth=3 * scale, foreground="#ffffffb0")])
+                break
+
+
+def _room(free: np.ndarray, extent: Floats, rotation: int) -> tuple[tuple[float, float], int] | None:
+    """The middle [shares] of the free box of this extent [shares] with most room round it, if any."""
+    best = None
+    for room in (2.4, 1.7, 1.25, 1.05):
+        w, h = np.maximum(1, np.ceil(extent * RASTER * np.array([1 + (room - 1) * 0.4, room]))).astype(int)
+        if w > RASTER or h > RASTER:
+            continue
+        total = np.zeros((RASTER + 1, RASTER + 1))
+        total[1:, 1:] = np.cumsum(np.cumsum(free, axis=0), axis=1)
+        inside = total[h:, w:] - total[:-h, w:] - total[h:, :-w] + total[:-h, :-w]
+        rows, columns = np.nonzero(inside == w * h)
+        if rows.size:
+            # of all places the one nearest to their middle
+            away = np.hypot(rows - rows.mean(), columns - columns.mean())
+            i = int(away.argmin())
+            best = ((columns[i] + w / 2) / RASTER, (rows[i] + h / 2) / RASTER)
+            break
+    return None if best is None else (best, rotation)
+
+
+def _frame(axes: Axes, of: Map, scale: float) -> None:
+    x, y = of.axes
+    axes.set_xlim(x.low, x.high)
+    axes.set_ylim(y.low, y.high)
+    axes.set_xlabel(x.label, fontsize=11 * scale)
+    axes.set_ylabel(y.label, fontsize=11 * scale)
+    axes.tick_params(direction="out", length=4 * scale, width=0.8 * scale, labelsize=9 * scale, zorder=10)
+    for spine in axes.spines.values():
+        spine.set_linewidth(1.0 * scale)
+        spine.set_zorder(10)
+    axes.grid(color="#00000018", lw=0.5 * scale, zorder=2)
+
+
+def _title(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: float) -> None:
+    what = "motion type" if heights is None else heights.measure.told
+    if heights is not None and heights.measure.per == "circuit":
+        what += (
+            f", circuit {heights.take}"
+            if isinstance(heights.take, int)
+            else f", {heights.take} of all circuits"
+        )
+    box = axes.get_position()
+    name = short(of.linkage.name, 60)
+    figure.text(box.x0, box.y1 + 0.012, f"{name}: {what}", fontsize=13 * scale, va="bottom", ha="left")
+
+
+def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: float) -> None:
+    """The key beside the map: kinds and their shares, lines, the design and what changes it."""
+    box = axes.get_position()
+    left = box.x1 + 0.18 * scale / figure.get_figwidth()
+    keys: list[Any] = []
+    for kind, share in of.areas.items():
+        own = look(of, kind)
+        if heights is not None:
+            own["facecolor"] = _shaded_rgb(own["facecolor"], 0.55)
+        own |= {"lw": 0.8 * scale}
+        patch = Patch(label=f"{of.name(kind)}  {_percent(share)}", **own)
+        keys.append(patch)
+    if heights is not None:
+        unit = f" [{_unit(heights.unit)}]" if heights.unit else ""
+        keys.append(Line2D([], [], color=CONTOUR, lw=1.05 * scale, label=f"{heights.measure.name}{unit}"))
+    keys.append(Line2D([], [], color=LINE, lw=1.6 * scale, label="motion type changes"))
+    if any(of.kinds[b.left].motion_type == of.kinds[b.right].motion_type for b in of.boundaries):
+        keys.append(Line2D([], [], color=LINE, lw=1.0 * scale, ls=(0, (4, 2)), label="circuits join or part"))
+    if of.design.inside:
+        keys.append(
+            Line2D(
+                [],
+                [],
+                color=MARK,
+                marker="o",
+                ls="",
+                ms=8 * scale,
+                mfc="white",
+                mew=1.6 * scale,
+                label="the design",
+            )
+        )
+    legend = figure.legend(
+        handles=keys,
+        loc="upper left",
+        bbox_to_anchor=(left, box.y1 + 0.008),
+        frameon=False,
+        fontsize=9.5 * scale,
+        handlelength=1.7,
+        handleheight=1.25,
+        labelspacing=0.55,
+        borderaxespad=0.0,
+    )
+    figure.canvas.draw()
+    below = legend.get_window_extent().transformed(figure.transFigure.inverted()).y0
+    figure.text(
+        left,
+        below - 0.03,
+        "\n".join(_told(of, heights)),
+        fontsize=8.8 * scale,
+        va="top",
+        ha="left",
+        linespacing=1.5,
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %" if share >= 5e-4 else "< 0.1 %"
+
+
+def _told(of: Map, heights: Heights | None) -> list[str]:
+    """The design and the fixed dimensions, line by line."""
+    design = of.design
+    x, y = of.axes
+    lines = [f"input: {short(of.input, 24)}", ""]
+    lines += [
+        "the design" + ("" if design.inside else " (outside the map)"),
+        f"{x.name} = {x.text(design.x)}",
+        f"{y.name} = {y.text(design.y)}",
+        of.name(design.kind),
+    ]
+    if heights is not None:
+        unit = _suffix(heights.unit)
+        value = "none" if heights.here is None else f"{heights.here:.5g}{unit}"
+        lines.append(f"{heights.measure.name} = {value}")
+    changes = [s for s in design.steps if s.value is not None and s.kind is not None]
+    if changes:
+        lines += ["", "changes at"]
+        lines += [
+            f"{s.axis.name} = {s.axis.text(float(s.value or 0.0))}: {of.name(s.kind or design.kind)}"
+            for s in changes
+        ]
+    moved = {axis.dimension.place for axis in of.axes}
+    others = [d for d in of.draft.dimensions if d.place not in moved and d.place[0] == "rssr"]
+    if others:
+        lines += ["", "held"]
+        lines += [
+            f"{d.name} " + ("follows from the others" if d.follows else f"= {d.value:g} {d.unit}")
+            for d in others
+        ]
+    return lines

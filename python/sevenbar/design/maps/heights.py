@@ -1,0 +1,297 @@
+"""A measure over a map: its values on the grid and along boundaries, and contour lines that cross none."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.design.maps.atlas import Map
+from sevenbar.design.maps.outline import joined, within
+from sevenbar.design.maps.plane import Take
+from sevenbar.errors import RequestError, shown
+from sevenbar.measures import MEASURES, Measure, measures_named
+from sevenbar.motion import Floats, Integers, Motion
+
+#: About how many contour lines are drawn where none are asked for.
+LEVELS = 9
+
+#: Where some values grow without bound, levels are taken between these percentiles.
+CUT = (2.0, 96.0)
+
+#: A contour's points are right to this share of the step between levels.
+EXACT = 1e-3
+
+#: Most values taken for one point of a contour: false position gains a digit or two with each.
+MOST_TRIES = 8
+
+#: Boundaries are sampled so many times in a cell of the grid, and so many times more in narrow places.
+ALONG, DENSER = 2, 8
+
+#: Rounds in which narrow places are given more samples.
+ROUNDS = 3
+
+#: How far inside their region samples of a boundary are taken [tolerances].
+INSIDE = 2.0
+
+#: A triangle lies in its region when points this far from its sides [parts of the way to its middle] do.
+SHRUNK = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """A line on which a measure has the value `level`: places (n, 2) [shares], within regions of one kind."""
+
+    level: float
+    kind: int
+    places: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Heights:
+    """A measure over a map.
+
+    `take` tells which circuit counts; `unit` is that of the values, "" without one. `nodes` (n, 2) [shares]
+    are the places where it was taken and `values` (n,) what was found, NaN where there is none; `here` is
+    the design's.
+    """
+
+    measure: Measure
+    take: Take
+    unit: str
+    levels: tuple[float, ...]
+    contours: tuple[Contour, ...]
+    nodes: Floats
+    values: Floats
+    here: float | None
+
+
+def measure_heights(
+    of: Map,
+    measures: Iterable[str | Measure | Callable[[Motion], float]],
+    *,
+    take: Take = "highest",
+    levels: Sequence[float] | None = None,
+) -> tuple[Heights, ...]:
+    """Measures over a map, each with contour lines at `levels`, round ones by default.
+
+    Of measures of circuits the "highest" or the "lowest" value of all circuits is taken, or that of the
+    circuit of an index. Raises `RequestError` for measures that are words or counts, and for levels that are
+    no numbers.
+    """
+    chosen = measures_named(measures)
+    for measure in chosen:
+        if measure.quantity in ("word", "count"):
+            numbers = [m.name for m in MEASURES.values() if m.quantity not in ("word", "count")]
+            raise RequestError(
+                f"measure: {measure.name} is a {measure.quantity}, which has no contours; "
+                f"give some of {', '.join(numbers)}"
+            )
+    _check_take(take)
+    wanted = None if levels is None else _levels(levels)
+    nodes, kinds, triangles = _net(of)
+    table = of.plane.values_at(nodes, chosen, take)
+    (own,) = of.plane.values_at(of.shares_of(np.array([[of.design.x, of.design.y]])), chosen, take)
+    linkage = of.linkage
+    output = linkage.columns[linkage.other_column(linkage.columns.index(of.input))]
+    found = []
+    for measure, values, here in zip(chosen, table.T, own.tolist(), strict=True):
+        steps = wanted if wanted is not None else _round_levels(values)
+        contours = tuple(_contours(of, measure, take, steps, nodes, values, kinds, triangles))
+        found.append(
+            Heights(
+                measure,
+                take,
+                measure.unit(linkage, output),
+                tuple(steps),
+                contours,
+                nodes,
+                values,
+                None if math.isnan(here) else here,
+            )
+        )
+    return tuple(found)
+
+
+def _check_take(take: object) -> None:
+    counts = isinstance(take, (int, np.integer)) and not isinstance(take, bool) and take >= 0
+    if take not in ("highest", "lowest") and not counts:
+        raise RequestError(
+            f"take: {shown(take)} is not offered; give highest, lowest, or the index of a circuit, from 0"
+        )
+
+
+def _levels(levels: Sequence[float]) -> list[float]:
+    try:
+        values = sorted({float(level) for level in levels})
+    except (TypeError, ValueError):
+        raise RequestError(f"levels: {shown(levels)} are not numbers; give some, as in 20,40,60") from None
+    if not values or not all(map(math.isfinite, values)):
+        raise RequestError(f"levels: {shown(levels)} are not finite numbers; give some, as in 20,40,60")
+    return values
+
+
+def _round_levels(values: Floats) -> list[float]:
+    from matplotlib.ticker import MaxNLocator
+
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return []
+    low, high = np.percentile(finite, CUT)
+    ticks = MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+    return [float(tick) for tick in ticks if finite.min() < tick < finite.max()]
+
+
+def _net(of: Map) -> tuple[Floats, Integers, Integers]:
+    """Places [shares], their kinds, and triangles between places of one kind that cross no boundary."""
+    lines = len(of.grid)
+    ticks = np.linspace(0.0, 1.0, lines)
+    x, y = np.meshgrid(ticks, ticks)
+    crossings, numbers = np.column_stack([x.ravel(), y.ravel()]), of.grid.ravel()
+    nodes, kinds, triangles = [], [], []
+    count = 0
+    for kind in range(len(of.kinds)):
+        loops = [
+            loop for region in of.regions if region.kind == kind for loop in (region.outline, *region.holes)
+        ]
+        if not loops or not of.kinds[kind].circuits:
+            continue
+        own, corners = _triangles(of, kind, loops, crossings[numbers == kind], 1.0 / (ALONG * (lines - 1)))
+        nodes.append(own)
+        kinds.append(np.full(len(own), kind))
+        triangles.append(corners + count)
+        count += len(own)
+    if not nodes:
+        return np.empty((0, 2)), np.empty(0, dtype=np.int64), np.empty((0, 3), dtype=np.int64)
+    return np.concatenate(nodes), np.concatenate(kinds), np.concatenate(triangles)
+
+
+def _triangles(
+    of: Map, kind: int, loops: Sequence[Floats], inner: Floats, step: float
+) -> tuple[Floats, Integers]:
+    """Triangles between places of one kind, given ones and others along the boundary, and those places."""
+    from matplotlib.tri import Triangulation
+
+    parts = [_beside(loop, step / DENSER, INSIDE * of.tolerance) for loop in loops]
+    chosen = np.concatenate([np.arange(len(part)) % DENSER == 0 for part in parts])
+    beside = np.concatenate(parts)
+    right = of.plane.kinds_at(beside) == kind
+    beside, chosen = beside[right], chosen[right]
+    own, corners = np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
+    for _ in range(ROUNDS):
+        own = np.unique(np.concatenate([inner, beside[chosen]]), axis=0)
+        if len(own) < 3 or np.linalg.matrix_rank(own - own[0], tol=of.tolerance) < 2:
+            return np.empty((0, 2)), np.empty((0, 3), dtype=np.int64)
+        corners = Triangulation(*own.T).triangles.astype(np.int64)
+        (ax, ay), (bx, by) = ((own[corners[:, i]] - own[corners[:, 0]]).T for i in (1, 2))
+        clockwise = ax * by < bx * ay
+        corners[clockwise] = corners[clockwise][:, ::-1]
+        middle = own[corners].mean(axis=1)
+        tests = [within(loops, middle)]
+        for a, b in ((0, 1), (1, 2), (2, 0)):
+            side = own[corners[:, [a, b]]].mean(axis=1)
+            tests.append(within(loops, side + SHRUNK * (middle - side)))
+        inside = np.all(tests, axis=0)
+        crossing = own[corners[np.any(tests, axis=0) & ~inside]]
+        corners = corners[inside]
+        low, high = crossing.min(axis=1, initial=1.0), crossing.max(axis=1, initial=0.0)
+        new = np.zeros(len(beside), dtype=bool)
+        for a, b in zip(low, high, strict=True):
+            new |= ((beside >= a) & (beside <= b)).all(axis=1)
+        if not (new & ~chosen).any():
+            break
+        chosen |= new
+    return own, corners
+
+
+def _beside(loop: Floats, step: float, inside: float) -> Floats:
+    """Places along a closed loop (n, 2), a little to its left, not farther apart than `step`."""
+    start, end = loop, np.roll(loop, -1, axis=0)
+    along = end - start
+    length = np.hypot(*along.T)
+    keep = length > 0
+    start, along, length = start[keep], along[keep], length[keep]
+    distance = np.concatenate([[0.0], np.cumsum(length)])
+    wanted = np.linspace(0.0, distance[-1], max(8, int(np.ceil(distance[-1] / step))), endpoint=False)
+    piece = np.clip(np.searchsorted(distance, wanted, side="right") - 1, 0, len(length) - 1)
+    part = (wanted - distance[piece]) / length[piece]
+    left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None]
+    places: Floats = np.clip(start[piece] + part[:, None] * along[piece] + inside * left[piece], 0.0, 1.0)
+    return places
+
+
+def _contours(
+    of: Map,
+    measure: Measure,
+    take: Take,
+    levels: Sequence[float],
+    nodes: Floats,
+    values: Floats,
+    kinds: Integers,
+    triangles: Integers,
+) -> Iterable[Contour]:
+    """The contour lines of a measure over triangles, each point brought to its level by false position."""
+    whole = triangles[np.isfinite(values[triangles]).all(axis=1)]
+    spacing = min(np.diff(levels), default=abs(levels[0]) if levels else 1.0) or 1.0
+    for level in levels:
+        high = values >= level
+        pieces: dict[int, list[tuple[tuple[int, int], tuple[int, int]]]] = defaultdict(list)
+        mixed = whole[(high[whole].sum(axis=1) % 3) > 0]
+        for corners in mixed.tolist():
+            # the corner that stands alone, and the other two, anticlockwise
+            alone = next(i for i in range(3) if high[corners[i - 1]] == high[corners[i - 2]])
+            a, b, c = corners[alone], corners[alone - 2], corners[alone - 1]
+            first, second = (min(a, b), max(a, b)), (min(a, c), max(a, c))
+            # what is higher stays on the left
+            pieces[int(kinds[a])].append((first, second) if high[a] else (second, first))
+        edges = sorted({edge for own in pieces.values() for piece in own for edge in piece})
+        places = dict(
+            zip(edges, _crossed(of, measure, take, level, spacing, nodes, values, edges), strict=True)
+        )
+        for kind, own in sorted(pieces.items()):
+            for line in joined(own):
+                yield Contour(level, kind, np.array([places[edge] for edge in line]))
+
+
+def _crossed(
+    of: Map,
+    measure: Measure,
+    take: Take,
+    level: float,
+    spacing: float,
+    nodes: Floats,
+    values: Floats,
+    edges: Sequence[tuple[int, int]],
+) -> Floats:
+    """Where edges between nodes cross a level (n, 2): false position with the Illinois rule."""
+    if not edges:
+        return np.empty((0, 2))
+    ends = np.array(edges)
+    start, along = nodes[ends[:, 0]], nodes[ends[:, 1]] - nodes[ends[:, 0]]
+    low, high = np.zeros(len(ends)), np.ones(len(ends))
+    below, above = values[ends[:, 0]] - level, values[ends[:, 1]] - level
+    part = low - below * (high - low) / (above - below)
+    open_ = np.arange(len(ends))
+    before = np.zeros(len(ends), dtype=np.int64)
+    for _ in range(MOST_TRIES):
+        if not open_.size:
+            break
+        rest = (
+            of.plane.values_at(start[open_] + part[open_, None] * along[open_], [measure], take)[:, 0] - level
+        )
+        # without a value there is nothing to gain
+        open_, rest = open_[np.abs(rest) > EXACT * spacing], rest[np.abs(rest) > EXACT * spacing]
+        same = (rest > 0) == (below[open_] > 0)
+        low[open_] = np.where(same, part[open_], low[open_])
+        high[open_] = np.where(same, high[open_], part[open_])
+        side = np.where(same, 1, -1)
+        slower = np.where(side == before[open_], 0.5, 1.0)
+        before[open_] = side
+        above[open_] = np.where(same, slower * above[open_], rest)
+        below[open_] = np.where(same, rest, slower * below[open_])
+        part[open_] = low[open_] - below[open_] * (high - low)[open_] / (above - below)[open_]
+    places: Floats = start + part[:, None] * along
+    return places

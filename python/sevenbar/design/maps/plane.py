@@ -1,0 +1,152 @@
+"""What stands at a point of a map: the motion type and number of circuits, and measures of the motion."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from sevenbar.design.maps.window import Axis
+from sevenbar.draft import Draft
+from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
+from sevenbar.measures import Measure, rows_of
+from sevenbar.motion import Floats, Integers, Motion
+
+#: Counts the motions that were solved, and those in sight.
+Progress = Callable[[int, int], None]
+
+#: Which circuit's value counts where a linkage has several: the best one, or that of an index.
+Take = Literal["highest", "lowest"] | int
+
+#: The type of a point that describes no linkage.
+UNMADE = "invalid"
+
+#: Types that may be met on a boundary only; such points take the type that stands a little beside them.
+DOUBTFUL = ("change-point", "mixed", "two-inputs")
+
+#: The ways beside: one for all, so that a line through many points has one side, and one across it where the
+#: line itself runs that way.
+ASIDE, ACROSS = (1.0, 0.7), (0.7, -1.0)
+
+
+@dataclass(frozen=True, order=True)
+class Kind:
+    """What a linkage can do: its motion type, and in how many circuits."""
+
+    motion_type: str
+    circuits: int
+
+    @property
+    def told(self) -> str:
+        """Both in words."""
+        if self.circuits == 0:
+            return self.motion_type
+        return f"{self.motion_type}, {self.circuits} circuit{'s' * (self.circuits > 1)}"
+
+
+class Plane(ABC):
+    """What a map is drawn of; points are shares of both ranges, (n, 2).
+
+    `kinds` are those met so far, and the number of a kind is its place there.
+    """
+
+    #: Boundaries are halved down to this share of the ranges.
+    exact: float
+    #: How far beside a doubtful point is looked, one after the other [share of the ranges].
+    nudges: tuple[float, ...]
+
+    def __init__(
+        self, draft: Draft, axes: tuple[Axis, Axis], input: str, samples: int, progress: Progress | None
+    ) -> None:
+        self.draft, self.axes, self.input, self.samples = draft, axes, input, samples
+        self.kinds: list[Kind] = []
+        self._progress = progress
+        self._done = self._planned = 0
+
+    @abstractmethod
+    def numbers_at(self, points: Floats) -> Integers:
+        """The number of the kind at each point as it is, (n,)."""
+
+    def kinds_at(self, points: Floats) -> Integers:
+        """The number of the kind at each point, (n,); points on a boundary are looked at beside it."""
+        found = self.numbers_at(points)
+        ways = [(nudge, ASIDE) for nudge in self.nudges] + [(self.nudges[-1], ACROSS)]
+        for nudge, way in ways:
+            doubtful = np.isin(
+                found, [n for n, kind in enumerate(self.kinds) if kind.motion_type in DOUBTFUL]
+            )
+            if not doubtful.any():
+                break
+            found[doubtful] = self.numbers_at(points[doubtful] + nudge * np.array(way))
+        return found
+
+    def gaps(self, points: Floats, width: Floats) -> Floats | None:  # noqa: ARG002
+        """How far the middles of squares are from changes of the kind (n, m), NaN where there is none.
+
+        `width` (n,) is that of the squares; `None` where such distances are not known.
+        """
+        return None
+
+    def reach(self, width: Floats) -> Floats:
+        """How much a gap can change from the middle of squares of these widths to their corners, (n,)."""
+        return np.full(len(width), np.inf)
+
+    def values_at(self, points: Floats, measures: Sequence[Measure], take: Take) -> Floats:
+        """Measures at each point (n, measures), NaN where there is none."""
+        rows = [[value_of(motion, m, take) for m in measures] for motion in self.motions(points)]
+        return np.array(rows, dtype=np.float64).reshape(len(points), len(measures))
+
+    def number(self, kind: Kind) -> int:
+        """The number of a kind, new or met before."""
+        if kind not in self.kinds:
+            self.kinds.append(kind)
+        return self.kinds.index(kind)
+
+    def motions(self, points: Floats) -> list[Motion | None]:
+        """The motion at each point, `None` where there is none."""
+        self._planned = max(self._planned, self._done + len(points))
+        found: list[Motion | None] = []
+        for share in points:
+            values = {axis.name: float(axis.value(s)) for axis, s in zip(self.axes, share, strict=True)}
+            try:
+                linkage = self.draft.with_values(values).linkage
+                found.append(linkage.motion(self.samples, input=self.input))
+            except (DescriptionError, RequestError, NotCoveredError):
+                found.append(None)
+            self._done += 1
+            if self._progress is not None:
+                self._progress(self._done, self._planned)
+        return found
+
+
+def value_of(motion: Motion | None, measure: Measure, take: Take) -> float:
+    """The measure of a motion, of circuits as `take` tells; NaN where it has none."""
+    if motion is None:
+        return math.nan
+    rows = rows_of(motion, [measure])
+    if measure.per == "circuit" and isinstance(take, int):
+        rows = [row for row in rows if row["circuit"] == take]
+    found = [row[measure.name] for row in rows]
+    numbers = [float(v) for v in found if isinstance(v, (int, float)) and math.isfinite(v)]
+    if not numbers:
+        return math.nan
+    return min(numbers) if take == "lowest" else max(numbers)
+
+
+class LoopPlane(Plane):
+    """Any loop: every point is a motion of its own, and nothing is known between points."""
+
+    exact = 2.5e-4
+    nudges = (1e-5, 1e-4, 1e-3)
+
+    def numbers_at(self, points: Floats) -> Integers:
+        """The number of the kind at each point as it is, (n,)."""
+        kinds = [
+            Kind(UNMADE, 0) if motion is None else Kind(motion.motion_type, len(motion.circuits))
+            for motion in self.motions(points)
+        ]
+        return np.array([self.number(kind) for kind in kinds], dtype=np.int64)

@@ -1,0 +1,121 @@
+"""The window of a map: two dimensions of a description and the range of each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.draft import Dimension, Draft
+from sevenbar.errors import RequestError, shown
+from sevenbar.motion import Floats
+
+#: What a range looks like, for messages.
+EXAMPLE = "as in 'L1=100:400' or 'L1=10cm:40cm'"
+
+#: A range narrower than this share of its values is lost in their rounding.
+NARROWEST = 1e-9
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A dimension and its range, `low` < `high` [the dimension's unit]."""
+
+    dimension: Dimension
+    low: float
+    high: float
+
+    @property
+    def name(self) -> str:
+        """The dimension's name."""
+        return self.dimension.name
+
+    @property
+    def span(self) -> float:
+        """The length of the range [the dimension's unit]."""
+        return self.high - self.low
+
+    def value(self, share: Floats | float) -> Floats:
+        """Values at shares 0 to 1 of the range."""
+        return self.low + self.span * np.asarray(share, dtype=np.float64)
+
+    def share(self, value: Floats | float) -> Floats:
+        """Where values stand in the range, 0 at its low end and 1 at its high one."""
+        return (np.asarray(value, dtype=np.float64) - self.low) / self.span
+
+    @property
+    def label(self) -> str:
+        """Its name and unit, as on the axis of a figure."""
+        return f"{self.name} [{self.dimension.unit}]" if self.dimension.unit else self.name
+
+    def text(self, value: float, digits: int = 6) -> str:
+        """A value with its unit, for people."""
+        unit = f" {self.dimension.unit}" if self.dimension.unit else ""
+        return f"{value:.{digits}g}{unit}"
+
+
+Range = str | Sequence[float]
+
+
+def split_ranges(given: Sequence[str]) -> dict[str, str]:
+    """Ranges by dimension from words like 'L1=100:400'; raises `RequestError` for another form."""
+    ranges: dict[str, str] = {}
+    for word in given:
+        name, equals, span = (part.strip() for part in word.partition("="))
+        if not (name and equals and span):
+            raise RequestError(
+                f"over: {shown(word)} is not a range of a dimension; give NAME=LOW:HIGH, {EXAMPLE}"
+            )
+        if name in ranges:
+            raise RequestError(f"over: {shown(name)} is given twice; leave one out")
+        ranges[name] = span
+    return ranges
+
+
+def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[Axis, Axis]:
+    """The two axes of a map, the first along x.
+
+    `over` has a range for each of two dimensions of the draft: two numbers in the dimension's unit, or a text
+    LOW:HIGH with units. Raises `RequestError` for unknown names, and ranges that are empty, endless or not
+    allowed.
+    """
+    if len(over) != 2:
+        count = f"{len(over)} dimension{'s' * (len(over) != 1)}"
+        raise RequestError(
+            f"over: {count} given where a map has two; give a range for each of two, {EXAMPLE}"
+        )
+    first, second = (_axis(draft.dimension(name), span) for name, span in over.items())
+    if first.dimension.place == second.dimension.place:
+        raise RequestError(f"over: {first.name} is given twice under two names; give two dimensions")
+    return first, second
+
+
+def _axis(dimension: Dimension, given: Range) -> Axis:
+    where = f"over: {dimension.name}"
+    if isinstance(given, str):
+        ends = [part.strip() for part in given.split(":")]
+        if len(ends) != 2 or not all(ends):
+            raise RequestError(f"{where}: {shown(given)} is not a range; give LOW:HIGH, {EXAMPLE}")
+        low, high = (dimension.read(end) for end in ends)
+    else:
+        try:
+            low, high = (float(end) for end in given)
+        except (TypeError, ValueError):
+            raise RequestError(
+                f"{where}: {shown(given)} is not a range; give two numbers, as in (100, 400)"
+            ) from None
+    told = f"{low:g}:{high:g}"
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise RequestError(f"{where}: {told} has no finite ends; give two finite numbers")
+    if low >= high:
+        what = "is empty" if low == high else "goes down"
+        raise RequestError(f"{where}: {told} {what}; give LOW:HIGH with LOW < HIGH")
+    if high - low < NARROWEST * max(abs(low), abs(high)):
+        raise RequestError(
+            f"{where}: {low!r}:{high!r} is too narrow to tell its values apart; give a wider one"
+        )
+    if dimension.positive and low <= 0:
+        raise RequestError(f"{where}: {told} holds values that are no length; give a range above 0")
+    return Axis(dimension, low, high)
