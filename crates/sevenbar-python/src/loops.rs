@@ -225,6 +225,7 @@ impl Loop {
         let ends = |e: Option<[[f64; 2]; 2]>| e.map(|e| [(e[0][0], e[0][1]), (e[1][0], e[1][1])]);
         result.set_item("velocity", ends(circuit.extremes[0]))?;
         result.set_item("acceleration", ends(circuit.extremes[1]))?;
+        result.set_item("jerk", ends(circuit.extremes[2]))?;
         result.set_item("rows", Rows { owner: self.0.clone(), rows })?;
         Ok(result)
     }

@@ -3,10 +3,12 @@
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
+mod around;
 mod chain;
 mod circuits;
 mod curve;
 mod dense;
+mod extremes;
 mod lanes;
 mod many;
 mod modes;
@@ -20,6 +22,7 @@ mod starts;
 mod tests;
 mod walk;
 
+pub use extremes::Ends;
 pub use modes::Completeness;
 pub use motion::{Circuit, Found, Motion, Through};
 pub use reduce::{Idle, Kind};

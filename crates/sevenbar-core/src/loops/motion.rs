@@ -5,7 +5,9 @@ use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
 use super::circuits::{Passes, Row};
 use super::curve::{Curve, End, Node, combined};
 use super::dense::singular_values;
+use super::extremes::{Ends, is_on_grid, output_extremes, times_as_dense};
 use super::modes::{CLOSED, Completeness, ModeFinder, polish};
+use super::rates::ORDERS;
 use super::rows::Rows;
 use super::walk::Start;
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
@@ -28,9 +30,6 @@ const LOST: f64 = 1e6;
 
 /// How far a joint of a given pose [rad, or parts of the size] may be moved to close the loop.
 const PUT_RIGHT: f64 = 0.05;
-
-/// Rows in a turn from which extremes are bracketed.
-const LEAST_ROWS: usize = 180;
 
 /// How freely a loop moves, as found in its poses.
 #[derive(Clone, Debug)]
@@ -60,8 +59,8 @@ pub struct Circuit {
     pub output: Option<[f64; 2]>,
     /// In the order of the circuit.
     pub dead_centres: Vec<DeadCentre>,
-    /// Lowest and highest velocity and acceleration of the output at unit speed of the input, each with the input.
-    pub extremes: [Option<[[f64; 2]; 2]>; 2],
+    /// Lowest and highest velocity, acceleration and jerk of the output at unit speed of the input, each with the input.
+    pub extremes: [Option<Ends>; ORDERS],
 }
 
 /// What a loop does.
@@ -213,22 +212,21 @@ impl Loop {
         let closed = passes.curve.end == End::Closed;
         let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
         let rocks = passes.rocks() || !turning(a);
-        let mut rows = passes.rows(grid.0, grid.1);
-        if !rocks {
-            begin_at_zero(chain, &mut rows, a, &gained, grid.1);
-        }
-        let extremes = if rocks || !closed || law.is_some() {
-            [None, None]
+        let bounded = !rocks && closed && law.is_none();
+        let step = if bounded {
+            grid.1 / times_as_dense(grid.1)
         } else {
-            let dense;
-            let from = if rows.len() >= LEAST_ROWS {
-                &rows
-            } else {
-                dense = passes.rows(0.0, TAU / 360.0);
-                &dense
-            };
-            [1, 2].map(|order| output_extremes(passes, from, b, order, &gained))
+            grid.1
         };
+        let mut rows = passes.rows(grid.0, step);
+        if !rocks {
+            begin_at_zero(chain, &mut rows, a, &gained, step);
+        }
+        let mut extremes = [None; ORDERS];
+        if bounded {
+            extremes = output_extremes(passes, &rows, b, &gained);
+            rows.retain(|r| is_on_grid(r.at.values[a], grid));
+        }
         // whole turns that bring the first row into (-pi, pi]
         let mut shift = [0.0; COLUMNS];
         if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
@@ -352,11 +350,20 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
         }
         let count = if searched { SEARCHED_SEEDS } else { SEEDS };
         out.seeds = count;
-        for k in 0..count {
-            if first_only && !out.curves.is_empty() {
-                break;
+        if first_only {
+            for k in 0..count {
+                if out.curves.is_empty() {
+                    out.take(chain, &finder.at(TAU * k as f64 / count as f64), wished[0]);
+                }
             }
-            out.take(chain, &finder.at(TAU * k as f64 / count as f64), wished[0]);
+            continue;
+        }
+        for rough in finder.around(count) {
+            let new: Vec<Configuration> = rough
+                .into_iter()
+                .filter(|m| out.curves.iter().all(|c| !lies_on(chain, c, m)))
+                .collect();
+            out.take(chain, &finder.polished(&new), wished[0]);
         }
     }
     if out.seed_columns.is_empty() {
@@ -496,70 +503,4 @@ fn begin_at_zero(chain: &Chain, rows: &mut [Row], input: usize, gained: &Columns
         }
     }
     rows.rotate_left(first);
-}
-
-/// The lowest and highest rate of the output of an order, at zeros of the next order's, each with the input.
-fn output_extremes(
-    passes: &Passes,
-    rows: &[Row],
-    output: usize,
-    order: usize,
-    gained: &Columns,
-) -> Option<[[f64; 2]; 2]> {
-    let factorial = [1.0, 1.0, 2.0];
-    let rate = |row: &Row, n: usize| row.rates[n - 1][output] * factorial[n - 1];
-    if rows.iter().any(|r| r.status != RowStatus::Ok) {
-        return None;
-    }
-    let start = passes.passes[0].start;
-    let mut ends = [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]];
-    let mut look = |row: &Row| {
-        let (value, at) = (rate(row, order), row.at.values[passes.input]);
-        if value < ends[0][0] {
-            ends[0] = [value, at];
-        }
-        if value > ends[1][0] {
-            ends[1] = [value, at];
-        }
-    };
-    for (k, row) in rows.iter().enumerate() {
-        look(row);
-        let mut next = rows[(k + 1) % rows.len()];
-        if k + 1 == rows.len() {
-            for c in 0..COLUMNS {
-                next.at.values[c] += gained[c];
-            }
-        }
-        let (mut low, mut high) = (
-            (row.at.values[passes.input], rate(row, order + 1)),
-            (next.at.values[passes.input], rate(&next, order + 1)),
-        );
-        if low.1 * high.1 >= 0.0 {
-            continue;
-        }
-        for step in 0..40 {
-            let x = if step % 3 == 2 {
-                0.5 * (low.0 + high.0)
-            } else {
-                (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
-            };
-            let span = gained[passes.input];
-            let inside = start + (x - start).rem_euclid(span);
-            let Some(mut here) = passes.row(0, inside, &[1.0, 0.0, 0.0]) else {
-                break;
-            };
-            here.at.values[passes.input] = x;
-            look(&here);
-            let value = rate(&here, order + 1);
-            if value.abs() < 1e-13 || (high.0 - low.0).abs() < 1e-14 {
-                break;
-            }
-            if value * low.1 > 0.0 {
-                low = (x, value);
-            } else {
-                high = (x, value);
-            }
-        }
-    }
-    Some(ends)
 }
