@@ -1,6 +1,7 @@
 //! The only crate that knows Python: arrays in, arrays out, the interpreter free while the core works.
 
 mod loops;
+mod sweep_loops;
 
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -288,6 +289,8 @@ fn simd_level() -> &'static str {
 mod _core {
     #[pymodule_export]
     use super::loops::{Loop, Rows};
+    #[pymodule_export]
+    use super::sweep_loops::measure_loops;
     #[pymodule_export]
     use super::{CoreError, Rssr, simd_level};
 

@@ -11,9 +11,11 @@ mod dense;
 mod extremes;
 mod lanes;
 mod many;
+mod measures;
 mod modes;
 mod motion;
 mod paths;
+mod pieces;
 mod rates;
 mod reduce;
 mod rows;
@@ -23,6 +25,7 @@ mod tests;
 mod walk;
 
 pub use extremes::Ends;
+pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
 pub use motion::{Circuit, Found, Motion, Through};
 pub use reduce::{Idle, Kind};
@@ -105,6 +108,11 @@ impl Loop {
     /// Freedoms of the joints less the idle ones.
     pub fn freedoms(&self) -> usize {
         self.reduced.freedoms
+    }
+
+    /// Whether no more than one freedom can remain, so that one input may drive it.
+    pub fn can_be_driven(&self) -> bool {
+        self.reduced.chain.is_some()
     }
 
     /// The joint of a column.

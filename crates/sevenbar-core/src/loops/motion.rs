@@ -1,9 +1,9 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
 use super::Loop;
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
+use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
 use super::circuits::{Passes, Row};
-use super::curve::{Curve, End, Node, combined};
+use super::curve::{Curve, End, Node, combined, dot};
 use super::dense::singular_values;
 use super::extremes::{Ends, is_on_grid, output_extremes, times_as_dense};
 use super::modes::{CLOSED, Completeness, ModeFinder, polish};
@@ -18,6 +18,9 @@ const SEEDS: usize = 24;
 
 /// The same where modes are searched for.
 const SEARCHED_SEEDS: usize = 4;
+
+/// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be.
+const AHEAD: usize = 4;
 
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
@@ -76,6 +79,8 @@ pub struct Motion {
     pub seeds: usize,
     /// Modes at the seeds that run into a place where the motion is not smooth, or do not move.
     pub still: usize,
+    /// Modes at the input's value zero; `None` where that is no seed.
+    pub modes_at_zero: Option<usize>,
     /// The circuits.
     pub circuits: Vec<Circuit>,
     /// Whether some circuit has the input at rest.
@@ -103,6 +108,10 @@ struct Curves {
     seed_columns: Vec<usize>,
     seeds: usize,
     still: usize,
+    /// Modes at the zero of the first of the wished joints.
+    modes_at_zero: Option<usize>,
+    /// Curves through some of the modes to come.
+    ahead: Vec<Curve>,
 }
 
 impl Loop {
@@ -124,6 +133,7 @@ impl Loop {
                 seed_columns: Vec::new(),
                 seeds: 0,
                 still: 0,
+                modes_at_zero: None,
                 circuits: Vec::new(),
                 input_rests: false,
             });
@@ -151,6 +161,7 @@ impl Loop {
                 .collect(),
             seeds: curves.seeds,
             still: curves.still,
+            modes_at_zero: curves.modes_at_zero,
             circuits,
             input_rests,
         })
@@ -358,12 +369,18 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
             }
             continue;
         }
-        for rough in finder.around(count) {
-            let new: Vec<Configuration> = rough
-                .into_iter()
-                .filter(|m| out.curves.iter().all(|c| !lies_on(chain, c, m)))
-                .collect();
-            out.take(chain, &finder.polished(&new), wished[0]);
+        let rough = finder.around(count);
+        if seed == wished[0] {
+            out.modes_at_zero = Some(finder.polished(&rough[0]).len());
+        }
+        let places: Vec<Configuration> = rough
+            .iter()
+            .step_by(AHEAD)
+            .flat_map(|modes| finder.polished(&out.unknown(chain, modes)))
+            .collect();
+        out.ahead = chain.closed_curves(&places);
+        for modes in &rough {
+            out.take(chain, &finder.polished(&out.unknown(chain, modes)), wished[0]);
         }
     }
     if out.seed_columns.is_empty() {
@@ -387,14 +404,40 @@ impl Curves {
             seed_columns: Vec::new(),
             seeds: 0,
             still: 0,
+            modes_at_zero: None,
+            ahead: Vec::new(),
         }
+    }
+
+    /// Those modes that lie on no curve yet.
+    fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
+        let known = |m: &&Configuration| self.curves.iter().any(|c| lies_on(chain, c, m));
+        modes.iter().filter(|m| !known(m)).copied().collect()
+    }
+
+    /// The curve ahead on which a mode lies, if there is one, in this direction there.
+    fn from_ahead(&mut self, chain: &Chain, (mode, direction): &Start) -> Option<Curve> {
+        let (k, node) = self
+            .ahead
+            .iter()
+            .enumerate()
+            .find_map(|(k, c)| Some((k, place_on(chain, c, mode)?)))?;
+        let backwards = dot(&node.rates[0], direction) < 0.0;
+        let curve = self.ahead.swap_remove(k);
+        Some(if backwards {
+            chain.turned_round(&curve)
+        } else {
+            curve
+        })
     }
 
     /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
     fn take(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
         let mut starts: Vec<Start> = Vec::new();
+        let mut curves: Vec<Option<Curve>> = Vec::new();
         for mode in modes {
-            if self.curves.iter().any(|c| lies_on(chain, c, mode)) {
+            let known = |c: &Curve| lies_on(chain, c, mode);
+            if self.curves.iter().any(known) || curves.iter().flatten().any(known) {
                 continue;
             }
             let columns = chain.screws(mode);
@@ -421,9 +464,20 @@ impl Curves {
                 direction = direction.map(|d| -d);
             }
             starts.push((*mode, direction));
+            curves.push(self.from_ahead(chain, &(*mode, direction)));
         }
+        let left: Vec<Start> = starts
+            .iter()
+            .zip(&curves)
+            .filter(|(_, c)| c.is_none())
+            .map(|(s, _)| *s)
+            .collect();
+        let mut followed = chain.follow(&left).into_iter();
         let before = self.curves.len();
-        for (curve, start) in chain.follow(&starts).into_iter().zip(&starts) {
+        for (curve, start) in curves.into_iter().zip(&starts) {
+            let Some(curve) = curve.or_else(|| followed.next()) else {
+                unreachable!()
+            };
             // two modes may lie on one circuit
             if self.curves[before..].iter().any(|c| lies_on(chain, c, &start.0)) {
                 continue;
@@ -457,17 +511,15 @@ fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
 
 /// Whether a mode is a place of a curve.
 fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
-    // a scalar column tells most nodes apart at once
-    let probe = chain
-        .joints
+    place_on(chain, curve, mode).is_some()
+}
+
+/// The node of a curve from which a step leads over a mode.
+fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
+    curve
+        .nodes
         .iter()
-        .zip(&chain.first)
-        .find(|(j, _)| **j == Joint::Turn)
-        .map(|(_, &c)| c);
-    curve.nodes.iter().any(|node| {
-        probe.is_none_or(|c| short_way(mode.values[c] - node.at.values[c]).abs() <= 2.0 * node.step)
-            && chain.passes_through(node, mode).is_some()
-    })
+        .find(|node| chain.may_pass(node, mode) && chain.passes_through(node, mode).is_some())
 }
 
 /// Origin and step of the inputs of rows.
