@@ -386,7 +386,7 @@ def circuit_from(
     if law is None:
         velocity = scaled_extremes(raw["velocity"], speed)
         acceleration = scaled_extremes(raw["acceleration"], speed * speed)
-        jerk = scaled_extremes(raw.get("jerk"), speed**3)
+        jerk = scaled_extremes(raw["jerk"], speed**3)
     else:
         velocity = sampled_extremes(dq[:, output_column], inputs)
         acceleration = sampled_extremes(ddq[:, output_column], inputs)

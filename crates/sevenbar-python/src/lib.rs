@@ -2,6 +2,7 @@
 
 mod loops;
 mod sweep;
+mod sweep_loops;
 
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
@@ -292,6 +293,8 @@ mod _core {
     use super::loops::{Loop, Rows};
     #[pymodule_export]
     use super::sweep::{classify_rssr, measure_rssr};
+    #[pymodule_export]
+    use super::sweep_loops::measure_loops;
     #[pymodule_export]
     use super::{CoreError, Rssr, simd_level};
 

@@ -27,6 +27,23 @@ pub(crate) struct Rows {
     rows: loops::Rows,
 }
 
+/// Joints by their letters, screws with their advance for a radian.
+pub(crate) fn kinds(letters: &str, advances: &[f64]) -> PyResult<Vec<Kind>> {
+    letters
+        .chars()
+        .zip(advances)
+        .map(|(letter, &advance)| match letter {
+            'R' => Ok(Kind::Turn),
+            'P' => Ok(Kind::Slide),
+            'H' => Ok(Kind::Screw(advance)),
+            'S' => Ok(Kind::Ball),
+            other => Err(CoreError::new_err(format!(
+                "'{other}' is no joint; give R, P, H or S"
+            ))),
+        })
+        .collect()
+}
+
 type Modes<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, &'static str);
 
 fn no_input(column: usize) -> PyErr {
@@ -46,19 +63,7 @@ impl Loop {
         links: PyReadonlyArray3<'_, f64>,
     ) -> PyResult<Self> {
         let advances = flat("advances", &advances)?;
-        let kinds = letters
-            .chars()
-            .zip(advances)
-            .map(|(letter, &advance)| match letter {
-                'R' => Ok(Kind::Turn),
-                'P' => Ok(Kind::Slide),
-                'H' => Ok(Kind::Screw(advance)),
-                'S' => Ok(Kind::Ball),
-                other => Err(CoreError::new_err(format!(
-                    "'{other}' is no joint; give R, P, H or S"
-                ))),
-            })
-            .collect::<PyResult<Vec<Kind>>>()?;
+        let kinds = kinds(letters, advances)?;
         let (base, ground, links) = (base.as_array(), ground.as_array(), links.as_array());
         let right = base.shape() == [4, 4]
             && ground.shape() == [4, 4]
@@ -225,6 +230,7 @@ impl Loop {
         let ends = |e: Option<[[f64; 2]; 2]>| e.map(|e| [(e[0][0], e[0][1]), (e[1][0], e[1][1])]);
         result.set_item("velocity", ends(circuit.extremes[0]))?;
         result.set_item("acceleration", ends(circuit.extremes[1]))?;
+        result.set_item("jerk", ends(circuit.extremes[2]))?;
         result.set_item("rows", Rows { owner: self.0.clone(), rows })?;
         Ok(result)
     }

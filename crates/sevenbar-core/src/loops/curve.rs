@@ -17,7 +17,7 @@
 //! is looked at in every node. A ball's three columns are the vector of its turn.
 
 use super::chain::{
-    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Twist, cross, squared_up, twist_of,
+    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Twist, cross, short_way, squared_up, twist_of,
 };
 use super::dense::{Factored, Inverse, ROWS};
 use super::rates::Rates;
@@ -380,6 +380,35 @@ impl Chain {
         let off = length(&self.difference(&start, &at));
         let node = self.stand(&at, &from.rates[0]).node;
         (off <= self.tube(from, s) && node.inverse_norm.is_finite()).then_some(node)
+    }
+
+    /// Whether the turns of a configuration are near enough for [`Self::passes_through`]: it tells most nodes apart at once.
+    pub fn may_pass(&self, node: &Node, at: &Configuration) -> bool {
+        self.joints.iter().zip(&self.first).all(|(joint, &c)| {
+            *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= 2.0 * node.step
+        })
+    }
+
+    /// The same nodes in the other direction, if the argument holds for each step that way too.
+    pub fn reversed(&self, curve: &Curve) -> Option<Curve> {
+        let (first, last) = (&curve.nodes[0], curve.nodes.last()?);
+        let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
+        for node in &mut nodes {
+            for order in [0, 2] {
+                node.rates[order] = node.rates[order].map(|x| -x);
+            }
+            if curve.end == End::Closed {
+                for c in 0..COLUMNS {
+                    node.at.values[c] -= last.at.values[c] - first.at.values[c];
+                }
+            }
+        }
+        measure(self, &mut nodes);
+        let certain = |pair: &[Node]| self.passes_through(&pair[0], &pair[1].at).is_some();
+        nodes
+            .windows(2)
+            .all(certain)
+            .then_some(Curve { nodes, end: curve.end })
     }
 
     /// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.

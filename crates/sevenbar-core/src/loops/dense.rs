@@ -115,6 +115,54 @@ impl<N: Number> Inverse<N> {
     }
 }
 
+/// The direction that six rows of seven columns leave free, oriented so that it makes the determinant positive as a seventh
+/// row; none where a pivot is below this part of the greatest number. It changes continuously with the matrix.
+pub(super) fn free_direction(columns: &[[f64; 6]; COLUMNS], least_pivot: f64) -> Option<Columns> {
+    let mut a: [[f64; COLUMNS]; 6] = std::array::from_fn(|r| std::array::from_fn(|c| columns[c][r]));
+    let mut order: [usize; COLUMNS] = std::array::from_fn(|c| c);
+    let mut positive = true;
+    let mut greatest = 0.0;
+    for n in 0..6 {
+        let (mut row, mut column, mut size) = (n, n, -1.0);
+        for r in n..6 {
+            for c in n..COLUMNS {
+                if a[r][c].abs() > size {
+                    (row, column, size) = (r, c, a[r][c].abs());
+                }
+            }
+        }
+        greatest = f64::max(greatest, size);
+        // not a number is no pivot either
+        if !(size > least_pivot * greatest) {
+            return None;
+        }
+        a.swap(n, row);
+        order.swap(n, column);
+        for r in &mut a {
+            r.swap(n, column);
+        }
+        positive ^= (row != n) ^ (column != n) ^ (a[n][n] < 0.0);
+        for r in n + 1..6 {
+            let factor = a[r][n] / a[n][n];
+            for c in n..COLUMNS {
+                a[r][c] -= factor * a[n][c];
+            }
+        }
+    }
+    let mut free = [0.0; COLUMNS];
+    free[6] = if positive { 1.0 } else { -1.0 };
+    for n in (0..6).rev() {
+        let sum: f64 = (n + 1..COLUMNS).map(|c| a[n][c] * free[c]).sum();
+        free[n] = -sum / a[n][n];
+    }
+    let length = free.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let mut out = [0.0; COLUMNS];
+    for (place, x) in order.iter().zip(free) {
+        out[*place] = x / length;
+    }
+    Some(out)
+}
+
 #[inline(always)]
 fn reflect<N: Number>(v: &[N; ROWS], inverse: N, x: &mut [N; ROWS], from: usize) {
     let mut sum = N::splat(0.0);
@@ -190,6 +238,63 @@ mod tests {
                 assert!((got[c] - x[c]).abs() < 1e-11, "{got:?}");
             }
         }
+    }
+
+    #[test]
+    fn the_free_direction_is_the_oriented_one_of_the_minors() {
+        for seed in 0..50 {
+            let columns: [[f64; 6]; COLUMNS] = std::array::from_fn(|c| {
+                std::array::from_fn(|r| {
+                    ((1 + seed) as f64 * (3 * c + 7 * r * r + c * c * r + 1) as f64).sin()
+                })
+            });
+            let free = free_direction(&columns, 1e-9).unwrap();
+            // by Laplace along the seventh row
+            let minor = |left_out: usize| {
+                let kept: Vec<[f64; 6]> = (0..COLUMNS)
+                    .filter(|&c| c != left_out)
+                    .map(|c| columns[c])
+                    .collect();
+                determinant(kept)
+            };
+            let minors: Columns = std::array::from_fn(|c| if c % 2 == 0 { minor(c) } else { -minor(c) });
+            let length = minors.iter().map(|x| x * x).sum::<f64>().sqrt();
+            for c in 0..COLUMNS {
+                assert!(
+                    (free[c] - minors[c] / length).abs() < 1e-9,
+                    "{seed} {free:?} {minors:?}"
+                );
+            }
+        }
+        let mut repeated: [[f64; 6]; COLUMNS] = std::array::from_fn(|c| {
+            std::array::from_fn(|r| ((3 * c + 7 * r * r + c * c * r + 1) as f64).sin())
+        });
+        for row in 0..COLUMNS {
+            repeated[row][5] = 2.0 * repeated[row][3];
+        }
+        assert!(free_direction(&repeated, 1e-9).is_none());
+    }
+
+    fn determinant(a: Vec<[f64; 6]>) -> f64 {
+        fn of(a: &[Vec<f64>]) -> f64 {
+            if a.is_empty() {
+                return 1.0;
+            }
+            (0..a.len())
+                .map(|k| {
+                    let rest: Vec<Vec<f64>> = (0..a.len())
+                        .filter(|&c| c != k)
+                        .map(|c| a[c][1..].to_vec())
+                        .collect();
+                    if k % 2 == 0 {
+                        a[k][0] * of(&rest)
+                    } else {
+                        -a[k][0] * of(&rest)
+                    }
+                })
+                .sum()
+        }
+        of(&a.iter().map(|c| c.to_vec()).collect::<Vec<_>>())
     }
 
     #[test]

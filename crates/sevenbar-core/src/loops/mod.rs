@@ -3,15 +3,19 @@
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
+mod around;
 mod chain;
 mod circuits;
 mod curve;
 mod dense;
+mod extremes;
 mod lanes;
 mod many;
+mod measures;
 mod modes;
 mod motion;
 mod paths;
+mod pieces;
 mod rates;
 mod reduce;
 mod rows;
@@ -20,6 +24,8 @@ mod starts;
 mod tests;
 mod walk;
 
+pub use extremes::Ends;
+pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
 pub use motion::{Circuit, Found, Motion, Through};
 pub use reduce::{Idle, Kind};
@@ -102,6 +108,11 @@ impl Loop {
     /// Freedoms of the joints less the idle ones.
     pub fn freedoms(&self) -> usize {
         self.reduced.freedoms
+    }
+
+    /// Whether no more than one freedom can remain, so that one input may drive it.
+    pub fn can_be_driven(&self) -> bool {
+        self.reduced.chain.is_some()
     }
 
     /// The joint of a column.

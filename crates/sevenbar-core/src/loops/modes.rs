@@ -5,6 +5,7 @@
 //! any real input only the input moves. Chains with fewer than six passive freedoms close although they have too few; joints
 //! about axes in general position are added, and the solutions kept in which these stay at zero.
 
+use super::around::Around;
 use super::chain::{
     BALLS, COLUMNS, Chain, Columns, Configuration, Joint, Rotation, product, short_way, squared_up,
 };
@@ -49,6 +50,10 @@ pub(super) const SAME_MODE: f64 = 1e-7;
 
 /// Starts that must find no new solution before a special chain's are believed to be all.
 const CONFIRMING_STARTS: usize = 2;
+
+/// `|e^(i t)|` of the general value of an input that turns: near the real ones, and beside the places on them where solutions
+/// meet.
+const CIRCLE: f64 = 1.1;
 
 /// Starts of the search where there is no algebraic way.
 const SEARCH_STARTS: usize = 1500;
@@ -266,6 +271,32 @@ impl<'a> ModeFinder<'a> {
         self.real_ones(ends, &shift, value)
     }
 
+    /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`].
+    pub fn around(&self, count: usize) -> Vec<Vec<Configuration>> {
+        let value = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
+        if !self.algebraic {
+            return (0..count).map(|k| self.search(value(k))).collect();
+        }
+        let generic = self.generic();
+        let (parameters, shift) = self.parameters(self.input_at(0.0));
+        let around = Around::new(&self.slides, &parameters);
+        let ends = around.values(generic.input.turn, &generic.solutions, count, BRISK);
+        ends.into_iter()
+            .enumerate()
+            .map(|(k, ends)| {
+                let value = value(k);
+                let ends = distinct(&self.slides, ends.into_iter().flatten(), SAME_MODE);
+                // two paths that end near each other may have become one
+                if ends.len() < generic.solutions.len() {
+                    return self.at(value);
+                }
+                ends.iter()
+                    .filter_map(|end| self.configuration(end, &shift, value))
+                    .collect()
+            })
+            .collect()
+    }
+
     /// The modes among solutions, polished, in order.
     fn real_ones(
         &self,
@@ -273,12 +304,18 @@ impl<'a> ModeFinder<'a> {
         shift: &[Complex64; UNKNOWNS],
         value: f64,
     ) -> Vec<Configuration> {
+        let rough: Vec<Configuration> = ends
+            .iter()
+            .filter_map(|end| self.configuration(end, shift, value))
+            .collect();
+        self.polished(&rough)
+    }
+
+    /// Rough modes closed to rounding, each once, in order; without those that do not close near by.
+    pub fn polished(&self, rough: &[Configuration]) -> Vec<Configuration> {
         let mut modes: Vec<Configuration> = Vec::new();
-        for end in ends {
-            let Some(rough) = self.configuration(&end, shift, value) else {
-                continue;
-            };
-            if let Some(mode) = polish(self.chain, self.input, &rough, POLISHED_MOVE)
+        for rough in rough {
+            if let Some(mode) = polish(self.chain, self.input, rough, POLISHED_MOVE)
                 && modes.iter().all(|m| !same(self.chain, m, &mode))
             {
                 modes.push(mode);
@@ -301,7 +338,7 @@ impl<'a> ModeFinder<'a> {
         match self.chain.joints[self.chain.joint_of(self.input)] {
             Joint::Slide => Input { turn: Complex64::ONE, slide },
             Joint::Screw(_) => Input { turn, slide },
-            _ => Input { turn, slide: Complex64::ZERO },
+            _ => Input { turn: turn * (CIRCLE / turn.norm()), slide: Complex64::ZERO },
         }
     }
 

@@ -1,11 +1,13 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
 use super::Loop;
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
+use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
 use super::circuits::{Passes, Row};
-use super::curve::{Curve, End, Node, combined};
+use super::curve::{Curve, End, Node, combined, dot};
 use super::dense::singular_values;
+use super::extremes::{Ends, is_on_grid, output_extremes, times_as_dense};
 use super::modes::{CLOSED, Completeness, ModeFinder, polish};
+use super::rates::ORDERS;
 use super::rows::Rows;
 use super::walk::Start;
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
@@ -16,6 +18,9 @@ const SEEDS: usize = 24;
 
 /// The same where modes are searched for.
 const SEARCHED_SEEDS: usize = 4;
+
+/// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be.
+const AHEAD: usize = 4;
 
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
@@ -28,9 +33,6 @@ const LOST: f64 = 1e6;
 
 /// How far a joint of a given pose [rad, or parts of the size] may be moved to close the loop.
 const PUT_RIGHT: f64 = 0.05;
-
-/// Rows in a turn from which extremes are bracketed.
-const LEAST_ROWS: usize = 180;
 
 /// How freely a loop moves, as found in its poses.
 #[derive(Clone, Debug)]
@@ -60,8 +62,8 @@ pub struct Circuit {
     pub output: Option<[f64; 2]>,
     /// In the order of the circuit.
     pub dead_centres: Vec<DeadCentre>,
-    /// Lowest and highest velocity and acceleration of the output at unit speed of the input, each with the input.
-    pub extremes: [Option<[[f64; 2]; 2]>; 2],
+    /// Lowest and highest velocity, acceleration and jerk of the output at unit speed of the input, each with the input.
+    pub extremes: [Option<Ends>; ORDERS],
 }
 
 /// What a loop does.
@@ -77,6 +79,8 @@ pub struct Motion {
     pub seeds: usize,
     /// Modes at the seeds that run into a place where the motion is not smooth, or do not move.
     pub still: usize,
+    /// Modes at the input's value zero; `None` where that is no seed.
+    pub modes_at_zero: Option<usize>,
     /// The circuits.
     pub circuits: Vec<Circuit>,
     /// Whether some circuit has the input at rest.
@@ -104,6 +108,10 @@ struct Curves {
     seed_columns: Vec<usize>,
     seeds: usize,
     still: usize,
+    /// Modes at the zero of the first of the wished joints.
+    modes_at_zero: Option<usize>,
+    /// Curves through some of the modes to come.
+    ahead: Vec<Curve>,
 }
 
 impl Loop {
@@ -125,6 +133,7 @@ impl Loop {
                 seed_columns: Vec::new(),
                 seeds: 0,
                 still: 0,
+                modes_at_zero: None,
                 circuits: Vec::new(),
                 input_rests: false,
             });
@@ -152,6 +161,7 @@ impl Loop {
                 .collect(),
             seeds: curves.seeds,
             still: curves.still,
+            modes_at_zero: curves.modes_at_zero,
             circuits,
             input_rests,
         })
@@ -213,22 +223,21 @@ impl Loop {
         let closed = passes.curve.end == End::Closed;
         let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
         let rocks = passes.rocks() || !turning(a);
-        let mut rows = passes.rows(grid.0, grid.1);
-        if !rocks {
-            begin_at_zero(chain, &mut rows, a, &gained, grid.1);
-        }
-        let extremes = if rocks || !closed || law.is_some() {
-            [None, None]
+        let bounded = !rocks && closed && law.is_none();
+        let step = if bounded {
+            grid.1 / times_as_dense(grid.1)
         } else {
-            let dense;
-            let from = if rows.len() >= LEAST_ROWS {
-                &rows
-            } else {
-                dense = passes.rows(0.0, TAU / 360.0);
-                &dense
-            };
-            [1, 2].map(|order| output_extremes(passes, from, b, order, &gained))
+            grid.1
         };
+        let mut rows = passes.rows(grid.0, step);
+        if !rocks {
+            begin_at_zero(chain, &mut rows, a, &gained, step);
+        }
+        let mut extremes = [None; ORDERS];
+        if bounded {
+            extremes = output_extremes(passes, &rows, b, &gained);
+            rows.retain(|r| is_on_grid(r.at.values[a], grid));
+        }
         // whole turns that bring the first row into (-pi, pi]
         let mut shift = [0.0; COLUMNS];
         if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
@@ -352,11 +361,26 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
         }
         let count = if searched { SEARCHED_SEEDS } else { SEEDS };
         out.seeds = count;
-        for k in 0..count {
-            if first_only && !out.curves.is_empty() {
-                break;
+        if first_only {
+            for k in 0..count {
+                if out.curves.is_empty() {
+                    out.take(chain, &finder.at(TAU * k as f64 / count as f64), wished[0]);
+                }
             }
-            out.take(chain, &finder.at(TAU * k as f64 / count as f64), wished[0]);
+            continue;
+        }
+        let rough = finder.around(count);
+        if seed == wished[0] {
+            out.modes_at_zero = Some(finder.polished(&rough[0]).len());
+        }
+        let places: Vec<Configuration> = rough
+            .iter()
+            .step_by(AHEAD)
+            .flat_map(|modes| finder.polished(&out.unknown(chain, modes)))
+            .collect();
+        out.ahead = chain.closed_curves(&places);
+        for modes in &rough {
+            out.take(chain, &finder.polished(&out.unknown(chain, modes)), wished[0]);
         }
     }
     if out.seed_columns.is_empty() {
@@ -380,14 +404,40 @@ impl Curves {
             seed_columns: Vec::new(),
             seeds: 0,
             still: 0,
+            modes_at_zero: None,
+            ahead: Vec::new(),
         }
+    }
+
+    /// Those modes that lie on no curve yet.
+    fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
+        let known = |m: &&Configuration| self.curves.iter().any(|c| lies_on(chain, c, m));
+        modes.iter().filter(|m| !known(m)).copied().collect()
+    }
+
+    /// The curve ahead on which a mode lies, if there is one, in this direction there.
+    fn from_ahead(&mut self, chain: &Chain, (mode, direction): &Start) -> Option<Curve> {
+        let (k, node) = self
+            .ahead
+            .iter()
+            .enumerate()
+            .find_map(|(k, c)| Some((k, place_on(chain, c, mode)?)))?;
+        let backwards = dot(&node.rates[0], direction) < 0.0;
+        let curve = self.ahead.swap_remove(k);
+        Some(if backwards {
+            chain.turned_round(&curve)
+        } else {
+            curve
+        })
     }
 
     /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
     fn take(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
         let mut starts: Vec<Start> = Vec::new();
+        let mut curves: Vec<Option<Curve>> = Vec::new();
         for mode in modes {
-            if self.curves.iter().any(|c| lies_on(chain, c, mode)) {
+            let known = |c: &Curve| lies_on(chain, c, mode);
+            if self.curves.iter().any(known) || curves.iter().flatten().any(known) {
                 continue;
             }
             let columns = chain.screws(mode);
@@ -414,9 +464,20 @@ impl Curves {
                 direction = direction.map(|d| -d);
             }
             starts.push((*mode, direction));
+            curves.push(self.from_ahead(chain, &(*mode, direction)));
         }
+        let left: Vec<Start> = starts
+            .iter()
+            .zip(&curves)
+            .filter(|(_, c)| c.is_none())
+            .map(|(s, _)| *s)
+            .collect();
+        let mut followed = chain.follow(&left).into_iter();
         let before = self.curves.len();
-        for (curve, start) in chain.follow(&starts).into_iter().zip(&starts) {
+        for (curve, start) in curves.into_iter().zip(&starts) {
+            let Some(curve) = curve.or_else(|| followed.next()) else {
+                unreachable!()
+            };
             // two modes may lie on one circuit
             if self.curves[before..].iter().any(|c| lies_on(chain, c, &start.0)) {
                 continue;
@@ -450,17 +511,15 @@ fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
 
 /// Whether a mode is a place of a curve.
 fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
-    // a scalar column tells most nodes apart at once
-    let probe = chain
-        .joints
+    place_on(chain, curve, mode).is_some()
+}
+
+/// The node of a curve from which a step leads over a mode.
+fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
+    curve
+        .nodes
         .iter()
-        .zip(&chain.first)
-        .find(|(j, _)| **j == Joint::Turn)
-        .map(|(_, &c)| c);
-    curve.nodes.iter().any(|node| {
-        probe.is_none_or(|c| short_way(mode.values[c] - node.at.values[c]).abs() <= 2.0 * node.step)
-            && chain.passes_through(node, mode).is_some()
-    })
+        .find(|node| chain.may_pass(node, mode) && chain.passes_through(node, mode).is_some())
 }
 
 /// Origin and step of the inputs of rows.
@@ -496,70 +555,4 @@ fn begin_at_zero(chain: &Chain, rows: &mut [Row], input: usize, gained: &Columns
         }
     }
     rows.rotate_left(first);
-}
-
-/// The lowest and highest rate of the output of an order, at zeros of the next order's, each with the input.
-fn output_extremes(
-    passes: &Passes,
-    rows: &[Row],
-    output: usize,
-    order: usize,
-    gained: &Columns,
-) -> Option<[[f64; 2]; 2]> {
-    let factorial = [1.0, 1.0, 2.0];
-    let rate = |row: &Row, n: usize| row.rates[n - 1][output] * factorial[n - 1];
-    if rows.iter().any(|r| r.status != RowStatus::Ok) {
-        return None;
-    }
-    let start = passes.passes[0].start;
-    let mut ends = [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]];
-    let mut look = |row: &Row| {
-        let (value, at) = (rate(row, order), row.at.values[passes.input]);
-        if value < ends[0][0] {
-            ends[0] = [value, at];
-        }
-        if value > ends[1][0] {
-            ends[1] = [value, at];
-        }
-    };
-    for (k, row) in rows.iter().enumerate() {
-        look(row);
-        let mut next = rows[(k + 1) % rows.len()];
-        if k + 1 == rows.len() {
-            for c in 0..COLUMNS {
-                next.at.values[c] += gained[c];
-            }
-        }
-        let (mut low, mut high) = (
-            (row.at.values[passes.input], rate(row, order + 1)),
-            (next.at.values[passes.input], rate(&next, order + 1)),
-        );
-        if low.1 * high.1 >= 0.0 {
-            continue;
-        }
-        for step in 0..40 {
-            let x = if step % 3 == 2 {
-                0.5 * (low.0 + high.0)
-            } else {
-                (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1)
-            };
-            let span = gained[passes.input];
-            let inside = start + (x - start).rem_euclid(span);
-            let Some(mut here) = passes.row(0, inside, &[1.0, 0.0, 0.0]) else {
-                break;
-            };
-            here.at.values[passes.input] = x;
-            look(&here);
-            let value = rate(&here, order + 1);
-            if value.abs() < 1e-13 || (high.0 - low.0).abs() < 1e-14 {
-                break;
-            }
-            if value * low.1 > 0.0 {
-                low = (x, value);
-            } else {
-                high = (x, value);
-            }
-        }
-    }
-    Some(ends)
 }

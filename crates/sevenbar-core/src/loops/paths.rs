@@ -3,7 +3,8 @@
 //! The closure is `Z1 T(p1) Rx(a1) Z2 .. Z7 T(p7) Rx(a7) = 1` with `Zi = Rz(ti) Tz(di)`. In a turning joint `ti` is unknown
 //! and `di` is zero; in a sliding one `di` is unknown and `ti` given; in the last joint, the input, both are given. Turns and
 //! twists enter as `e^(i t)` and `e^(i a)`, so that everything is rational; these, the `p` and the input's slide move on
-//! straight lines from the start to the end parameters. Where only the input differs they stay within one linkage.
+//! straight lines from the start to the end parameters. Where only the input differs they stay within one linkage; but see
+//! [`super::around`].
 
 use super::lanes::Lanes;
 use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
@@ -22,10 +23,10 @@ const MOST_STEPS: usize = 800;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
     /// First correction [rad, or parts of the size] that steps aim at, and that which they must not exceed.
-    aimed: f64,
-    largest: f64,
+    pub aimed: f64,
+    pub largest: f64,
     /// Second correction that a step must not exceed; the next would be its square.
-    second: f64,
+    pub second: f64,
 }
 
 /// Paths that keep apart, as between general parameters.
@@ -35,23 +36,23 @@ pub(super) const BRISK: Pace = Pace { aimed: 1e-2, largest: 8e-2, second: 2e-3 }
 pub(super) const CAREFUL: Pace = Pace { aimed: 1e-4, largest: 1e-3, second: 1e-5 };
 
 /// Second correction as a part of the first.
-const LEAST_CONTRACTION: f64 = 0.1;
+pub(super) const LEAST_CONTRACTION: f64 = 0.1;
 
 /// Second correction at the end of a path, where the next would be rounding.
 const LAST_SECOND: f64 = 1e-8;
 
 /// The same for far solutions, `e^(i t)` in the hundreds, where rounding is that much greater; after so many corrections.
-const LAST_SECOND_FAR: f64 = 3e-5;
-const LAST_CORRECTIONS: usize = 4;
+pub(super) const LAST_SECOND_FAR: f64 = 3e-5;
+pub(super) const LAST_CORRECTIONS: usize = 4;
 
-/// A longer predicted move of a joint [rad] is made in shorter steps.
-const LONGEST_MOVE: f64 = 0.5;
+/// A longer predicted move of all joints together [rad] is made in shorter steps.
+pub(super) const LONGEST_MOVE: f64 = 1.0;
 
 /// Part of the way of the first step.
 const FIRST_STEP: f64 = 0.02;
 
 /// Steps shorter than this end a path: it runs to infinity or into a singular solution.
-const SHORTEST_STEP: f64 = 1e-9;
+pub(super) const SHORTEST_STEP: f64 = 1e-9;
 
 /// `|e^(i t)|`, or a slide in parts of the size, beyond which a path has left for infinity.
 const INFINITE: f64 = 1e7;
@@ -98,15 +99,15 @@ struct Follow<'a> {
 }
 
 /// The linearised closure in each lane: `J delta = -error`, `J rate = -drift`.
-struct Linear<V: Vector> {
+pub(super) struct Linear<V: Vector> {
     /// Six joint columns, then minus the closure error, then minus its drift with the parameters.
-    rows: [[Lanes<V>; UNKNOWNS + 2]; 6],
+    pub rows: [[Lanes<V>; UNKNOWNS + 2]; 6],
 }
 
-type Triple<V> = [Lanes<V>; 3];
+pub(super) type Triple<V> = [Lanes<V>; 3];
 
 #[inline(always)]
-fn cross<V: Vector>(a: &Triple<V>, b: &Triple<V>) -> Triple<V> {
+pub(super) fn cross<V: Vector>(a: &Triple<V>, b: &Triple<V>) -> Triple<V> {
     [
         (a[1] * b[2]).minus_product(a[2], b[1]),
         (a[2] * b[0]).minus_product(a[0], b[2]),
@@ -116,7 +117,7 @@ fn cross<V: Vector>(a: &Triple<V>, b: &Triple<V>) -> Triple<V> {
 
 /// Turns the frame's axes `a`, `b` by the angle whose cosine and sine are given.
 #[inline(always)]
-fn turn<V: Vector>(a: &mut Triple<V>, b: &mut Triple<V>, cosine: Lanes<V>, sine: Lanes<V>) {
+pub(super) fn turn<V: Vector>(a: &mut Triple<V>, b: &mut Triple<V>, cosine: Lanes<V>, sine: Lanes<V>) {
     for k in 0..3 {
         let (x, y) = (a[k], b[k]);
         a[k] = (x * cosine).plus_product(y, sine);
@@ -126,7 +127,7 @@ fn turn<V: Vector>(a: &mut Triple<V>, b: &mut Triple<V>, cosine: Lanes<V>, sine:
 
 /// Cosine and sine from `e^(i t)`, and its reciprocal.
 #[inline(always)]
-fn cosine_sine<V: Vector>(z: Lanes<V>) -> (Lanes<V>, Lanes<V>, Lanes<V>) {
+pub(super) fn cosine_sine<V: Vector>(z: Lanes<V>) -> (Lanes<V>, Lanes<V>, Lanes<V>) {
     let inverse = z.recip();
     (
         (z + inverse).scale(V::splat(0.5)),
@@ -221,42 +222,66 @@ impl Follow<'_> {
         }
         Linear { rows }
     }
+}
 
-    #[inline(always)]
-    fn moved<V: Vector>(&self, x: &[Lanes<V>; UNKNOWNS], by: &[Lanes<V>; UNKNOWNS]) -> [Lanes<V>; UNKNOWNS] {
-        let mut out = *x;
-        for i in 0..UNKNOWNS {
-            out[i] = if self.slides[i] {
-                x[i] + by[i]
+/// The unknowns after a move.
+#[inline(always)]
+pub(super) fn moved<V: Vector>(
+    slides: &Slides,
+    x: &[Lanes<V>; UNKNOWNS],
+    by: &[Lanes<V>; UNKNOWNS],
+) -> [Lanes<V>; UNKNOWNS] {
+    let mut out = *x;
+    for i in 0..UNKNOWNS {
+        out[i] = if slides[i] {
+            x[i] + by[i]
+        } else {
+            x[i] * by[i].turn()
+        };
+    }
+    out
+}
+
+/// The greatest part of a move: [rad], or slides in parts of the size or of themselves.
+#[inline(always)]
+pub(super) fn size<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS], by: &[Lanes<V>; UNKNOWNS]) -> Reals {
+    // a sum, so that what is not a number shows
+    let mut sum = V::splat(0.0);
+    for i in 0..UNKNOWNS {
+        let square = by[i].square();
+        sum = sum
+            + if slides[i] {
+                square / (V::splat(1.0) + x[i].square())
             } else {
-                x[i] * by[i].turn()
+                square
             };
-        }
-        out
     }
+    sum.sqrt().store()
+}
 
-    /// The greatest part of a move: [rad], or slides in parts of the size or of themselves.
-    #[inline(always)]
-    fn size<V: Vector>(&self, x: &[Lanes<V>; UNKNOWNS], by: &[Lanes<V>; UNKNOWNS]) -> Reals {
-        // a sum, so that what is not a number shows
-        let mut sum = V::splat(0.0);
-        for i in 0..UNKNOWNS {
-            let square = by[i].square();
-            sum = sum
-                + if self.slides[i] {
-                    square / (V::splat(1.0) + x[i].square())
-                } else {
-                    square
-                };
+/// Whether a path has left for infinity.
+#[inline(always)]
+pub(super) fn infinite<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS]) -> [bool; LANES] {
+    let (mut least, mut greatest) = (V::splat(1.0), V::splat(1.0));
+    for i in 0..UNKNOWNS {
+        let size = x[i].square();
+        greatest = size.if_greater(greatest, size, greatest);
+        if !slides[i] {
+            least = size.lesser(least);
         }
-        sum.store().map(f64::sqrt)
     }
+    let (least, greatest) = (least.store(), greatest.store());
+    let mut out = [false; LANES];
+    for k in 0..LANES {
+        out[k] = greatest[k] > INFINITE * INFINITE || least[k] * INFINITE * INFINITE < 1.0;
+    }
+    out
 }
 
 impl<V: Vector> Linear<V> {
     /// The Newton correction and the rate with the parameters, by elimination with row exchanges in each lane.
     #[inline(always)]
-    fn solve(mut self) -> ([Lanes<V>; UNKNOWNS], [Lanes<V>; UNKNOWNS]) {
+    pub fn solve(mut self) -> ([Lanes<V>; UNKNOWNS], [Lanes<V>; UNKNOWNS]) {
         let a = &mut self.rows;
         for c in 0..6 {
             for r in c + 1..6 {
@@ -396,14 +421,14 @@ impl Follow<'_> {
                 .plus_scaled(rate - mean, second)
                 .plus_scaled(rate + rate_before - mean - mean, third);
         }
-        let reach = self.size(&walk.x, &predicted);
-        let x1 = self.moved(&walk.x, &predicted);
+        let reach = size(self.slides, &walk.x, &predicted);
+        let x1 = moved(self.slides, &walk.x, &predicted);
         let (first_correction, _) = self.linearise(&x1, now).solve();
-        let first = self.size(&x1, &first_correction);
-        let x2 = self.moved(&x1, &first_correction);
+        let first = size(self.slides, &x1, &first_correction);
+        let x2 = moved(self.slides, &x1, &first_correction);
         let (second_correction, rate) = self.linearise(&x2, now).solve();
-        let last = self.size(&x2, &second_correction);
-        let x3 = self.moved(&x2, &second_correction);
+        let last = size(self.slides, &x2, &second_correction);
+        let x3 = moved(self.slides, &x2, &second_correction);
 
         let mut accepted = [0.0; LANES];
         for k in 0..LANES {
@@ -447,18 +472,7 @@ impl Follow<'_> {
     /// Records the ends of paths that arrived or are lost.
     #[inline(always)]
     fn finished<V: Vector>(&mut self, walk: &mut Walk<V>, accepted: &Reals, last: &Reals) -> [bool; LANES] {
-        let (mut least, mut greatest) = ([1.0; LANES], [1.0; LANES]);
-        for i in 0..UNKNOWNS {
-            let size = walk.x[i].square().store();
-            for k in 0..LANES {
-                greatest[k] = f64::max(greatest[k], size[k]);
-                least[k] = if self.slides[i] {
-                    least[k]
-                } else {
-                    f64::min(least[k], size[k])
-                };
-            }
-        }
+        let infinite = infinite(self.slides, &walk.x);
         let (mut done, mut ends_here) = ([false; LANES], [false; LANES]);
         for k in 0..LANES {
             if walk.path[k] >= self.starts.len() {
@@ -466,14 +480,13 @@ impl Follow<'_> {
                 walk.t[k] = 0.0;
                 continue;
             }
-            let infinite = greatest[k] > INFINITE * INFINITE || least[k] * INFINITE * INFINITE < 1.0;
             let stuck = (accepted[k] == 0.0 && walk.step[k] < SHORTEST_STEP) || walk.count[k] > MOST_STEPS;
             let at_end = walk.t[k] >= 1.0 && accepted[k] > 0.0;
             walk.settling[k] += usize::from(at_end);
             let settled =
                 last[k] <= LAST_SECOND || (walk.settling[k] > LAST_CORRECTIONS && last[k] <= LAST_SECOND_FAR);
             let arrived = at_end && settled;
-            done[k] = arrived || infinite || stuck;
+            done[k] = arrived || infinite[k] || stuck;
             ends_here[k] = arrived;
         }
         if done.contains(&true) {

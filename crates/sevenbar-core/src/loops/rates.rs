@@ -7,6 +7,8 @@
 use super::chain::{
     COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket, twist_of,
 };
+use super::circuits::input_row;
+use super::curve::bordered_inverse;
 use super::dense::{Inverse, ROWS};
 use crate::rigid::{Pose, Vec3};
 use crate::taylor::Taylor;
@@ -21,16 +23,21 @@ const REFINEMENTS: usize = 2;
 /// Power series of the joint rates `u(t) = u0 + u1 t + u2 t^2`; a ball's are its angular velocity in the frame before it.
 pub(super) type Rates<N = f64> = [Columns<N>; ORDERS];
 
-/// Power series of the joints' screws.
-pub(super) type Screws<N> = [[Twist<N>; COLUMNS]; ORDERS];
+/// Power series of the joints' screws, of so many terms.
+pub(super) type Screws<N, const TERMS: usize = ORDERS> = [[Twist<N>; COLUMNS]; TERMS];
 
 impl Chain {
     /// The screws' coefficients of an order, from those of lower ones and the rates.
     #[inline(always)]
-    fn carry<N: Number>(&self, screws: &mut Screws<N>, rates: &Rates<N>, order: usize) {
+    fn carry<N: Number, const TERMS: usize>(
+        &self,
+        screws: &mut Screws<N, TERMS>,
+        rates: &[Columns<N>; TERMS],
+        order: usize,
+    ) {
         let zero = N::splat(0.0);
         // of the link before each joint
-        let mut twists = [[zero; 6]; ORDERS];
+        let mut twists = [[zero; 6]; TERMS];
         let inverse = N::splat(1.0 / order as f64);
         for (joint, &first) in self.joints.iter().zip(&self.first) {
             let width = joint.columns();
@@ -61,17 +68,18 @@ impl Chain {
     /// The joint rates, order by order, and the series of the screws, by the inverse of the screws with one more row, on which
     /// the rates are `given`. Where that row holds one column, the inverse may be that of a place very near.
     #[inline(always)]
-    pub fn rates<N: Number>(
+    pub fn rates<N: Number, const TERMS: usize>(
         &self,
         placed: &Placed<N>,
         inverse: &Inverse<N>,
-        given: &[N; ORDERS],
+        given: &[N; TERMS],
         held: Option<usize>,
-    ) -> (Rates<N>, Screws<N>) {
+    ) -> ([Columns<N>; TERMS], Screws<N, TERMS>) {
         let zero = N::splat(0.0);
-        let mut rates = [[zero; COLUMNS]; ORDERS];
-        let mut screws = [placed.screws, [[zero; 6]; COLUMNS], [[zero; 6]; COLUMNS]];
-        for order in 0..ORDERS {
+        let mut rates = [[zero; COLUMNS]; TERMS];
+        let mut screws = [[[zero; 6]; COLUMNS]; TERMS];
+        screws[0] = placed.screws;
+        for order in 0..TERMS {
             let mut right = [zero; ROWS];
             if order > 0 {
                 self.carry(&mut screws, &rates, order);
@@ -104,9 +112,17 @@ impl Chain {
         (rates, screws)
     }
 
+    /// The fourth derivative of a column at a closed configuration, by the input, which has unit speed.
+    pub fn fourth_derivative(&self, at: &Configuration, input: usize, column: usize) -> f64 {
+        let placed = self.place(at);
+        let inverse = bordered_inverse(&placed.screws, self.columns, &input_row(input));
+        let (rates, _) = self.rates(&placed, &inverse, &[1.0, 0.0, 0.0, 0.0], Some(input));
+        6.0 * rates[ORDERS][column]
+    }
+
     /// The series of the twist of the link after a joint, in the frame of the first joint: `V0 + V1 t + V2 t^2`.
     pub fn link_twist(&self, placed: &Placed, rates: &Rates, joint: usize) -> [Twist; ORDERS] {
-        let mut screws = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
+        let mut screws: Screws<f64> = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
         for order in 1..ORDERS {
             self.carry(&mut screws, rates, order);
         }

@@ -35,26 +35,37 @@ impl Chain {
         curves
     }
 
-    /// The curve walked the other way.
+    /// The curve walked the other way: its own nodes where each step is certain that way too.
     pub fn turned_round(&self, curve: &Curve) -> Curve {
-        self.walk(&[back_from_end(curve)]).swap_remove(0)
+        self.reversed(curve)
+            .unwrap_or_else(|| self.walk(&[back_from_end(curve)]).swap_remove(0))
     }
 
     fn walk(&self, starts: &[Start]) -> Vec<Curve> {
+        self.walk_until(starts, false).0
+    }
+
+    /// Each motion until it comes to the next of the starts, its own or another, and which that is.
+    pub fn pieces(&self, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
+        self.walk_until(starts, true)
+    }
+
+    fn walk_until(&self, starts: &[Start], any: bool) -> (Vec<Curve>, Vec<Option<usize>>) {
         let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
-        let walk = Walk { chain: self, starts, curves: &mut curves };
+        let mut reached = vec![None; starts.len()];
+        let walk = Walk { chain: self, starts, any, curves: &mut curves, reached: &mut reached };
         match starts.len() {
             0 => {}
             // one curve has nothing beside it, and vector code would be slower
             1 => simd::dispatch(walk),
             _ => vectors::dispatch(walk),
         }
-        curves
+        (curves, reached)
     }
 
     /// The start, its turns counted on, where it lies in the step from a node: with the step that leads there.
     fn returned(&self, first: &Node, from: &Node) -> Option<(f64, Node)> {
-        if dot(&first.rates[0], &from.rates[0]) < 0.5 {
+        if !self.may_pass(from, &first.at) || dot(&first.rates[0], &from.rates[0]) < 0.5 {
             return None;
         }
         let along = self.passes_through(from, &first.at)?;
@@ -80,7 +91,11 @@ fn back_from_end(curve: &Curve) -> Start {
 struct Walk<'a> {
     chain: &'a Chain,
     starts: &'a [Start],
+    /// Whether any start ends a curve, or its own only.
+    any: bool,
     curves: &'a mut [Curve],
+    /// The start to which each came.
+    reached: &'a mut [Option<usize>],
 }
 
 impl LaneKernel for Walk<'_> {
@@ -96,6 +111,18 @@ impl LaneKernel for Walk<'_> {
         let mut split = self.split(&here.node);
         for lane in 0..LANES {
             self.record(walker[lane], split[lane]);
+        }
+        // curves may come to starts that have not yet been left
+        for block in (LANES..count).step_by(LANES) {
+            let mut later = [usize::MAX; LANES];
+            for (lane, w) in later.iter_mut().enumerate().take(count - block) {
+                *w = block + lane;
+            }
+            let begun = self.begun::<V>(&later);
+            let nodes = self.split(&begun.node);
+            for lane in 0..LANES {
+                self.record(later[lane], nodes[lane]);
+            }
         }
         let mut growth = [0.0; LANES];
         let mut step = self.chain.likely(&here.node, V::load(&growth)).store();
@@ -132,10 +159,8 @@ impl LaneKernel for Walk<'_> {
             if fresh.contains(&true) {
                 let begun = self.begun::<V>(&walker);
                 let mut mask = [-1.0; LANES];
-                let nodes = self.split(&begun.node);
                 for lane in (0..LANES).filter(|&k| fresh[k]) {
                     mask[lane] = 1.0;
-                    self.record(walker[lane], nodes[lane]);
                 }
                 here.replace(V::load(&mask), &begun, self.chain.ball_count());
             }
@@ -273,12 +298,27 @@ impl Walk<'_> {
         }
         curve.nodes[last].step = step;
         curve.nodes[last].tube = tube;
-        // it has left its own first steps behind
-        if last > 3
-            && let Some((along, end)) = chain.returned(&curve.nodes[0], &curve.nodes[last])
-        {
+        let mut nearest: Option<(f64, Node, usize)> = None;
+        let ends = if self.any {
+            0..self.starts.len()
+        } else {
+            walker..walker + 1
+        };
+        for end in ends {
+            // it has left its own first steps behind
+            if (end != walker || last > 3)
+                && let Some((along, node)) =
+                    chain.returned(&self.curves[end].nodes[0], &self.curves[walker].nodes[last])
+                && nearest.as_ref().is_none_or(|n| along < n.0)
+            {
+                nearest = Some((along, node, end));
+            }
+        }
+        let curve = &mut self.curves[walker];
+        if let Some((along, node, end)) = nearest {
             curve.nodes[last].step = along;
-            curve.nodes.push(end);
+            curve.nodes.push(node);
+            self.reached[walker] = Some(end);
             return Some(End::Closed);
         }
         curve.nodes.push(next);
