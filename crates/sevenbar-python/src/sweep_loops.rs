@@ -30,17 +30,21 @@ fn finite<'a>(name: &str, values: impl Iterator<Item = &'a f64>) -> PyResult<()>
 }
 
 /// A number for each, -1 where there is none.
-fn counts<T>(py: Python<'_>, of: &[T], pick: impl Fn(&T) -> Option<usize>) -> Bound<'_, PyArray1<i64>> {
+fn counts<'py, T>(
+    py: Python<'py>,
+    of: &[T],
+    pick: impl Fn(&T) -> Option<usize>,
+) -> Bound<'py, PyArray1<i64>> {
     let values: Vec<i64> = of.iter().map(|x| pick(x).map_or(-1, |n| n as i64)).collect();
     values.into_pyarray(py)
 }
 
-fn flags<T>(py: Python<'_>, of: &[T], pick: impl Fn(&T) -> bool) -> Bound<'_, PyArray1<u8>> {
+fn flags<'py, T>(py: Python<'py>, of: &[T], pick: impl Fn(&T) -> bool) -> Bound<'py, PyArray1<u8>> {
     let values: Vec<u8> = of.iter().map(|x| u8::from(pick(x))).collect();
     values.into_pyarray(py)
 }
 
-fn numbers<T>(py: Python<'_>, of: &[T], pick: impl Fn(&T) -> f64) -> Bound<'_, PyArray1<f64>> {
+fn numbers<'py, T>(py: Python<'py>, of: &[T], pick: impl Fn(&T) -> f64) -> Bound<'py, PyArray1<f64>> {
     of.iter().map(pick).collect::<Vec<f64>>().into_pyarray(py)
 }
 
