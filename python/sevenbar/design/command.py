@@ -5,6 +5,7 @@ from __future__ import annotations
 import typer
 
 from sevenbar.design.synthesis.command import function, swing
+from sevenbar.design.synthesis.path_command import path
 
 design = typer.Typer(
     name="design",
@@ -12,5 +13,5 @@ design = typer.Typer(
     help="Find linkages for a wanted motion; each design is a file that opens in the studio.",
 )
 
-for _command in (function, swing):
+for _command in (function, swing, path):
     design.command()(_command)
