@@ -12,6 +12,7 @@ __all__ = [
     "Rssr",
     "__version__",
     "classify_rssr",
+    "measure_loops",
     "measure_rssr",
     "simd_level",
 ]
@@ -75,5 +76,16 @@ class Rows:
     def point(self, link: int, at: _Floats) -> _Floats: ...
 
 def classify_rssr(dimensions: _Floats, input: str, threads: int) -> tuple[npt.NDArray[np.uint8], _Floats]: ...
+def measure_loops(
+    letters: str,
+    advances: _Floats,
+    base: _Floats,
+    ground: _Floats,
+    links: _Floats,
+    input: int,
+    output: int,
+    samples: int,
+    threads: int,
+) -> dict[str, npt.NDArray[Any]]: ...
 def measure_rssr(dimensions: _Floats, input: str, threads: int) -> dict[str, npt.NDArray[Any]]: ...
 def simd_level() -> str: ...

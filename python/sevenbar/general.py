@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from sevenbar import _core
 from sevenbar.errors import RequestError
@@ -42,7 +43,7 @@ class GeneralLoop:
 
     def __init__(self, linkage: Linkage) -> None:
         self._linkage = linkage
-        letters, advances, links, self._link = _expanded(linkage)
+        letters, advances, links, self._link = expanded(linkage)
         self._core = _core.Loop(letters, np.array(advances), linkage.base, linkage.ground, np.array(links))
         self._found: dict[int, Mobility] = {}
 
@@ -111,7 +112,7 @@ class GeneralLoop:
             speed=math.nan if law is not None else speed,
             samples=samples,
             motion_type=_motion_type(circuits, mobility),
-            limits=_merged(limits, turns=linkage.column_kinds[column] == "turn"),
+            limits=merged(limits, turns=linkage.column_kinds[column] == "turn"),
             change_points=np.array([]),
             circuits=circuits,
             completeness=raw["completeness"],
@@ -193,7 +194,10 @@ class GeneralLoop:
         # the pose of a row may be known where a ball's turns are not
         status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
         rows = raw["rows"]
-        words = _word(kinds[columns[0]], raw["input"]), _word(kinds[columns[1]], raw["output"])
+        words = (
+            word(kinds[columns[0]], rocks=raw["input"] is not None),
+            word(kinds[columns[1]], rocks=raw["output"] is not None),
+        )
         return circuit_from(
             raw,
             linkage=self._linkage,
@@ -202,7 +206,7 @@ class GeneralLoop:
             speed=speed,
             law=law,
             size=self.size,
-            motion_type="change-point" if raw["singular"] else _pair(*words),
+            motion_type="change-point" if raw["singular"] else pair(*words),
             closed=raw["closed"],
             status=status,
             mode=np.full(len(q), index),
@@ -240,7 +244,7 @@ def _run_backwards(raw: Mapping[str, Any], order: Integers, kinds: Sequence[Free
     return {**raw, **rows, "joints": joints}
 
 
-def _expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[int]]:
+def expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[int]]:
     """The joints as the core takes them: letters, advances for a radian, links, and where each link went."""
     letters, advances, links, last = "", [], [], []
     still = np.eye(4)
@@ -265,13 +269,15 @@ def _expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[in
     return letters, advances, links, last
 
 
-def _word(kind: str, ends: tuple[float, float] | None) -> str:
+def word(kind: str, *, rocks: bool) -> str:
+    """What a joint of a kind is called that rocks, or turns fully."""
     if kind == "slide":
         return "slider"
-    return "crank" if ends is None else "rocker"
+    return "rocker" if rocks else "crank"
 
 
-def _pair(first: str, second: str) -> str:
+def pair(first: str, second: str) -> str:
+    """The motion type of an input and an output by what each is called."""
     return f"double-{first}" if first == second else f"{first}-{second}"
 
 
@@ -301,7 +307,8 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
     return text
 
 
-def _merged(limits: Sequence[float], *, turns: bool) -> Floats:
+def merged(limits: npt.ArrayLike, *, turns: bool) -> Floats:
+    """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once."""
     values: Floats = np.asarray(limits, dtype=np.float64)
     if turns:
         values = np.mod(values, math.tau)

@@ -170,11 +170,14 @@ class Linkage:
             )
         return first, second
 
+    def speed_of(self, column: int) -> float:
+        """The speed [rad/s, or length/s] at which a column drives where none is given: the drive's, or 1."""
+        drives = self.columns.index(self.drive.joint)
+        return self.drive.speed if self.column_kinds[drives] == self.column_kinds[column] else 1.0
+
     def _speed(self, speed: object, column: int) -> float:
         if speed is None:
-            drives = self.columns.index(self.drive.joint)
-            same_kind = self.column_kinds[drives] == self.column_kinds[column]
-            return self.drive.speed if same_kind else 1.0
+            return self.speed_of(column)
         plain = float(speed) if isinstance(speed, np.number) else speed
         try:
             if self.column_kinds[column] == "slide":
@@ -267,6 +270,11 @@ class Linkage:
     def _unheld(self) -> tuple[str, ...]:
         """Idle freedoms that the core does not hold: it knows those of one link only."""
         return spins_between_balls(self.kind, [joint.name for joint in self.joints])
+
+    @property
+    def followed_generally(self) -> bool:
+        """Whether its motion is that of the general path, with nothing else to be asked of it."""
+        return self.kind != "RSSR" and not self._unheld
 
     def _refuse_unheld(self) -> None:
         if self._unheld and self._mobility.finite == 1:

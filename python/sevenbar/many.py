@@ -1,17 +1,22 @@
-"""Many RSSRs at once by the core's batches: motion types, limits and what circuits are told by, as arrays."""
+"""Many linkages at once by the core's batches: motion types, limits and measures of circuits as arrays."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar import _core
+from sevenbar.general import expanded, merged, pair, word
 from sevenbar.motion import Floats, Integers
+
+if TYPE_CHECKING:
+    from sevenbar.linkage import Linkage
 
 #: The core's codes of motion types, and of dimensions that make no linkage.
 CODES = (
@@ -26,6 +31,9 @@ CODES = (
 
 CHANGE_POINT, INVALID = CODES.index("change-point"), CODES.index("invalid")
 
+#: The codes' words, as objects of a column.
+WORDS = np.array(CODES, dtype=object)
+
 #: The dimensions of an RSSR in the order of the core's rows.
 RSSR_ROWS = ("M", "N", "L1", "L2", "L3", "D")
 
@@ -33,21 +41,30 @@ RSSR_ROWS = ("M", "N", "L1", "L2", "L3", "D")
 RATES = {"velocity": 1, "acceleration": 2, "jerk": 3}
 
 
+#: The core's word for a loop that its input drives.
+DRIVEN = 0
+
+#: Words of the motion types of linkages or circuits.
+Words = npt.NDArray[np.object_]
+
+
 @dataclass(frozen=True, eq=False)
 class Motions:
     """What the motions of n linkages come to.
 
-    `codes` (n,) index `CODES`; `limits` (n, 4) [rad] rise, NaN after the last. `linkage` (c,) has the
-    linkage of each circuit, `circuit` (c,) its number there; `columns` (c,) its measures by name as
-    `measures.MEASURES` has them, NaN where there is none.
+    `clear` (n,) tells which are told here; of the others, that have a reason to give or must be followed
+    further, nothing else means anything. `types` (n,) are words; `limits` (n, m) [rad, or length] rise, NaN
+    after the last. `linkage` (c,) has the linkage of each circuit, `circuit` (c,) its number there; `columns`
+    (c,) its measures by name as `measures.MEASURES` has them, NaN where there is none.
     """
 
-    codes: npt.NDArray[np.uint8]
+    clear: npt.NDArray[np.bool_]
+    types: Words
     limits: Floats
     circuits: Integers
     linkage: Integers
     circuit: Integers
-    columns: Mapping[str, Floats]
+    columns: Mapping[str, npt.NDArray[Any]]
 
 
 def simd_level() -> str:
@@ -69,28 +86,87 @@ def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> 
     The output range of a change point is not among it: that takes following. As `rssr_types` for the rest.
     """
     raw = _core.measure_rssr(np.ascontiguousarray(dimensions), side, threads)
-    counts = raw["circuits"]
-    linkage = np.repeat(np.arange(len(counts)), counts)
-    firsts = np.cumsum(counts) - counts
-    return Motions(
-        codes=raw["motion_type"],
-        limits=raw["limits"],
-        circuits=counts,
-        linkage=linkage,
-        circuit=np.arange(len(linkage)) - firsts[linkage],
-        columns=_columns(raw, speed[linkage]),
-    )
-
-
-def _columns(raw: Mapping[str, Any], speed: Floats) -> dict[str, Floats]:
-    """Measures (c,) of circuits from the core's arrays, at an input speed of each."""
+    codes, limits, counts = raw["motion_type"], raw["limits"], raw["circuits"]
+    linkage, circuit = _numbered(counts)
     transmission = np.degrees(raw["transmission"])
-    columns = {
-        "turns": raw["turns"].astype(np.float64),
-        "swing": np.degrees(raw["output_range"][:, 1] - raw["output_range"][:, 0]),
-        "time_ratio": _time_ratio(raw),
+    columns = _columns(raw, speed[linkage], turns=True) | {
+        # a circuit of an RSSR has the type of all of them
+        "circuit_type": WORDS[codes[linkage]],
         "transmission_lowest": transmission[:, 0],
         "transmission_highest": transmission[:, 2],
+    }
+    clear = (codes != INVALID) & (codes != CHANGE_POINT)
+    return Motions(clear, WORDS[codes], limits, counts, linkage, circuit, columns)
+
+
+def loop_motions(linkages: Sequence[Linkage], input: int, output: int, samples: int, threads: int) -> Motions:
+    """What the motions of loops of one pattern of joints come to, each at the speed of its drive.
+
+    `input` and `output` are places of columns, `samples` inputs in a turn. Not clear are loops that the input
+    does not drive, and those without a circuit, whose reason must be looked for.
+    """
+    parts = [expanded(linkage) for linkage in linkages]
+    raw = _core.measure_loops(
+        parts[0][0],
+        np.array([advances for _, advances, _, _ in parts]),
+        np.stack([linkage.base for linkage in linkages]),
+        np.stack([linkage.ground for linkage in linkages]),
+        np.stack([np.array(links) for _, _, links, _ in parts]),
+        input,
+        output,
+        samples,
+        threads,
+    )
+    counts = raw["circuits"]
+    linkage, circuit = _numbered(counts)
+    kinds = linkages[0].column_kinds
+    rocks = (np.isfinite(raw[f"{end}_range"][:, 0]) for end in ("input", "output"))
+    ends = [
+        np.where(rocking, word(kinds[column], rocks=True), word(kinds[column], rocks=False))
+        for column, rocking in zip((input, output), rocks, strict=True)
+    ]
+    own = np.array([pair(*both) for both in zip(*ends, strict=True)], dtype=object)
+    own[raw["singular"] != 0] = "change-point"
+    types = np.array(["mixed"] * len(counts), dtype=object)
+    bounds = np.concatenate([[0], np.cumsum(counts)])
+    for place, (first, last) in enumerate(pairwise(bounds)):
+        if len(words := set(own[first:last])) == 1:
+            types[place] = words.pop()
+    speed = np.array([linkage.speed_of(input) for linkage in linkages])
+    columns = _columns(raw, speed[linkage], turns=kinds[output] == "turn")
+    missing = np.full(len(linkage), np.nan)
+    columns |= {"circuit_type": own, "transmission_lowest": missing, "transmission_highest": missing}
+    clear = (raw["status"] == DRIVEN) & (counts > 0)
+    limits = _limits(raw, linkage, len(linkages), turns=kinds[input] == "turn")
+    return Motions(clear, types, limits, counts, linkage, circuit, columns)
+
+
+def _numbered(counts: Integers) -> tuple[Integers, Integers]:
+    """The linkage of each circuit and its number there, from the circuits of each linkage."""
+    linkage = np.repeat(np.arange(len(counts)), counts)
+    firsts = np.cumsum(counts) - counts
+    return linkage, np.arange(len(linkage)) - firsts[linkage]
+
+
+def _limits(raw: Mapping[str, Any], linkage: Integers, count: int, *, turns: bool) -> Floats:
+    """The limits (n, m) of loops, from the input dead centres of their circuits."""
+    owner = np.repeat(linkage, raw["input_dead_centre_count"])
+    inputs = raw["input_dead_centres"][:, 0]
+    bounds = np.searchsorted(owner, np.arange(count + 1))
+    found = [merged(inputs[first:last], turns=turns) for first, last in pairwise(bounds)]
+    limits = np.full((count, max(map(len, found), default=0)), np.nan)
+    for row, values in zip(limits, found, strict=True):
+        row[: len(values)] = values
+    return limits
+
+
+def _columns(raw: Mapping[str, Any], speed: Floats, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
+    """Measures (c,) of circuits from the core's arrays, at a speed of each; `turns`: the output does."""
+    swing = raw["output_range"][:, 1] - raw["output_range"][:, 0]
+    columns: dict[str, npt.NDArray[Any]] = {
+        "turns": raw["turns"].astype(np.float64),
+        "swing": np.degrees(swing) if turns else swing,
+        "time_ratio": _time_ratio(raw),
     }
     for name, order in RATES.items():
         ends = raw[name][:, [0, 2]] * (speed**order)[:, None]

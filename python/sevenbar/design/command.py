@@ -6,6 +6,7 @@ import typer
 
 from sevenbar.design.points.command import inertia, point
 from sevenbar.design.synthesis.command import function, swing
+from sevenbar.design.synthesis.path_command import path
 
 design = typer.Typer(
     name="design",
@@ -13,5 +14,5 @@ design = typer.Typer(
     help="Find linkages for a wanted motion, and points of links; each is a file that opens in the studio.",
 )
 
-for _command in (function, swing, point, inertia):
+for _command in (function, swing, path, point, inertia):
     design.command()(_command)

@@ -1,19 +1,19 @@
-"""Linkages of a part that the core measures all at once: RSSRs in the paper's layout."""
+"""Linkages of a part that the core measures all at once: RSSRs in the paper's layout, and general loops."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.many import CHANGE_POINT, CODES, INVALID, RSSR_ROWS, rssr_motions, rssr_types
+from sevenbar.errors import SevenbarError
+from sevenbar.linkage import Linkage
+from sevenbar.many import INVALID, RSSR_ROWS, WORDS, Motions, Words, loop_motions, rssr_motions, rssr_types
 from sevenbar.motion import Floats, Integers
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, Plan
-
-#: The words of the core's codes, as objects of a column.
-WORDS = np.array(CODES, dtype=object)
 
 #: Sizes [file's units] between which nothing is refused by the description; others are left to be looked at.
 LEAST, GREATEST = 1e-50, 1e50
@@ -22,12 +22,26 @@ LEAST, GREATEST = 1e-50, 1e50
 def batched(plan: Plan, values: Floats, threads: int) -> tuple[list[Block], Integers]:
     """The rows of linkages (axes, n) that the core measures, and which are left to be analysed one by one.
 
-    Left are those that a description refuses, which have their reason to tell, change points, whose output
-    must be followed, and all where the sweep is of other linkages or of functions.
+    Left are those that a description refuses or that do not move, which have their reason to tell, change
+    points of an RSSR, whose output must be followed, and all where the sweep is of functions.
     """
     count = values.shape[1]
-    if "rssr" not in plan.draft.raw or not all(isinstance(measure, str) for measure in plan.measures):
+    if not all(isinstance(measure, str) for measure in plan.measures):
         return [], np.arange(count)
+    block = None
+    if "rssr" in plan.draft.raw:
+        block = _of_rssrs(plan, values, threads)
+    elif plan.draft.linkage.followed_generally:
+        block = _of_loops(plan, values, threads)
+    if block is None:
+        return [], np.arange(count)
+    rest = np.ones(count, dtype=bool)
+    rest[block.linkage] = False
+    return [block], np.flatnonzero(rest)
+
+
+def _of_rssrs(plan: Plan, values: Floats, threads: int) -> Block:
+    """The rows of the RSSRs (axes, n) that are clear."""
     dimensions, speed = _dimensions(plan, values)
     sizes = np.abs([*dimensions, speed, *values])
     fits = (sizes <= GREATEST).all(axis=0) & (np.abs(speed) >= LEAST)
@@ -37,11 +51,26 @@ def batched(plan: Plan, values: Floats, threads: int) -> tuple[list[Block], Inte
     if OF_TYPES.issuperset(plan.measures):
         block = _of_types(plan, dimensions[:, which], threads)
     else:
-        block = _of_circuits(plan, dimensions[:, which], speed[which], threads)
-    linkage = which[block.linkage]
-    rest = np.ones(count, dtype=bool)
-    rest[linkage] = False
-    return [Block(linkage, block.circuit, block.status, block.columns)], np.flatnonzero(rest)
+        motions = rssr_motions(dimensions[:, which], plan.input, speed[which], threads)
+        block = _of_circuits(plan, motions)
+    return replace(block, linkage=which[block.linkage])
+
+
+def _of_loops(plan: Plan, values: Floats, threads: int) -> Block | None:
+    """The rows of the loops (axes, n) that are clear; `None` where no description makes one."""
+    linkages: list[Linkage] = []
+    which: list[int] = []
+    for index, row in enumerate(values.T):
+        try:
+            linkages.append(plan.draft_of(row).linkage)
+        except SevenbarError:  # whose reason is told where it is analysed by itself
+            continue
+        which.append(index)
+    if not linkages:
+        return None
+    first, last = (plan.draft.linkage.columns.index(name) for name in (plan.input, plan.output))
+    block = _of_circuits(plan, loop_motions(linkages, first, last, plan.samples, threads))
+    return replace(block, linkage=np.array(which)[block.linkage])
 
 
 def _dimensions(plan: Plan, values: Floats) -> tuple[Floats, Floats]:
@@ -60,45 +89,36 @@ def _of_types(plan: Plan, dimensions: Floats, threads: int) -> Block:
     """A row for each linkage, of what its dimensions tell without its circuits."""
     codes, limits = rssr_types(dimensions, plan.input, threads)
     linkage = np.flatnonzero(codes != INVALID)
-    columns = _of_linkages(plan, linkage, codes, limits)
+    columns = _of_linkages(plan, linkage, WORDS[codes], limits)
     return Block(linkage, np.full(len(linkage), NO_CIRCUIT), _ok(linkage), columns)
 
 
-def _of_circuits(plan: Plan, dimensions: Floats, speed: Floats, threads: int) -> Block:
+def _of_circuits(plan: Plan, motions: Motions) -> Block:
     """A row for each linkage, or for each of its circuits where one of the measures is of circuits."""
-    motions = rssr_motions(dimensions, plan.input, speed, threads)
-    clear = (motions.codes != INVALID) & (motions.codes != CHANGE_POINT)
     own = [measure for measure in plan.measured if measure.per == "circuit"]
     if not own:
-        linkage = np.flatnonzero(clear)
+        linkage = np.flatnonzero(motions.clear)
         circuit = np.full(len(linkage), NO_CIRCUIT)
     else:
-        without = np.flatnonzero(clear & (motions.circuits == 0))
-        kept = np.flatnonzero(clear[motions.linkage])
+        without = np.flatnonzero(motions.clear & (motions.circuits == 0))
+        kept = np.flatnonzero(motions.clear[motions.linkage])
         linkage = np.concatenate([motions.linkage[kept], without])
         circuit = np.concatenate([motions.circuit[kept], np.full(len(without), NO_CIRCUIT)])
-    columns = _of_linkages(plan, linkage, motions.codes, motions.limits)
+    columns = _of_linkages(plan, linkage, motions.types, motions.limits)
     if "circuits" in plan.measures:
         columns["circuits"] = motions.circuits[linkage].astype(np.float64)
     for measure in own:
-        if measure.name == "circuit_type":
-            # a circuit of an RSSR has the type of all of them
-            words = WORDS[motions.codes[linkage]]
-            words[circuit == NO_CIRCUIT] = None
-            columns[measure.name] = words
-        else:
-            missing = np.full(len(without), np.nan)
-            columns[measure.name] = np.concatenate([motions.columns[measure.name][kept], missing])
+        column = motions.columns[measure.name][kept]
+        missing = None if column.dtype == object else np.nan
+        columns[measure.name] = np.concatenate([column, np.full(len(without), missing, column.dtype)])
     return Block(linkage, circuit, _ok(linkage), columns)
 
 
-def _of_linkages(
-    plan: Plan, linkage: Integers, codes: npt.NDArray[np.uint8], limits: Floats
-) -> dict[str, npt.NDArray[Any]]:
+def _of_linkages(plan: Plan, linkage: Integers, types: Words, limits: Floats) -> dict[str, npt.NDArray[Any]]:
     """Columns (r,) of motion type and limits, of the linkage of each row."""
     columns: dict[str, npt.NDArray[Any]] = {}
     if "motion_type" in plan.measures:
-        columns["motion_type"] = WORDS[codes[linkage]]
+        columns["motion_type"] = types[linkage]
     if "limits" in plan.measures:
         columns["limits"] = np.isfinite(limits).sum(axis=1)[linkage].astype(np.float64)
     for place, name in enumerate(limit_names(plan)):

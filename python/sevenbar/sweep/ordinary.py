@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.measures import Measure, rows_of
 from sevenbar.motion import Floats, Integers, Motion
@@ -32,7 +31,8 @@ def analysed(plan: Plan, values: Floats, first: int, which: Integers) -> Block:
     for index in which:
         told, found = OK, _nothing(measures)
         try:
-            motion = _motion(plan, values[:, index])
+            linkage_there = plan.draft_of(values[:, index]).linkage
+            motion = linkage_there.motion(plan.samples, input=plan.input, output=plan.output)
         except SevenbarError as error:
             told = "; ".join(str(error).splitlines())
         else:
@@ -60,13 +60,6 @@ def analysed(plan: Plan, values: Floats, first: int, which: Integers) -> Block:
 def _nothing(measures: tuple[Measure, ...]) -> list[Row]:
     row: Row = {"circuit": None, **{measure.name: None for measure in measures}}
     return [row]
-
-
-def _motion(plan: Plan, values: Floats) -> Motion:
-    draft: Draft = plan.draft
-    for axis, value in zip(plan.space.axes, values, strict=True):
-        draft = draft.with_value(axis.dimension.place, draft.written(axis.dimension, float(value)))
-    return draft.linkage.motion(plan.samples, input=plan.input, output=plan.output)
 
 
 def _measured(motion: Motion, measures: tuple[Measure, ...], linkage: int) -> Iterator[Row]:

@@ -17,7 +17,7 @@ from sevenbar.draft import Draft
 from sevenbar.linkage import Linkage
 from sevenbar.many import simd_level
 from sevenbar.measures import MEASURES, Measure, measures_named
-from sevenbar.motion import Motion
+from sevenbar.motion import Floats, Motion
 from sevenbar.sweep.axes import Given, whole_number
 from sevenbar.sweep.space import Space
 
@@ -94,6 +94,13 @@ class Plan:
         """The linkages of a part."""
         first = part * self.part_size
         return range(first, min(first + self.part_size, self.space.count))
+
+    def draft_of(self, values: Floats) -> Draft:
+        """The description with the values (axes,) of one linkage."""
+        draft = self.draft
+        for axis, value in zip(self.space.axes, values, strict=True):
+            draft = draft.with_value(axis.dimension.place, draft.written(axis.dimension, float(value)))
+        return draft
 
     def request(self) -> dict[str, Any]:
         """What the sweep is, as plain values: two sweeps with one request have the same parts."""

@@ -67,7 +67,7 @@ class RssrPlane(Plane):
     def gaps(self, points: Floats, width: Floats) -> Floats | None:
         """Critical distances of the balls less the coupler [length], (n, 16).
 
-        Those that are about to be born count too, so that a pair born inside a square is seen from its middle.
+        Those about to be born count too, so that a pair born inside a square is seen from its middle.
         """
         return critical_gaps(self.dimensions(points), np.maximum(NEARLY_REAL, BIRTH * np.sqrt(width)))
 

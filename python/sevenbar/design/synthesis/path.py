@@ -20,9 +20,6 @@ from sevenbar.linkage import Linkage
 #: Starts where none are asked for, the most, and the most designs.
 STARTS, MOST_STARTS, MOST_DESIGNS = 256, 65536, 50
 
-#: How often a design that passes its points in a wrong order is matched with them anew.
-MATCHED_ANEW = 2
-
 #: Of the starts so many for each design wanted are looked at closer, and of these so many to the end.
 LOOKED_AT, TAKEN = 8, 3
 
@@ -91,24 +88,24 @@ def generated(
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Candidate, ...]:
     """The designs of a task, as `path_generation` gives them; `progress` is told (done, total)."""
-    _count("designs", count, 1, MOST_DESIGNS)
-    _count("starts", starts, 0, MOST_STARTS)
-    _count("seed", seed, 0, 2**63 - 1)
-    found = seeds(task, starts, seed)
+    check_counts(count, starts, seed)
+    steps = starts + 1 + (LOOKED_AT + TAKEN) * count
+    found = seeds(task, starts, seed, lambda done: _tell(progress, done, steps))
     rough = apart(task, found, LOOKED_AT * count)
-    steps = len(rough) + TAKEN * count
+    done = starts + 1
     looked: list[Refined] = []
     for i, one in enumerate(rough):
-        _tell(progress, i, steps)
-        look = refined(task, one, LOOK)
-        looked += [look] if look is not None else []
-    looked.sort(key=lambda one: one.rms)
+        _tell(progress, done + i, steps)
+        looks = [_looked(task, start) for start in (one, one.other) if start is not None]
+        looked += [look for look in looks if look is not None]
+    # those in order first: the others are mostly refused
+    looked.sort(key=lambda one: (task.timing is None and not _ordered(one), one.rms))
     kept: list[Candidate] = []
     refusals: list[Refusal] = []
     for i, look in enumerate(looked):
         if len(distinct(ranked(kept), scale_free=False)) >= count and i >= TAKEN * count:
             break
-        _tell(progress, min(len(rough) + i, steps), steps)
+        _tell(progress, min(done + LOOKED_AT * count + i, steps), steps)
         answer = _answer(task, look)
         if isinstance(answer, Candidate):
             kept.append(answer)
@@ -121,21 +118,27 @@ def generated(
     return tuple(renamed(best, task.draft.linkage.name))
 
 
+def _looked(task: PathTask, start: Seed) -> Refined | None:
+    """A first look at a start; matched anew once where its points have left their order."""
+    look = refined(task, start, LOOK)
+    if look is None or task.timing is not None or _ordered(look):
+        return look
+    again = min(looked_at(task, look.varied), key=lambda one: one.error, default=None)
+    if again is None or not np.isfinite(again.error):
+        return look
+    return refined(task, again, LOOK) or look
+
+
+def _ordered(look: Refined) -> bool:
+    """Whether the inputs of a path go one way."""
+    steps = np.diff(look.inputs)
+    return bool((steps > 0).all() or (steps < 0).all())
+
+
 def _answer(task: PathTask, look: Refined) -> Candidate | Refusal:
-    """The design that a first look leads to; matched anew where it passes the points in a wrong order."""
+    """The design that a first look leads to, solved to the end and checked."""
     start = Seed(look.varied, look.inputs, look.poses, 0.0, _phase(task, look))
-    answer: Candidate | Refusal | None = None
-    for _ in range(MATCHED_ANEW + 1):
-        whole = refined(task, start)
-        if whole is None:
-            break
-        answer = checked_path(task, whole)
-        if isinstance(answer, Candidate) or answer.fault != "order":
-            break
-        start = min(looked_at(task, whole.varied), key=lambda one: one.error, default=start)
-        if not np.isfinite(start.error):
-            break
-    return answer or checked_path(task, look)
+    return checked_path(task, refined(task, start) or look)
 
 
 def _tell(progress: Callable[[int, int], None] | None, done: int, total: int) -> None:
@@ -163,6 +166,13 @@ def _nothing(task: PathTask, found: Sequence[Seed], refusals: Sequence[Refusal])
         f"path: no design passes the check ({tally(refusals)}); the nearest: {last.told}; give wider bounds "
         "or limits, or more starts"
     )
+
+
+def check_counts(count: object, starts: object, seed: object) -> None:
+    """Raises `RequestError` for a number of designs or starts, or a seed, that is none."""
+    _count("designs", count, 1, MOST_DESIGNS)
+    _count("starts", starts, 0, MOST_STARTS)
+    _count("seed", seed, 0, 2**63 - 1)
 
 
 def _count(name: str, value: object, low: int, high: int) -> None:

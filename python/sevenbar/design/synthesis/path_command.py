@@ -62,7 +62,7 @@ def path(
 ) -> None:
     """Linkages of a type whose point goes through wanted points in order (extra 'design')."""
     from sevenbar.design.synthesis import path_report
-    from sevenbar.design.synthesis.path import generated, path_task
+    from sevenbar.design.synthesis.path import check_counts, generated, path_task
     from sevenbar.design.synthesis.path_table import read_path
     from sevenbar.draft import Draft
     from sevenbar.files import text_of
@@ -72,9 +72,7 @@ def path(
     check_targets([] if out is None else _targets(out, designs, endings), force=force)
     points, inputs = read_path(wanted, draft.linkage, point=point or "", timed=timing)
     if phase and not timing:
-        raise RequestError(
-            "--phase: the inputs have no say without --timing; give both, or leave --phase out"
-        )
+        raise RequestError("--phase: inputs have no say without --timing; give both, or leave --phase out")
     task = path_task(
         draft,
         points,
@@ -86,6 +84,7 @@ def path(
         place=place,
         limits=_limits(transmission, size, motion_type),
     )
+    check_counts(designs, starts, seed)
     with progress_bar("designing") as progress:
         found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
     written = [] if out is None else _written(task, found, (str(wanted), seed), out, endings, force=force)

@@ -108,7 +108,7 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
             axes.set_title(f"({letter}) {'xyz'[across]} and {'xyz'[up]}", fontsize=10)
             axes.set_xlabel(f"{'xyz'[across]} [{unit}]", labelpad=1)
             axes.set_ylabel(f"{'xyz'[up]} [{unit}]", labelpad=1)
-        below = figure.add_axes((0.075, 0.085, 0.40, 0.19))
+        below = figure.add_axes((0.085, 0.085, 0.39, 0.19))
         below.bar(np.arange(1, len(errors) + 1), errors, color=BAR, width=0.62)
         below.set_xlabel("wanted point")
         below.set_ylabel(f"distance [{unit}]")

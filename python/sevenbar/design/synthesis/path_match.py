@@ -140,6 +140,35 @@ def matched(
     return best
 
 
+def by_length(curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool) -> Integers | None:
+    """Rows (n,) of a curve (rows, 3), as placed, at the lengths along it that wanted points have.
+
+    Near a sharp turn, where the nearest rows of points before and after it are the same, lengths tell which
+    side is which. The best of all begins, both ways; `None` where the curve is too short.
+    """
+    steps = np.linalg.norm(np.diff(wanted, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    whole = np.concatenate([curve, curve[:1]]) if curve_closed else curve
+    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(whole, axis=0), axis=1))])
+    if closed:
+        # the lengths of a closed path are those of the curve, from its first point to its first again
+        along *= length[-1] / (along[-1] + float(np.linalg.norm(wanted[-1] - wanted[0])))
+    count = len(curve)
+    best, least = None, math.inf
+    for way in (1, -1):
+        for begin in range(count):
+            at = length[begin] + way * along
+            if curve_closed and along[-1] < length[-1]:
+                at = at % length[-1]
+            elif at.min() < 0 or at.max() > length[-1]:
+                continue
+            rows = np.searchsorted(length, at).clip(0, len(length) - 1) % count
+            error = float(((curve[rows] - wanted) ** 2).sum())
+            if error < least:
+                best, least = rows, error
+    return best
+
+
 def _by_shape(
     curve: Floats, wanted: Floats, *, curve_closed: bool, closed: bool, scaled: bool
 ) -> Placing | None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.design.synthesis.path_match import STILL, Match, Placing, matched, placed
+from sevenbar.design.synthesis.path_match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.design.synthesis.path_task import PathTask
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
 from sevenbar.motion import Circuit, Floats, Integers
@@ -30,7 +30,7 @@ SAME = 0.02
 class Seed:
     """A linkage with a rough match: `varied` (k,), inputs (n,) and poses (n, columns), mean square error.
 
-    `phase` is what was added to the wanted inputs.
+    `phase` is what was added to the wanted inputs; `other` the same linkage matched by lengths along it.
     """
 
     varied: Floats
@@ -38,6 +38,7 @@ class Seed:
     poses: Floats
     error: float
     phase: float = 0.0
+    other: Seed | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +62,16 @@ class Pass:
         return math.tau * self.circuit.turns if self.closed else 0.0
 
 
-def seeds(task: PathTask, count: int, seed: int) -> list[Seed]:
+def seeds(task: PathTask, count: int, seed: int, tell: Callable[[int], None] = lambda _: None) -> list[Seed]:
     """The best matches of the description itself and of `count` starts within the bounds, best first.
 
     A linkage gives one for each of its circuits. Starts are Sobol's points, a quarter of them near the
-    description. Raises `RequestError` where none of them can be assembled.
+    description; `tell` is told how many are done. Raises `RequestError` where none can be assembled.
     """
     found: list[Seed] = []
     assembled = 0
-    for varied in _starts(task, count, seed):
+    for done, varied in enumerate(_starts(task, count, seed)):
+        tell(done)
         own = list(looked_at(task, varied))
         assembled += bool(own)
         found += [one for one in own if math.isfinite(one.error)]
@@ -164,7 +166,11 @@ def _untimed(task: PathTask, one: Pass, varied: Floats) -> Seed | None:
     )
     if match is None:
         return None
-    return _seed(task, one, varied, match)
+    own = _seed(task, one, varied, match)
+    rows = by_length(match.placing.put(one.curve), task.wanted, curve_closed=one.closed, closed=task.closed)
+    if rows is None:
+        return own
+    return replace(own, other=_seed(task, one, varied, replace(match, rows=rows)))
 
 
 def _seed(task: PathTask, one: Pass, varied: Floats, match: Match) -> Seed:
