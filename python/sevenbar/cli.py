@@ -12,6 +12,7 @@ import typer
 import typer.core
 
 import sevenbar as sb
+from sevenbar.design.tolerance.command import tolerance
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.export.command import export
 from sevenbar.folder import check_targets
@@ -233,7 +234,7 @@ def _points(
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
-for _command in (studio, compare, calibrate, simulate, export):
+for _command in (studio, compare, calibrate, tolerance, simulate, export):
     app.command()(_command)
 
 
