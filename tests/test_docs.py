@@ -5,6 +5,7 @@ import doctest
 import importlib
 import io
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -19,6 +20,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
     "name",
     [
         *("measuring.calibrate", "measuring.compare", "errors", "files", "forms"),
+        *(f"design.tolerance.{module}" for module in ("inverse", "samples", "sensitivities", "tolerances")),
         *("gallery", "linkage", "mobility", "motion", "schema", "table", "units"),
     ],
 )
@@ -51,15 +53,18 @@ def test_the_report_in_the_readme_is_the_report_of_today():
     assert all(f"    {line}\n" in shown for line in lines if line)
 
 
-def test_what_the_page_on_measured_values_prints_is_what_its_commands_print_today(tmp_path):
-    page = (ROOT / "docs" / "measured.md").read_text(encoding="utf-8")
+@pytest.mark.parametrize(
+    ("name", "count"), [("measured", 4), pytest.param("tolerance", 3, marks=pytest.mark.slow)]
+)
+def test_what_a_page_prints_is_what_its_commands_print_today(name, count, tmp_path):
+    page = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
     # a mean of differences that is zero but for rounding, and numbers beside it
     rounding = re.compile(r"[-+]?\d\.?\d*e-1\d")
     shown = re.sub(r" +", " ", rounding.sub("~", page))
     commands = re.findall(r"^    \$ sevenbar (.*)$", page, flags=re.MULTILINE)
-    assert len(commands) == 4
+    assert len(commands) == count
     for index, command in enumerate(commands):
-        words = command.replace("DIR", str(tmp_path / str(index))).split()
+        words = shlex.split(command.replace("DIR", str(tmp_path / str(index))))
         run = [sys.executable, "-m", "sevenbar.cli", *words]
         printed = subprocess.run(run, cwd=ROOT, capture_output=True, text=True, check=True).stdout
         for line in printed.partition("\nwritten:")[0].splitlines():
@@ -79,6 +84,15 @@ def test_the_example_of_the_page_on_measured_values_prints_what_its_comments_say
     promised = re.findall(r"print\(.*\)  # (.*)", code)
     assert float(rms) == pytest.approx(float(promised[0]), abs=1e-6)
     assert [names, inside] == promised[1:]
+
+
+def test_the_example_of_the_page_on_tolerances_prints_what_its_comments_say():
+    page = (ROOT / "docs" / "tolerance.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ import typer.core
 import sevenbar as sb
 from sevenbar.design.command import design
 from sevenbar.design.maps.command import map_
+from sevenbar.design.tolerance.command import tolerance
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.export.command import export
 from sevenbar.folder import check_targets
@@ -236,7 +237,7 @@ def _points(
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
-for _command in (studio, compare, calibrate, simulate, export, sweep):
+for _command in (studio, compare, calibrate, simulate, export, sweep, tolerance):
     app.command()(_command)
 app.command("map")(map_)
 app.add_typer(design)

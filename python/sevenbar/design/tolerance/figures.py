@@ -1,0 +1,126 @@
+"""Figures of tolerances: which dimension matters most, and how far the output may deviate along the cycle."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.design.tolerance.linear import Linear
+from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
+from sevenbar.design.tolerance.words import plain, told_name, unit_of
+from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure
+from sevenbar.motion import Floats, Integers
+from sevenbar.skeleton import short
+
+#: Bars beyond the first so many share one, and their height [inch].
+MOST_BARS, BAR = 14, 0.28
+
+LINEAR, EXACT, BAND = CIRCUIT_COLOURS[1], CIRCUIT_COLOURS[0], "#d6e6f2"
+
+
+def shares_figure(linear: Linear) -> Figure:
+    """The share of each dimension's tolerance in the variance over the cycle, the greatest above."""
+    effects = list(linear.effects)
+    labels = [f"{short(e.dimension.name, 24)} ± {e.width:.4g} {e.dimension.unit}".rstrip() for e in effects]
+    shares = [100 * effect.share for effect in effects]
+    if len(effects) > MOST_BARS:
+        rest = len(effects) - MOST_BARS + 1
+        labels = [*labels[: MOST_BARS - 1], f"{rest} others together"]
+        shares = [*shares[: MOST_BARS - 1], sum(shares[MOST_BARS - 1 :])]
+    with rc_context(STYLE):
+        figure = new_figure(6.4, 1.5 + BAR * len(labels))
+        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.06)
+        axes = figure.subplots()
+        axes.barh(range(len(labels)), shares, color=LINEAR, height=0.62)
+        axes.set_yticks(range(len(labels)), labels)
+        axes.invert_yaxis()
+        for place, share in enumerate(shares):
+            axes.annotate(f"{share:.1f} %", (share, place), (3, 0), textcoords="offset points", va="center")
+        axes.set_xlim(0, 1.14 * max([*shares, 1e-9]))
+        axes.set_xlabel(f"share in the variance over the cycle, {told_name(linear)} [%]")
+        axes.grid(axis="x", lw=0.6)
+        axes.set_axisbelow(True)
+        axes.spines[["top", "right"]].set_visible(False)
+        figure.suptitle(f"{short(linear.found.linkage.name, 60)}\nwhich tolerance matters most", fontsize=11)
+    return figure
+
+
+def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
+    """How far the output may deviate along the cycle: worst case, 3 sigma, and what samples do."""
+    passes = _passes(linear)
+    with rc_context(STYLE):
+        figure = new_figure(6.4 if len(passes) == 1 else 8.4, 4.6)
+        figure.set_layout_engine("constrained", h_pad=0.04, w_pad=0.06)
+        grid = figure.subplots(1, len(passes), sharey=True, squeeze=False)[0]
+        for axes, (name, rows) in zip(grid, passes, strict=True):
+            _band(axes, linear, exact, rows)
+            axes.set_xlabel(_input_label(linear))
+            axes.grid(lw=0.6)
+            axes.set_axisbelow(True)
+            axes.margins(x=0)
+            if linear.found.loop.columns[linear.found.loop.input].turns:
+                axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+            if name:
+                axes.set_title(name, fontsize=9)
+        grid[0].set_ylabel(f"deviation, {told_name(linear)} [{unit_of(linear)}]")
+        handles, labels = grid[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
+        circuit = f"circuit {linear.found.circuit.index}"
+        title = f"{short(linear.found.linkage.name, 60)}\nwhat the tolerances do, {circuit}"
+        figure.suptitle(title, fontsize=11)
+    return figure
+
+
+def _input_label(linear: Linear) -> str:
+    found = linear.found
+    unit = "deg" if found.loop.columns[found.loop.input].turns else found.linkage.length_unit
+    return f"input: {short(found.input_name, 40)} [{unit}]"
+
+
+def _passes(linear: Linear) -> list[tuple[str, Integers]]:
+    """Each pass of the circuit with its rows' places, in the order of the circuit."""
+    branch = linear.found.circuit.branch[linear.rows]
+    numbers = np.unique(branch)
+    if len(numbers) == 1:
+        return [("", np.arange(len(branch)))]
+    return [(f"branch {number}", np.flatnonzero(branch == number)) for number in numbers]
+
+
+def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) -> None:
+    found = linear.found
+    x = linear.input[rows]
+    order = np.argsort(x, kind="stable")
+    rows, x = rows[order], x[order]
+    # a circuit that goes round ends where it began
+    round_ = found.circuit.input_range is None and len(linear.rows) == len(linear.status)
+    if round_ and found.circuit.turns:
+        rows, x = np.append(rows, rows[0]), np.append(x, x[0] + 2 * np.pi * abs(found.circuit.turns))
+    # rows that are left out leave a gap
+    gaps = (
+        np.flatnonzero(np.diff(x) > 1.5 * np.median(np.diff(x))) + 1
+        if len(x) > 2
+        else np.array([], dtype=int)
+    )
+
+    def shown(values: Floats) -> Floats:
+        return np.insert(plain(linear, values)[rows], gaps, np.nan)
+
+    turns = found.loop.columns[found.loop.input].turns
+    places = np.insert(np.degrees(x) if turns else x, gaps, np.nan)
+    worst, sigma = shown(linear.worst), shown(3 * linear.deviation)
+    axes.fill_between(places, -worst, worst, color=BAND, lw=0, label="linear, worst case")
+    axes.plot(places, sigma, color=LINEAR, lw=1.5, label="linear, 3 standard deviations")
+    axes.plot(places, -sigma, color=LINEAR, lw=1.5)
+    if exact is not None:
+        names = {LEVELS[0]: "Monte Carlo, 99.73 % between", LEVELS[1]: "Monte Carlo, 95 % between"}
+        styles = {LEVELS[0]: (0, (4, 2)), LEVELS[1]: (0, (1.2, 1.2))}
+        for level, (low, high) in {LEVELS[0]: (0, 4), LEVELS[1]: (1, 3)}.items():
+            axes.plot(
+                places, shown(exact.quantiles[low]), color=EXACT, lw=1.2, ls=styles[level], label=names[level]
+            )
+            axes.plot(places, shown(exact.quantiles[high]), color=EXACT, lw=1.2, ls=styles[level])
+        axes.plot(places, shown(exact.quantiles[2]), color=EXACT, lw=1.0, label="Monte Carlo, median")
+    axes.axhline(0.0, color="#505050", lw=0.6, zorder=1)

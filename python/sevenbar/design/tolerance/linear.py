@@ -1,0 +1,165 @@
+"""What tolerances come to by the linear estimate, along the cycle and of each measure.
+
+With s the derivatives of an output, t the half widths and sigma the standard deviations of the errors,
+
+    worst = sum |s_i t_i|,        deviation^2 = sum (s_i sigma_i)^2                                        (1)
+
+and the share of a dimension in the variance is that of its term in the second sum, over the whole cycle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
+from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
+from sevenbar.draft import Dimension
+from sevenbar.errors import RequestError
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Floats, Integers, Words
+
+#: What tolerances may be given as.
+Given = Tolerances | Mapping[str, float | str]
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What a dimension's tolerance does to the output: the greatest effect, at which input, and the share."""
+
+    dimension: Dimension
+    width: float
+    source: str
+    greatest: float
+    at: float
+    share: float
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """The linear estimate (1) of an output on the rows where it means something.
+
+    `rows` (n,) of the circuit, with `slopes` (n, dimensions) 0 where a dimension has no tolerance; `worst`
+    and `deviation` (n,) in the output's unit. `status` (all rows,) says why others are left out.
+    """
+
+    found: Sensitivities
+    tolerances: Tolerances
+    distribution: str
+    output: str
+    quantity: str
+    status: Words
+    rows: Integers
+    slopes: Floats
+
+    @property
+    def unit(self) -> str:
+        """The output's unit."""
+        return self.found.outputs[self.found.place(self.output, self.quantity)].unit
+
+    @property
+    def input(self) -> Floats:
+        """The inputs (n,) [rad, or length]."""
+        return np.asarray(self.found.input[self.rows])
+
+    @cached_property
+    def worst(self) -> Floats:
+        """The worst case (n,)."""
+        return np.asarray(np.abs(self.slopes) @ self.tolerances.widths)
+
+    @cached_property
+    def deviation(self) -> Floats:
+        """The standard deviation (n,)."""
+        return np.sqrt(self.slopes**2 @ self.tolerances.deviations(self.distribution) ** 2)
+
+    @property
+    def greatest(self) -> int:
+        """The place among the rows where the worst case is greatest."""
+        return int(np.argmax(self.worst))
+
+    @cached_property
+    def effects(self) -> tuple[Effect, ...]:
+        """Each dimension that has a tolerance, the greatest share of the variance first."""
+        parts = (self.slopes * self.tolerances.deviations(self.distribution)) ** 2
+        total = float(parts.sum())
+        found = []
+        for k, dimension in enumerate(self.found.dimensions):
+            if self.tolerances.widths[k] > 0:
+                effect = np.abs(self.slopes[:, k]) * self.tolerances.widths[k]
+                row = int(np.argmax(effect))
+                share = float(parts[:, k].sum()) / total if total > 0 else 0.0
+                width, source = float(self.tolerances.widths[k]), self.tolerances.sources[k]
+                found.append(
+                    Effect(dimension, width, source, float(effect[row]), float(self.input[row]), share)
+                )
+        return tuple(sorted(found, key=lambda effect: (-effect.share, -effect.greatest)))
+
+    def measure(self, name: str) -> tuple[float, float]:
+        """Worst case and standard deviation of a measure, in its unit; NaN where it has no derivative."""
+        slopes = np.where(self.tolerances.widths > 0, self.found.measure(name).slopes, 0.0)
+        deviations = self.tolerances.deviations(self.distribution)
+        return float(np.abs(slopes) @ self.tolerances.widths), float(np.sqrt(slopes**2 @ deviations**2))
+
+    def left_out(self) -> tuple[str, ...]:
+        """What is not told, in words: rows, and dimensions."""
+        told = list(self.tolerances.left_out)
+        words, counts = np.unique(self.status[self.status != "ok"], return_counts=True)
+        for word, count in zip(words, counts, strict=True):
+            told.append(f"{count} of {len(self.status)} rows left out: {_WHY.get(str(word), str(word))}")
+        return tuple(told)
+
+
+_WHY = {
+    "near-dead-centre": "so near to a dead centre of the input that these tolerances may move it past them, "
+    "and the sensitivities grow without bound",
+    "dead-centre": "at a dead centre of the input, where the sensitivities have no bound",
+    "change-point": "at a change point, where the sensitivities have no bound",
+}
+
+
+def linear_estimate(
+    of: Linkage | Sensitivities,
+    given: Given,
+    *,
+    distribution: str = "normal",
+    output: str | None = None,
+    quantity: str = "position",
+) -> Linear:
+    """The linear estimate of what tolerances do to an output along the cycle.
+
+    `given` are half widths by name or pattern, `distribution` normal, uniform or triangular, `output` a
+    joint or a point's coordinate, of which `quantity` position, velocity or acceleration is told. Raises
+    `RequestError` for arguments that do not fit, and where no row is left.
+    """
+    found = of if isinstance(of, Sensitivities) else sensitivities(of)
+    if not isinstance(given, Tolerances):
+        unit = found.linkage.length_unit
+        given = tolerances(found.dimensions, given, length_unit=unit, opening=found.opening)
+    given.deviations(distribution)
+    status = found.clear(given.widths)
+    place = found.place(output, quantity)
+    slopes = np.where(given.widths > 0, found.slopes[:, place], 0.0)
+    one = found.outputs[place]
+    if np.isnan(found.values[found.poses.rows, place]).all() or np.isnan(slopes[status == "ok"]).any():
+        raise RequestError(
+            f"output: {one.name} takes part in an idle motion, which the input does not tell; give another"
+        )
+    rows = np.flatnonzero(status == "ok")
+    if not rows.size:
+        raise RequestError(
+            "tolerance: these are so great that the dead centres of the input may move past every row; "
+            "give smaller ones"
+        )
+    return Linear(
+        found,
+        given,
+        distribution,
+        one.owner if one.joint else one.name,
+        one.quantity,
+        status,
+        rows,
+        slopes[rows],
+    )

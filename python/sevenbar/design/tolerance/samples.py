@@ -1,0 +1,240 @@
+"""Monte Carlo: designs with errors at random, each analysed exactly, beside the linear estimate.
+
+The same errors go into the linear estimate, whose variance V is known. So with y the exact deviations of a
+design along the cycle, l those of the linear estimate, and means over samples,
+
+    bias b = mean(y - l),        ratio^2 = 1 + (mean(y^2 - l^2) - b^2) / V                                 (1)
+
+estimate bias and ratio of standard deviations with the statistical error of the differences only, which is
+far below that of either side alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.design.tolerance.exact import Designs
+from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
+from sevenbar.design.tolerance.sensitivities import Sensitivities
+from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Floats
+
+#: Quantiles that are kept: the median, 95 % and the 3 sigma of a normal distribution.
+LEVELS = (0.00135, 0.025, 0.5, 0.975, 0.99865)
+
+#: The linear estimate holds where the ratio of standard deviations is within this of 1, and the bias within
+#: this share of the standard deviation: tolerances are seldom known better than to a few per cent.
+RATIO_HOLDS, BIAS_HOLDS = 0.05, 0.1
+
+#: Statistical errors that are no sign of anything.
+SURE = 3.0
+
+#: Poses that are solved at once, so that their arrays stay in the processor's memory.
+BLOCK = 20_000
+
+#: Lost samples that are looked at by the ordinary analysis.
+LOOKED_AT = 40
+
+#: The most samples.
+MOST = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class MonteCarlo:
+    """Designs with errors at random, and what they tell of the linear estimate.
+
+    Along the `linear.rows` (n,): `quantiles` (levels, n) of the deviations, at `LEVELS`, `mean` and
+    `deviation` (n,), the standard deviation; all in the output's unit, of the samples that go round. Of the
+    `count` samples `lost` do not, for reasons counted in `reasons` of `looked_at` of them. `ratio` is that of
+    standard deviations over the cycle, exact to linear; `bias` the greatest along the cycle in parts of the
+    linear standard deviation, each with its statistical error. `greatest` is the greatest deviation seen.
+    """
+
+    linear: Linear
+    seed: int
+    count: int
+    lost: int
+    looked_at: int
+    reasons: Mapping[str, int]
+    quantiles: Floats
+    mean: Floats
+    deviation: Floats
+    greatest: float
+    ratio: float
+    ratio_error: float
+    bias: float
+    bias_error: float
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether the linear estimate holds; `None` where the samples are too few to tell."""
+        off_ratio, off_bias = abs(self.ratio - 1), abs(self.bias)
+        if self.lost:
+            return False
+        if (
+            off_ratio - SURE * self.ratio_error > RATIO_HOLDS
+            or off_bias - SURE * self.bias_error > BIAS_HOLDS
+        ):
+            return False
+        if (
+            off_ratio + SURE * self.ratio_error <= RATIO_HOLDS
+            and off_bias + SURE * self.bias_error <= BIAS_HOLDS
+        ):
+            return True
+        return None
+
+    @property
+    def verdict(self) -> str:
+        """Whether the linear estimate holds, and why."""
+        if self.holds:
+            return (
+                "the linear estimate holds: standard deviations agree within "
+                f"{100 * RATIO_HOLDS:g} %, the mean is off by less than {BIAS_HOLDS:g} of one"
+            )
+        if self.holds is None:
+            return f"whether the linear estimate holds cannot be told with {self.count} samples; take more"
+        because = []
+        if self.lost:
+            because.append(
+                f"{100 * self.lost / self.count:.3g} % of the samples do not go round ({self.why_lost})"
+            )
+        if abs(self.ratio - 1) - SURE * self.ratio_error > RATIO_HOLDS:
+            more = "greater" if self.ratio > 1 else "smaller"
+            because.append(f"the standard deviation is {100 * abs(self.ratio - 1):.3g} % {more}")
+        if abs(self.bias) - SURE * self.bias_error > BIAS_HOLDS:
+            because.append(f"the mean is off by {abs(self.bias):.2g} standard deviations")
+        return "the linear estimate does not hold, because " + " and ".join(because)
+
+    @property
+    def why_lost(self) -> str:
+        """What became of the samples that do not go round."""
+        parts = [f"{count} {reason}" for reason, count in self.reasons.items()]
+        seen = f"of {self.looked_at} looked at " if self.looked_at < self.lost else ""
+        return seen + ", ".join(parts)
+
+
+def monte_carlo(
+    of: Linkage | Sensitivities,
+    given: Given | Linear,
+    count: int = 2000,
+    *,
+    seed: int = 0,
+    distribution: str = "normal",
+    output: str | None = None,
+    quantity: str = "position",
+) -> MonteCarlo:
+    """Exact deviations of an output for `count` designs with errors at random within their tolerances.
+
+    Errors are independent and spread by `distribution`: uniform or triangular over the tolerance, or normal
+    with the half width as three standard deviations, cut there. Each design is followed from the nominal one
+    along the same pass of the circuit. The rest is as for `linear_estimate`. Raises `RequestError` for a
+    count below 2 and a seed that is none.
+
+        >>> import sevenbar as sb
+        >>> found = monte_carlo(sb.load("rssr"), {"L1": 0.1, "L2": 0.1}, 200)
+        >>> found.lost, found.holds
+        (0, True)
+    """
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or not 2 <= count <= MOST:
+        raise RequestError(f"count: {shown(count)} samples tell nothing; give 2 to {MOST}")
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise RequestError(f"seed: {shown(seed)} is not a seed; give a whole number that is not negative")
+    if isinstance(given, Linear):
+        linear = given
+    else:
+        linear = linear_estimate(of, given, distribution=distribution, output=output, quantity=quantity)
+    changes = linear.tolerances.drawn(int(count), linear.distribution, np.random.default_rng(seed))
+    designs = Designs(linear)
+    exact = np.empty((changes.shape[1], len(linear.rows)))
+    gap = np.zeros(changes.shape[1], dtype=bool)
+    whole_turn = linear.found.circuit.input_range is None and linear.found.circuit.closed
+    block = max(1, BLOCK // len(linear.rows))
+    for start in range(0, len(exact), block):
+        part = slice(start, start + block)
+        moved = changes[:, part, None]
+        u = designs.followed(moved)
+        exact[part] = designs.deviations(moved, u)
+        if whole_turn and len(linear.rows) == len(linear.status):
+            gap[part] = _gaps(designs.determinants(moved, u))
+    lost = gap | np.isnan(exact).any(axis=1)
+    kept = exact[~lost]
+    reasons, looked_at = _reasons(linear, changes.T[lost])
+    if len(kept) < 2:
+        raise RequestError(
+            f"tolerance: {int(lost.sum())} of {count} samples do not go round; give smaller tolerances"
+        )
+    return MonteCarlo(
+        linear=linear,
+        seed=int(seed),
+        count=int(count),
+        lost=int(lost.sum()),
+        looked_at=looked_at,
+        reasons=reasons,
+        quantiles=np.quantile(kept, LEVELS, axis=0),
+        mean=kept.mean(axis=0),
+        deviation=kept.std(axis=0, ddof=1),
+        greatest=float(np.abs(kept).max()),
+        **_agreement(linear, kept, (linear.slopes @ changes).T[~lost]),
+    )
+
+
+def _agreement(linear: Linear, exact: Floats, estimate: Floats) -> dict[str, float]:
+    """Ratio and bias by (1), with their statistical errors; `exact` and `estimate` are (samples, rows)."""
+    root = math.sqrt(len(exact))
+    beside = exact - estimate
+    off = beside.mean(axis=0)
+    variance = float((linear.deviation**2).mean())
+    more = (exact**2 - estimate**2).mean(axis=1)
+    ratio = math.sqrt(max(1 + (float(more.mean()) - float((off**2).mean())) / variance, 0.0))
+    scale = math.sqrt(variance)
+    row = int(np.argmax(np.abs(off)))
+    return {
+        "ratio": ratio,
+        "ratio_error": float(more.std(ddof=1)) / root / (2 * max(ratio, np.finfo(float).tiny) * variance),
+        "bias": float(off[row]) / scale,
+        "bias_error": float(beside[:, row].std(ddof=1)) / root / scale,
+    }
+
+
+def _gaps(determinants: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Which samples have inputs between two rows at which their loop does not close.
+
+    The determinant goes as the root of the distance from a dead centre, so its square is smooth and would be
+    negative in a gap: the parabola through the lowest three of it tells.
+    """
+    squares = determinants**2
+    place = np.argmin(squares, axis=1)
+    index = np.arange(len(squares))
+    low = squares[index, place]
+    before, after = squares[index, place - 1], squares[index, (place + 1) % squares.shape[1]]
+    bend, slope = before + after - 2 * low, (after - before) / 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(low - slope**2 / (2 * bend) < 0)
+
+
+def _reasons(linear: Linear, changes: Floats) -> tuple[dict[str, int], int]:
+    """What the ordinary analysis says of the first lost designs, counted, and how many it looked at."""
+    found = linear.found
+    counts: Counter[str] = Counter()
+    for change in changes[:LOOKED_AT]:
+        try:
+            motion = found.loop.whole.changed(found.loop.whole.nominal + change).motion(
+                found.samples, input=found.input_name, output=found.output_name
+            )
+        except SevenbarError:
+            counts["cannot be analysed"] += 1
+            continue
+        types = {circuit.motion_type for circuit in motion.circuits}
+        if not types:
+            counts["cannot be assembled"] += 1
+        elif found.circuit.motion_type in types:
+            counts["left their pass of the circuit"] += 1
+        else:
+            counts[f"became {motion.motion_type}"] += 1
+    return dict(counts.most_common()), int(sum(counts.values()))

@@ -1,0 +1,198 @@
+"""Exact derivatives of all outputs of a circuit by all numbers of the linkage's description."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.design.tolerance.loop import Loop, Poses
+from sevenbar.design.tolerance.measures import MeasureSlopes, measure_slopes
+from sevenbar.design.tolerance.numbers import Numbered
+from sevenbar.design.tolerance.outputs import QUANTITIES, Output, outputs_of, slopes_of
+from sevenbar.draft import Dimension
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Circuit, Floats, Words, chosen_circuit
+
+#: A change that counts as small where no tolerance is given [parts of the linkage's size, rad].
+SMALL = 1e-3
+
+#: How far a row must be from a dead centre of the input for a linear estimate, in parts of what that dead
+#: centre may itself be moved by: there the output goes with the root of the distance, and at three such parts
+#: the root of what is left, sqrt(1 - 1/3), differs by a tenth from its tangent, 1 - 1/6 .. in its change.
+CLEAR = 3.0
+
+#: The status of a row that is nearer.
+NEAR = "near-dead-centre"
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """The outputs of a circuit, and their derivatives by all dimensions.
+
+    `values` (rows, outputs) and `slopes` (rows, outputs, dimensions) are in the outputs' units (angles in
+    rad), and by the dimensions' units, which are the file's. NaN in rows whose `status` tells why, in columns
+    of dimensions that open the loop (`opening`), and in outputs of what spins idly. `input` (rows,) [rad, or
+    length]; rates are at `speed`.
+    """
+
+    loop: Loop
+    poses: Poses
+    circuit: Circuit
+    input_name: str
+    output_name: str
+    speed: float
+    samples: int
+    outputs: tuple[Output, ...]
+    status: Words
+    values: Floats
+    slopes: Floats
+    measures: tuple[MeasureSlopes, ...]
+    opening: tuple[str, ...]
+
+    @property
+    def linkage(self) -> Linkage:
+        """The linkage as it is meant."""
+        return self.loop.whole.linkage
+
+    @property
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """The dimensions in the order of the file."""
+        return self.loop.whole.dimensions
+
+    @property
+    def input(self) -> Floats:
+        """The input of each row [rad, or length]."""
+        return self.circuit.input
+
+    def place(self, output: str | None = None, quantity: str = "position") -> int:
+        """The place among the outputs of one by its name, or of a quantity of a joint, the output by default.
+
+        Raises `RequestError` for one that does not exist.
+        """
+        if quantity not in QUANTITIES:
+            raise RequestError(f"quantity: {shown(quantity)} is not offered; give {', '.join(QUANTITIES)}")
+        name = self.output_name if output is None else output
+        for k, one in enumerate(self.outputs):
+            if name == one.name and quantity in ("position", one.quantity):
+                return k
+            if one.joint and (name, quantity) == (one.owner, one.quantity):
+                return k
+        known = [one.name for one in self.outputs]
+        raise RequestError(
+            f"output: no {shown(name)} with a {quantity}; {suggestion(name, known)}"
+            f"give one of {', '.join(known)}"
+        )
+
+    def of(self, output: str | None = None, quantity: str = "position") -> Floats:
+        """The derivatives (rows, dimensions) of an output."""
+        return np.asarray(self.slopes[:, self.place(output, quantity)])
+
+    def measure(self, name: str) -> MeasureSlopes:
+        """A measure by its name; `RequestError` where this circuit has none."""
+        for one in self.measures:
+            if one.name == name:
+                return one
+        known = [one.name for one in self.measures]
+        raise RequestError(
+            f"measure: no {shown(name)} of this circuit; {suggestion(name, known)}"
+            f"it has {', '.join(known) or 'none'}"
+        )
+
+    @property
+    def small(self) -> Floats:
+        """A change of each dimension that counts as small, in its unit."""
+        sizes = [self.loop.size if d.kind in ("length", "pitch") else 1 / d.scale for d in self.dimensions]
+        return SMALL * np.array(sizes)
+
+    def clear(self, reach: Floats) -> Words:
+        """The status (rows,) if dimensions may be off by `reach` (dimensions,): also "near-dead-centre"."""
+        status = self.status.copy()
+        for one in self.measures:
+            if not one.name.startswith("limit_"):
+                continue
+            apart = self.input - one.value * one.scale
+            if self.loop.columns[self.loop.input].turns:
+                apart = np.remainder(apart + np.pi, math.tau) - np.pi
+            moves = float(np.nansum(np.abs(one.slopes) * reach)) * one.scale
+            status[(status == "ok") & (np.abs(apart) <= CLEAR * moves)] = NEAR
+        return status
+
+    def ranking(
+        self, output: str | None = None, quantity: str = "position"
+    ) -> list[tuple[Dimension, float, float]]:
+        """Each dimension, the greatest effect of a small change of it and the input there; greatest first."""
+        effects = np.abs(self.of(output, quantity)) * self.small
+        effects[self.clear(self.small) != "ok"] = np.nan
+        found = []
+        for dimension, effect in zip(self.dimensions, effects.T, strict=True):
+            if np.isfinite(effect).any():
+                row = int(np.nanargmax(effect))
+                found.append((dimension, float(effect[row]), float(self.input[row])))
+        return sorted(found, key=lambda one: -one[1])
+
+
+def sensitivities(
+    linkage: Linkage,
+    *,
+    circuit: int = 0,
+    samples: int = 90,
+    input: str | None = None,
+    output: str | None = None,
+    speed: float | str | None = None,
+) -> Sensitivities:
+    """Exact derivatives of every output of a circuit by every number of the linkage's description.
+
+    Outputs are each joint's position, velocity and acceleration (the position only of a ball's turns), each
+    named point's position and velocity, and the circuit's measures. Numbers are M, N, L1, L2, L3 and D of an
+    RSSR; lengths, twists, offsets, angles and pitches of rows; coordinates of joints and axes as drawn; and
+    those of points. The arguments are those of `Linkage.motion`. Raises `RequestError` for a linkage made
+    without a description and for an argument that does not fit.
+
+        >>> import sevenbar as sb
+        >>> found = sensitivities(sb.load("rssr"))
+        >>> [dimension.name for dimension, _, _ in found.ranking()[:2]]
+        ['L2', 'L1']
+    """
+    whole = Numbered.of(linkage)
+    motion = linkage.motion(samples, input=input, output=output, speed=speed)
+    chosen = chosen_circuit(motion, circuit)
+    loop = Loop(whole, chosen.input_column)
+    poses = loop.poses(chosen.q)
+    opening = loop.opening(poses)
+    outputs = outputs_of(loop)
+    count = len(chosen.q)
+    values = np.full((count, len(outputs)), np.nan)
+    slopes = np.full((count, len(outputs), len(whole.names)), np.nan)
+    values[poses.rows], slopes[poses.rows] = slopes_of(
+        loop, poses, outputs, chosen.q[poses.rows], motion.speed
+    )
+    opens = [name in opening for name in whole.names]
+    slopes[:, :, opens] = np.nan
+    measures = measure_slopes(loop, chosen, motion.speed)
+    for one in measures:
+        one.slopes[opens] = np.nan
+    status = chosen.status.astype("<U20")
+    status[~np.isin(np.arange(count), poses.rows) & (status == "ok")] = "dead-centre"
+    # where a pose stands but its rates do not exist, so do derivatives not
+    slopes[status == "dead-centre"] = np.nan
+    found = Sensitivities(
+        loop=loop,
+        poses=poses,
+        circuit=chosen,
+        input_name=motion.input,
+        output_name=motion.output,
+        speed=motion.speed,
+        samples=motion.samples,
+        outputs=outputs,
+        status=status,
+        values=values,
+        slopes=slopes,
+        measures=measures,
+        opening=opening,
+    )
+    if np.isnan(found.of()).all() and not all(opens):
+        raise RequestError(f"output: {motion.input} does not determine {motion.output}; give another output")
+    return found

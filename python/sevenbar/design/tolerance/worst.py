@@ -1,0 +1,69 @@
+"""The worst case: the linear sum along the cycle, and the corner designs that it names, exactly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.design.tolerance.exact import Designs
+from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
+from sevenbar.design.tolerance.sensitivities import Sensitivities
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Floats
+
+
+@dataclass(frozen=True, eq=False)
+class WorstCase:
+    """The worst case by the linear estimate, and as its corner designs have it.
+
+    `high` and `low` (n,) are the exact deviations of the designs at the ends of all tolerances that the signs
+    of the derivatives name, of each row its own; NaN where such a design does not close there.
+    """
+
+    linear: Linear
+    high: Floats
+    low: Floats
+
+    @property
+    def at(self) -> int:
+        """The place among the rows where the linear estimate is greatest."""
+        return self.linear.greatest
+
+    @property
+    def corner(self) -> dict[str, float]:
+        """The dimensions of the design that is to deviate most upwards, at `at`."""
+        signs = np.sign(self.linear.slopes[self.at])
+        widths = self.linear.tolerances.widths
+        return {
+            dimension.name: dimension.value + float(sign * width)
+            for dimension, sign, width in zip(self.linear.found.dimensions, signs, widths, strict=True)
+            if width > 0
+        }
+
+    @property
+    def difference(self) -> float:
+        """How far the exact deviation at `at` is from the linear estimate, in parts of it; NaN if none."""
+        linear = float(self.linear.worst[self.at])
+        exact = max(abs(self.high[self.at]), abs(self.low[self.at]))
+        return float(exact / linear - 1) if linear > 0 else 0.0
+
+
+def worst_case(
+    of: Linkage | Sensitivities,
+    given: Given | Linear,
+    *,
+    output: str | None = None,
+    quantity: str = "position",
+) -> WorstCase:
+    """The worst case of an output along the cycle; the arguments are those of `linear_estimate`."""
+    linear = (
+        given if isinstance(given, Linear) else linear_estimate(of, given, output=output, quantity=quantity)
+    )
+    designs = Designs(linear)
+    # both corners of each row as two samples, evaluated at that row
+    changes = (np.sign(linear.slopes) * linear.tolerances.widths).T[:, None, :] * np.array([1.0, -1.0])[
+        :, None
+    ]
+    high, low = designs.deviations(changes, designs.followed(changes))
+    return WorstCase(linear, high, low)
