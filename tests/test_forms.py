@@ -327,3 +327,18 @@ def test_input_and_output_are_columns(kinds, drive, input, output):
     linkage = sb.loads(toml(drawing(np.random.default_rng(8), kinds), drive))
     assert (linkage.drive.joint, linkage.drive.output) == (input, output)
     assert linkage.drive.speed == (10.0 if "cm/s" in drive else 1.0)
+
+
+@pytest.mark.parametrize("off", [1e-3, 1e-6, 1e-9, 1e-11])
+def test_frames_stay_square_where_the_next_joint_lies_almost_on_the_axis(off):
+    axis = np.array([1.0, 2.0, -1.5])
+    joints = [
+        {"kind": "R", "at": (0, 0, 0), "axis": axis},
+        {"kind": "R", "at": 70 * axis + off * np.array([3.0, 1.0, 2.0]), "axis": (1, 0, 1)},
+        {"kind": "R", "at": (10, 80, 5), "axis": (0, 1, 1)},
+        {"kind": "R", "at": (40, 0, 60), "axis": (1, 1, 0)},
+    ]
+    linkage = sb.from_axes(joints)
+    for frame in (linkage.base, linkage.ground, *linkage.links):
+        rotation = frame[:3, :3]
+        assert np.abs(rotation.T @ rotation - np.eye(3)).max() < 1e-15 * 4

@@ -381,4 +381,7 @@ def _frame_about(axis: npt.ArrayLike | None, towards: Floats) -> Floats:
         across = np.eye(3)[np.argmin(np.abs(z))]
         across = across - (across @ z) * z
     x = across / np.linalg.norm(across)
+    # of a place almost on the axis the first step leaves little but rounding, some of it along the axis
+    x = x - (x @ z) * z
+    x /= np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])
