@@ -89,6 +89,7 @@ def swing_figure(candidate: Candidate) -> Figure:
         for b in (0, 1)
     ]
     angles = np.degrees(np.unwrap(outputs(row, inputs, int(np.argmin(apart)))[0]))
+    angles -= 360.0 * np.round(angles.mean() / 360.0)
     across = np.degrees(inputs)
     with rc_context(STYLE):
         figure = new_figure(6.4, 6.0)
@@ -112,8 +113,6 @@ def swing_figure(candidate: Candidate) -> Figure:
         figure.align_ylabels()
         lowest = math.degrees(candidate.transmission_lowest or 0.0)
         figure.suptitle(
-            f"{short(candidate.name, 60)}\nswing {figures['swing_deg']:.6g}°, time ratio "
-            f"{figures['time_ratio']:.6g}, transmission angle at least {lowest:.3g}°",
-            fontsize=11,
+            f"{short(candidate.name, 60)}\ntransmission angle at least {lowest:.3g}°", fontsize=11
         )
     return figure

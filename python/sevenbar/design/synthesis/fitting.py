@@ -45,7 +45,7 @@ PENALTY = 1.0
 MARGIN = 1e-4
 
 #: Most evaluations of a least squares fit: along a valley its steps are short.
-MOST_SQUARES = 400
+MOST_SQUARES = 200
 
 #: Error at precision points [rad] that Newton's steps end at, and how many there are at most.
 MET, MOST_NEWTON = 1e-14, 12
@@ -142,20 +142,29 @@ class Fit:
         weights = np.ones(len(self.input))
         weights[self.points] = MISSED
 
-        def residuals(z: Floats) -> Floats:
-            room, _ = self.room(z)
-            error = weights * self.errors(z, start.branch)[0]
-            return np.concatenate([error, PENALTY * np.minimum(room, 0.0)])
+        known: dict[bytes, tuple[Floats, Floats]] = {}
+
+        def both(z: Floats) -> tuple[Floats, Floats]:
+            # the solver asks for values and for slopes at the same place
+            if z.tobytes() not in known:
+                (error, error_slopes), (room, room_slopes) = self.errors(z, start.branch), self.room(z)
+                missed = np.where(room < 0, PENALTY, 0.0)
+                known.clear()
+                known[z.tobytes()] = (
+                    np.concatenate([weights * error, missed * room]),
+                    np.concatenate([weights[:, None] * error_slopes, missed[:, None] * room_slopes]),
+                )
+            return known[z.tobytes()]
+
+        def values(z: Floats) -> Floats:
+            return both(z)[0]
 
         def slopes(z: Floats) -> Floats:
-            room, by_z = self.room(z)
-            missed = np.where(room < 0, PENALTY, 0.0)
-            error_slopes = weights[:, None] * self.errors(z, start.branch)[1]
-            return np.concatenate([error_slopes, missed[:, None] * by_z])
+            return both(z)[1]
 
         with np.errstate(all="ignore"):
             found = least_squares(
-                residuals,
+                values,
                 self.packed(start),
                 jac=slopes,
                 method="lm",

@@ -3,14 +3,16 @@
     minimise the greatest height,   with rooms >= 0                                                      (1)
 
 Heights and rooms are made straight by their exact slopes; a step may go as far as the reach, which grows and
-shrinks with what the last one kept of its promise. Where at the end one height more than there are unknowns
-is equal to the greatest, the solution is a corner, and the steps converge as Newton's do.
+shrinks with what the last one kept of its promise. A step from which heights bend away is mended once with
+what they were at its end (a second-order correction), so that curved valleys are followed. Where at the end
+one height more than there are unknowns is equal to the greatest, the solution is a corner, and the steps
+converge as Newton's do.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,8 +24,8 @@ MOST_STEPS = 60
 #: Reach of a step [units of the unknowns]: at first, at most, and where it gives up.
 FIRST_REACH, MOST_REACH, LEAST_REACH = 0.1, 1.0, 1e-9
 
-#: Promised gain, in parts of the greatest height, that ends the programs.
-WORTH = 1e-6
+#: Gain of a step, in parts of the greatest height, below which it is the last.
+WORTH = 1e-5
 
 #: Weight of a missed room beside the greatest height: above any multiplier, so that none is missed for a
 #: lower height.
@@ -56,8 +58,14 @@ class Heights:
         return (float(self.height.max()) + MISSED * missed) / unit
 
 
-def lowered(heights: Callable[[Floats], Heights | None], start: Floats, held: tuple[int, ...] = ()) -> Floats:
-    """The unknowns (k,) near a start at which (1) is solved; those `held` stay.
+def lowered(
+    heights: Callable[[Floats], Heights | None],
+    start: Floats,
+    held: tuple[int, ...] = (),
+    *,
+    worth: float = WORTH,
+) -> Floats:
+    """The unknowns (k,) near a start at which (1) is solved; those `held` stay, a gain below `worth` ends it.
 
     `heights` gives `None` where there is nothing to measure; a step never leads there.
     """
@@ -66,28 +74,48 @@ def lowered(heights: Callable[[Floats], Heights | None], start: Floats, held: tu
     if now is None:
         return z
     for _ in range(MOST_STEPS):
-        step, promised = _step(now, reach, len(z), held)
-        if not promised > WORTH:
+        step, promised = _step(now, reach, held)
+        if not promised > worth:
             break
         then = heights(z + step)
-        gained = -np.inf if then is None else now.merit(now.unit) - then.merit(now.unit)
+        gained = _gained(now, then)
+        if then is not None and not gained > KEPT_MOST * promised:
+            # heights bend: the same program again with what they really were at its end
+            bent, _ = _step(_bent(now, then, step), reach, held)
+            there = heights(z + bent)
+            if _gained(now, there) > gained:
+                step, then, gained = bent, there, _gained(now, there)
         longest = float(np.abs(step).max())
         if then is None or not gained > KEPT_LITTLE * promised:
-            reach = longest / 4
+            reach = min(longest, reach) / 4
             if reach < LEAST_REACH:
                 break
             continue
         z, now = z + step, then
+        if gained < worth:
+            break
         if gained > KEPT_MOST * promised and longest > 0.9 * reach:
             reach = min(2 * reach, MOST_REACH)
     return z
 
 
-def _step(now: Heights, reach: float, count: int, held: tuple[int, ...]) -> tuple[Floats, float]:
+def _gained(now: Heights, then: Heights | None) -> float:
+    """By how much a place is better than another, in parts of its unit."""
+    return -np.inf if then is None else now.merit(now.unit) - then.merit(now.unit)
+
+
+def _bent(now: Heights, then: Heights, step: Floats) -> Heights:
+    """The heights and rooms of a place, moved so that its slopes lead to those at the end of a step."""
+    return replace(
+        now, height=then.height - now.height_slopes @ step, room=then.room - now.room_slopes @ step
+    )
+
+
+def _step(now: Heights, reach: float, held: tuple[int, ...]) -> tuple[Floats, float]:
     """The step (k,) of one program, and the gain it promises in parts of the unit."""
     from scipy.optimize import linprog
 
-    unit = now.unit
+    unit, count = now.unit, now.height_slopes.shape[1]
     rows, others = len(now.height), len(now.room)
     matrix = np.block(
         [

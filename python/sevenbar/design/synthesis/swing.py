@@ -54,6 +54,9 @@ MOST_NEWTON, LAST_STEP, ARRIVED = 30, 1e-14, 1e-11
 #: Room that is left at each limit for what lies between the inputs looked at.
 MARGIN = 1e-4
 
+#: Gain of a squared sine that is not worth another step.
+WORTH = 1e-4
+
 #: Greatest error of a swing [rad] and of a time ratio that counts as met.
 MET = 1e-8
 
@@ -215,7 +218,7 @@ class _Wish:
                 np.concatenate([size_slopes[:, FREE], off_slopes, -off_slopes]),
             )
 
-        z = lowered(heights, row[list(FREE)])
+        z = lowered(heights, row[list(FREE)], worth=WORTH)
         there = ends_of_swing(_row(z), branch)
         for _ in range(MOST_NEWTON):
             if there is None:

@@ -1,0 +1,122 @@
+"""Crank-rockers with a wanted swing and time ratio, checked by the ordinary analysis."""
+
+import math
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from sevenbar.design.synthesis.closure import NAMES, outputs
+from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.synthesis.swing import ends_of_swing, swing_generation
+from sevenbar.errors import RequestError
+
+CRANK = np.array([700.0, 700.0, 250.0, 1000.0, 550.0, -150.0]) / 550.0
+
+
+def linkage(row):
+    return sb.rssr(**dict(zip(NAMES, row, strict=True)))
+
+
+@pytest.mark.parametrize("branch", [0, 1])
+def test_the_ends_of_a_swing_are_the_dead_centres_of_the_ordinary_analysis(branch):
+    ends = ends_of_swing(CRANK, branch)
+    circuit = linkage(CRANK).motion().circuits[branch]
+    assert ends.swing == pytest.approx(circuit.swing, abs=1e-12)
+    assert ends.time_ratio == pytest.approx(circuit.time_ratio, abs=1e-10)
+    low, high = circuit.angle.lowest_at, circuit.angle.highest_at
+    np.testing.assert_allclose(np.exp(1j * ends.crank), np.exp(1j * np.array([low, high])), atol=1e-10)
+
+
+@pytest.mark.parametrize("branch", [0, 1])
+@pytest.mark.parametrize("column", range(6))
+def test_the_slopes_of_the_ends_are_their_differences(branch, column):
+    ends = ends_of_swing(CRANK, branch)
+    step = 1e-5 * np.eye(6)[column]
+    more, less = ends_of_swing(CRANK + step, branch), ends_of_swing(CRANK - step, branch)
+    np.testing.assert_allclose(ends.output_slopes[:, column], (more.output - less.output) / 2e-5, atol=1e-8)
+    np.testing.assert_allclose(ends.crank_slopes[:, column], (more.crank - less.crank) / 2e-5, atol=1e-8)
+
+
+def test_a_linkage_with_M_zero_is_as_quick_one_way_as_back():
+    """With M = 0 the closure holds sin alpha only, so the output is the same at alpha and at pi - alpha."""
+    row = np.array([0.0, 1.4, 0.45, 1.9, 1.0, 0.6])
+    for branch in (0, 1):
+        ends = ends_of_swing(row, branch)
+        assert ends.time_ratio == pytest.approx(1.0, abs=1e-12)
+        np.testing.assert_allclose(np.abs(np.sin(ends.crank)), 1.0, atol=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("degrees", "ratio"), [(60, 1.2), (90, 1.0)])
+def test_swing_and_time_ratio_are_met_by_designs_that_differ(degrees, ratio):
+    found = swing_generation(math.radians(degrees), ratio, count=2)
+    lowest = []
+    for candidate in found.candidates:
+        motion = candidate.draft.linkage.motion()
+        assert motion.motion_type == "crank-rocker"
+        circuit = motion.circuits[candidate.circuit]
+        assert math.degrees(circuit.swing) == pytest.approx(degrees, abs=1e-9)
+        assert circuit.time_ratio == pytest.approx(ratio, abs=1e-9)
+        assert candidate.transmission_lowest == pytest.approx(circuit.transmission.lowest, abs=1e-4)
+        lowest.append(circuit.transmission.lowest)
+    assert len(lowest) == 2
+    assert lowest[0] > lowest[1] > math.radians(40)
+
+
+@pytest.mark.slow
+def test_no_random_crank_rocker_of_the_wish_transmits_better():
+    """Thousands of random designs near the wish, by the closed form alone."""
+    found = swing_generation(math.radians(60), 1.0, count=1)
+    best = found.candidates[0].transmission_lowest
+    rng = np.random.default_rng(3)
+    rows = np.ones((60000, 6))
+    rows[:, [0, 1, 5]] = rng.uniform([0, -4, -4], [1, 4, 4], (60000, 3))
+    rows[:, [2, 3]] = 6.0 ** rng.uniform(-1, 1, (60000, 2))
+    angles = outputs(rows, np.linspace(0, math.tau, 49), 0)
+    near = np.flatnonzero(np.abs(np.ptp(angles, axis=1) - math.radians(60)) < 0.02)
+    rivals = 0
+    for row in rows[near]:
+        ends = ends_of_swing(row, 0)
+        if ends is None or abs(ends.swing - math.radians(60)) > 0.02 or ends.time_ratio > 1.02:
+            continue
+        rivals += 1
+        circuit = linkage(row).motion(36).circuits[0]
+        # within 0.02 rad of the wish, a rival may be better by about as much
+        assert circuit.transmission.lowest < best + 0.04
+    assert rivals > 5
+
+
+@pytest.mark.slow
+def test_limits_of_a_swing_are_kept_to():
+    limits = Limits(math.radians(40), (100.0, 800.0))
+    found = swing_generation(math.radians(60), 1.1, limits=limits, count=1)
+    dimensions = found.candidates[0].draft.linkage.dimensions
+    assert max(map(abs, dimensions.values())) == pytest.approx(800.0)
+    assert min(dimensions[name] for name in ("L1", "L2", "L3")) >= 100.0
+    assert found.candidates[0].transmission_lowest >= math.radians(40)
+
+
+@pytest.mark.slow
+def test_a_swing_that_cannot_be_reached_tells_the_nearest():
+    found = swing_generation(math.radians(340), 1.1, count=1)
+    assert found.candidates == ()
+    with pytest.raises(RequestError, match=r"nearest: swing \d+\.?\d* deg with time ratio \d"):
+        found.required()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"swing": 0.0}, "swing: 0 deg is no swing"),
+        ({"swing": math.tau}, "swing: 360 deg is no swing"),
+        ({"time_ratio": 0.8}, "time ratio: 0.8 is not offered"),
+        ({"time_ratio": math.nan}, "time ratio: nan is not offered"),
+        ({"limits": Limits(motion_type="double-crank")}, "a double-crank has no swing"),
+        ({"count": 0}, "designs: 0 is no number"),
+    ],
+)
+def test_a_wrong_swing_is_told_in_a_line(wrong, words):
+    with pytest.raises(RequestError, match=r"^[^\n]*$") as told:
+        swing_generation(**({"swing": 1.0} | wrong))
+    assert words in str(told.value)
