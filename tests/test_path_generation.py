@@ -349,6 +349,13 @@ def test_a_loop_that_any_change_of_a_length_opens_is_told_of():
     assert found.error_greatest < 1e-8
 
 
+def test_a_start_that_cannot_be_assembled_is_told_of():
+    with pytest.raises(
+        RequestError, match="linkage: cannot-assemble, the loop moves nowhere as it is described"
+    ):
+        path_generation(sb.rssr(M=700, N=700, L1=250, L3=550, L2=3000), PATH, (2, (0.0, 0.0, 0.0)))
+
+
 def test_a_transmission_angle_is_asked_of_an_rssr_only():
     path = sb.load("planar_4r").motion(8).circuits[0].point(2, (0.0, 10.0, 5.0)).position
     with pytest.raises(
