@@ -47,8 +47,8 @@ _HALF_ANGLE = _half_angle()
 def critical_gaps(dimensions: Floats, near: Floats) -> Floats:
     """Critical distances of the balls less the coupler's length [length], NaN where there is none: (n, 16).
 
-    `dimensions` (6, n) are M, N, L1, L2, L3, D; complex zeros nearer to the real circle than `near` (n,) [rad]
-    count, too. For a crank angle a the balls are nearest and farthest at
+    `dimensions` (6, n) are M, N, L1, L2, L3, D; complex zeros nearer to the real circle than `near` (n,)
+    [rad] count, too. For a crank angle a the balls are nearest and farthest at
     `f = g -+ L3 sqrt(H)`, `H = (D - L1 sin a)^2 + N^2`, twice f the squared distance; the critical a are
     zeros of `(M sin a - D cos a)^2 H - L3^2 cos^2 a (D - L1 sin a)^2`, of degree four.
     """
