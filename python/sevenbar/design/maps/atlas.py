@@ -34,6 +34,10 @@ FINE, LOOP_FINE = 800, 0
 #: How near chords keep to boundaries [share of the ranges]: a bend of half the window's radius at `FINE`.
 TOLERANCE, LOOP_TOLERANCE = 1e-6, 1e-3
 
+#: Regions, holes and boundaries not wider than this are not drawn [tolerances]: where a boundary is a double
+#: one, as of a symmetric linkage, rounding leaves such specks on it.
+SPECK = 10.0
+
 #: How exactly the design's distances are found [share of a range]: below what a drawing shows.
 EXACT = 1e-10
 
@@ -108,10 +112,15 @@ class Map:
         return dict(sorted(found.items(), key=lambda item: -item[1]))
 
     def numbers_at(self, places: Floats) -> Integers:
-        """The number of the kind at places (n, 2) [shares] by the drawn regions; -1 outside."""
+        """The number of the kind at places (n, 2) [shares] by the drawn regions; -1 outside.
+
+        In specks that are not drawn it is that of the linkage itself.
+        """
         found = np.full(len(places), -1, dtype=np.int64)
         for region in self.regions:
             found[within([region.outline, *region.holes], places)] = region.kind
+        speck = (found < 0) & ((places >= 0) & (places <= 1)).all(axis=1)
+        found[speck] = self.plane.kinds_at(places[speck])
         return found
 
     def kind_at(self, x: float, y: float) -> Kind | None:
@@ -165,7 +174,9 @@ def motion_map(
     # what is not covered is said of the design itself
     motion = linkage.motion(SAMPLES, input=driver)
     mesh = meshed(plane, scheme)
-    lines_between, parts = boundaries(mesh), regions(mesh)
+    speck = SPECK * scheme.tolerance
+    lines_between = tuple(line for line in boundaries(mesh) if np.ptp(line.places, axis=0).max() > speck)
+    parts = tuple(part.without(speck) for part in regions(mesh) if np.ptp(part.outline, axis=0).max() > speck)
     return Map(
         draft=draft,
         input=driver,
@@ -214,7 +225,7 @@ def _design(
     if motion.motion_type == "change-point":
         kind = Kind("change-point", 0)
     else:
-        kind = plane.kinds[int(plane.kinds_at(here[None, :])[0])]
+        kind = Kind(motion.motion_type, len(motion.circuits))
     steps: list[Step] = []
     for place, axis in enumerate(axes) if inside else ():
         crossings = _crossings(lines, here, place)
@@ -242,7 +253,7 @@ def _crossings(lines: tuple[Boundary, ...], here: Floats, place: int) -> list[tu
             part = away[0][i] / (away[0][i] - away[1][i])
             at = start[i, place] + part * (end[i, place] - start[i, place])
             # going up along x a line that runs down has its left hand beyond, and along y the other way
-            beyond_left = (away[1][i] < 0) == (place == 0)
+            beyond_left = bool(away[0][i] > 0) == (place == 0)
             kinds = (line.right, line.left) if beyond_left else (line.left, line.right)
             found.append((float(at), *kinds))
     return found

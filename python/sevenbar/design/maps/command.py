@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
@@ -10,7 +12,6 @@ import typer
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.folder import check_targets
-from sevenbar.measures import measures_named
 from sevenbar.options import (
     Figures,
     Force,
@@ -29,9 +30,9 @@ if TYPE_CHECKING:
 def map_(
     linkage: Source,
     over: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(help="A dimension and its range, as in L1=100:400 or L1=10cm:40cm; give it twice."),
-    ],
+    ] = None,
     measure: Annotated[
         list[str] | None, typer.Option(help="Draw contours of this measure too; may be repeated.")
     ] = None,
@@ -59,20 +60,29 @@ def map_(
     from sevenbar.design.maps import findings
     from sevenbar.design.maps.atlas import motion_map
     from sevenbar.design.maps.figures import sheet
-    from sevenbar.design.maps.heights import measure_heights
+    from sevenbar.design.maps.heights import measure_heights, with_contours
     from sevenbar.design.maps.window import split_ranges
 
     endings = figure_formats(figures, out)
     sheet(size)
+    ranges, at, which = split_ranges(over or []), _levels(levels), _take(take)
     names = words(measure or [])
     if levels is not None and not names:
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
-    measures_named(names) if names else ()
+    chosen = with_contours(names) if names else ()
     loaded = sb.load(linkage)
     check_targets(findings.targets(out, names, endings) if out is not None else [], force=force)
-    with progress_bar(f"mapping {loaded.name}") as progress:
-        found = motion_map(loaded, split_ranges(over), grid=grid, input=input_joint, progress=progress)
-        heights = measure_heights(found, names, take=_take(take), levels=_levels(levels)) if names else ()
+    with ExitStack() as bars:
+        shown_by: list[Callable[[int, int], None]] = []
+
+        def progress(done: int, total: int) -> None:
+            # an RSSR has no motions one by one, and is done before a bar is seen
+            if not shown_by:
+                shown_by.append(bars.enter_context(progress_bar(f"mapping {loaded.name}")))
+            shown_by[0](done, total)
+
+        found = motion_map(loaded, ranges, grid=grid, input=input_joint, progress=progress)
+        heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
     written = [] if out is None else findings.write(found, heights, out, endings, size=size, force=force)
     if json:
         typer.echo(findings.as_json(found, heights))

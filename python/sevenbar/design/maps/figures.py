@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
@@ -55,6 +54,18 @@ MARK = "#c1121f"
 #: Places across a map where the name of a region is tried.
 RASTER = 160
 
+#: Contours shorter than this have no value on them, longer ones than that have two [share of the ranges].
+SHORT, LONG = 0.07, 0.9
+
+#: Where values stand [parts of the contour], and how far those of every other level are moved.
+ONE, SEVERAL, STAGGER = 0.45, (0.25, 0.7), 0.1
+
+#: No value stands nearer to the window's edge [share].
+ROOM = 0.015
+
+#: Room that the value on a contour takes, to each side [share].
+LABEL = (0.03, 0.02)
+
 #: Height and width of a letter, in parts of the size of the font.
 LETTER = (1.35, 0.56)
 
@@ -89,7 +100,7 @@ def draw(of: Map, heights: Heights | None = None, *, size: str = "A4") -> Figure
         taken = np.zeros((RASTER, RASTER), dtype=bool)
         _design(axes, of, scale, taken)
         if heights is not None:
-            _contours(axes, heights, of, scale)
+            _contours(axes, heights, of, scale, taken)
         _names(axes, of, scale, taken, (width, height))
         _frame(axes, of, scale)
         _side(figure, axes, of, heights, scale)
@@ -139,23 +150,41 @@ def _closed(of: Map, loop: Floats) -> Path:
     return Path(of.values(np.vstack([loop, loop[:1]])), closed=True)
 
 
-def _contours(axes: Axes, heights: Heights, of: Map, scale: float) -> None:
+def _contours(axes: Axes, heights: Heights, of: Map, scale: float, taken: np.ndarray) -> None:
     """Contour lines with their values written on them."""
-    if not heights.contours:
-        return
-    segments = [
-        [of.values(line.places) for line in heights.contours if line.level == level]
-        for level in heights.levels
-    ]
-    drawn = ContourSet(
-        axes, list(heights.levels), segments, colors=CONTOUR, linewidths=1.05 * scale, zorder=3
-    )
-    unit = _suffix(heights.unit)
-    labels = axes.clabel(drawn, fmt=lambda value: f"{value:g}{unit}", fontsize=7.5 * scale, inline=False)
-    for label in labels:
-        label.set_path_effects([withStroke(linewidth=2.6 * scale, foreground="white")])
-        label.set_zorder(5)
-        label.set_clip_on(True)
+    halo = [withStroke(linewidth=2.6 * scale, foreground="white")]
+    suffix = _suffix(heights.unit)
+    for line in heights.contours:
+        axes.plot(*of.values(line.places).T, color=CONTOUR, lw=1.05 * scale, zorder=3, solid_capstyle="round")
+        lengths = np.hypot(*np.diff(line.places, axis=0).T)
+        along = np.concatenate([[0.0], np.cumsum(lengths)])
+        if along[-1] < SHORT:
+            continue
+        level = heights.levels.index(line.level)
+        for part in (ONE,) if along[-1] < LONG else SEVERAL:
+            # neighbours one step apart, so that their values do not stand on each other
+            at = (part + STAGGER * (level % 2)) * along[-1]
+            ends = [[np.interp(at + d, along, line.places[:, i]) for i in (0, 1)] for d in (-0.01, 0.01)]
+            (x0, y0), (x1, y1) = of.values(np.array(ends)).tolist()
+            middle = np.mean(ends, axis=0)
+            if not ROOM < middle.min() <= middle.max() < 1 - ROOM:
+                continue
+            turn = np.degrees(np.arctan2(y1 - y0, x1 - x0))
+            label = axes.text(
+                (x0 + x1) / 2,
+                (y0 + y1) / 2,
+                f"{line.level:g}{suffix}",
+                color=CONTOUR,
+                fontsize=7.5 * scale,
+                ha="center",
+                va="center",
+                rotation=(turn + 90) % 180 - 90,
+                rotation_mode="anchor",
+                transform_rotates_text=True,
+                zorder=5,
+            )
+            label.set_path_effects([*halo])
+            _take(taken, middle, LABEL)
 
 
 def _unit(unit: str) -> str:

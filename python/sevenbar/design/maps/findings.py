@@ -112,6 +112,8 @@ def text(of: Map, heights: Sequence[Heights] = ()) -> RenderableType:
     for found in heights:
         value = "none" if found.here is None else f"{found.here:.6g} {found.unit}".rstrip()
         facts.add("", f"{found.measure.name} {value}")
+        if not np.isfinite(found.values).any():
+            facts.add("", f"{found.measure.name}: no linkage on the map has it", "yellow")
     shares = number_table(
         ["on the map", "share"], [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
     )

@@ -82,14 +82,7 @@ def measure_heights(
     circuit of an index. Raises `RequestError` for measures that are words or counts, and for levels that are
     no numbers.
     """
-    chosen = measures_named(measures)
-    for measure in chosen:
-        if measure.quantity in ("word", "count"):
-            numbers = [m.name for m in MEASURES.values() if m.quantity not in ("word", "count")]
-            raise RequestError(
-                f"measure: {measure.name} is a {measure.quantity}, which has no contours; "
-                f"give some of {', '.join(numbers)}"
-            )
+    chosen = with_contours(measures)
     _check_take(take)
     wanted = None if levels is None else _levels(levels)
     nodes, kinds, triangles = _net(of)
@@ -114,6 +107,19 @@ def measure_heights(
             )
         )
     return tuple(found)
+
+
+def with_contours(measures: Iterable[str | Measure | Callable[[Motion], float]]) -> tuple[Measure, ...]:
+    """The measures of names or functions; raises `RequestError` for those that are words or counts."""
+    chosen = measures_named(measures)
+    for measure in chosen:
+        if measure.quantity in ("word", "count"):
+            numbers = [m.name for m in MEASURES.values() if m.quantity not in ("word", "count")]
+            raise RequestError(
+                f"measure: {measure.name} is a {measure.quantity}, which has no contours; "
+                f"give some of {', '.join(numbers)}"
+            )
+    return chosen
 
 
 def _check_take(take: object) -> None:

@@ -25,7 +25,7 @@ Edge = tuple[Corner, Corner]
 Node = tuple[Corner, ...]
 
 #: More squares of one width in which boundaries are not told apart are not halved; their width is told.
-MOST_HIDING = 20_000
+MOST_HIDING = 10_000
 
 #: More squares than this are not kept, whatever their boundaries look like.
 MOST_SQUARES = 200_000

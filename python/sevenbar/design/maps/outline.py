@@ -40,6 +40,11 @@ class Region:
         """Its share of the map."""
         return signed_area(self.outline) + sum(signed_area(hole) for hole in self.holes)
 
+    def without(self, speck: float) -> Region:
+        """The region without holes that are not wider than a speck [share]."""
+        kept = tuple(hole for hole in self.holes if np.ptp(hole, axis=0).max() > speck)
+        return Region(self.kind, self.outline, kept)
+
 
 def signed_area(loop: Floats) -> float:
     """The area within a closed loop (n, 2), negative where it runs clockwise."""

@@ -50,7 +50,7 @@ class RssrPlane(Plane):
             if axis.dimension.label in self._moved:
                 values[axis.dimension.label] = axis.value(shares)
         if self._follows:
-            values["L2"] = np.sqrt((values["L1"] - values["M"]) ** 2 + values["L3"] ** 2 + values["N"] ** 2)
+            values["L2"] = np.hypot(np.hypot(values["L1"] - values["M"], values["L3"]), values["N"])
         return np.array([values[row] for row in RSSR_ROWS])
 
     def numbers_at(self, points: Floats) -> Integers:

@@ -95,7 +95,8 @@ def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[Axis, Axis]:
 def _axis(dimension: Dimension, given: Range) -> Axis:
     where = f"over: {dimension.name}"
     if isinstance(given, str):
-        ends = [part.strip() for part in given.split(":")]
+        # ".." as in sweeps, where two colons make a grid
+        ends = [part.strip() for part in given.replace("..", ":").split(":")]
         if len(ends) != 2 or not all(ends):
             raise RequestError(f"{where}: {shown(given)} is not a range; give LOW:HIGH, {EXAMPLE}")
         low, high = (dimension.read(end) for end in ends)
