@@ -21,6 +21,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
     [
         *("measuring.calibrate", "measuring.compare", "errors", "files", "forms"),
         *(f"design.tolerance.{module}" for module in ("inverse", "samples", "sensitivities", "tolerances")),
+        *("design.maps.atlas", "draft", "sweep.axes", "sweep.run", "sweep.space"),
         *("gallery", "linkage", "mobility", "motion", "schema", "table", "units"),
     ],
 )

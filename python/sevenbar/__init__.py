@@ -44,7 +44,7 @@ __all__ = [
 ]
 
 #: Modules that bring large libraries with them, imported at their first use.
-_ON_DEMAND = ("export", "plot", "report", "simulation")
+_ON_DEMAND = ("design", "export", "plot", "report", "simulation", "sweep")
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -1,1 +1,6 @@
 """The atlas of a designer: a measure, or the motion type with exact boundaries, over two dimensions."""
+
+from sevenbar.design.maps.atlas import Map, motion_map
+from sevenbar.design.maps.heights import Heights, measure_heights
+
+__all__ = ["Heights", "Map", "measure_heights", "motion_map"]
