@@ -19,6 +19,7 @@ from sevenbar.design.synthesis.candidates import (
 )
 from sevenbar.design.synthesis.closure import draft_of
 from sevenbar.design.synthesis.limits import Limits
+from sevenbar.draft import Draft
 from sevenbar.errors import OutputError, RequestError
 
 #: A double-rocker, whose two branches meet at dead centres of the input, and the paper's crank-rocker.
@@ -152,6 +153,14 @@ def test_designs_that_are_one_but_for_their_scale_count_once_where_the_scale_is_
     assert distinct(designs, scale_free=True, count=0) == []
 
 
+def test_mirror_images_are_one_design_where_the_senses_of_turning_do_not_matter():
+    image = CRANK * [1, -1, 1, 1, 1, 1]
+    inputs = np.linspace(0, 1, 4)
+    designs = [judged(row, claim(row, inputs, 0)) for row in (CRANK, image)]
+    assert len(distinct(designs, scale_free=True)) == 2
+    assert len(distinct(designs, scale_free=True, mirrored=True)) == 1
+
+
 def test_the_best_stands_first_and_names_follow_the_rank():
     inputs = np.linspace(0, 1, 4)
     designs = [judged(CRANK, claim(CRANK, inputs, 0, np.array([error]))) for error in (0.3, 0.1, 0.2)]
@@ -162,10 +171,12 @@ def test_the_best_stands_first_and_names_follow_the_rank():
 
 def test_written_designs_open_and_tell_what_they_are_for(tmp_path):
     design = judged(CRANK, claim(CRANK, np.linspace(0, 1, 4), 0))
-    written = write([design, design], tmp_path / "out", ["wanted: a test"])
+    written = write([design, design], tmp_path / "out", ["wanted: a test", "made by: a\ncommand"])
     assert [path.name for path in written] == ["design_1.toml", "design_2.toml", "summary.csv"]
     text = written[0].read_text(encoding="utf-8")
-    assert text.startswith("# wanted: a test\n")
+    assert text.startswith("# wanted: a test\n# made by: a command\n")
+    # as the studio opens it
+    assert Draft.of(text, "design_1.toml").linkage.dimensions["L1"] == 250.0
     assert tomllib.loads(text)["rssr"]["M"] == 700.0
     assert sb.load(written[0]).motion().motion_type == "crank-rocker"
     before = text

@@ -1,7 +1,12 @@
 """Function generation: exact gradients, error figures of x^2 and log, and files that do what they tell."""
 
+import contextlib
+import doctest
+import importlib
+import io
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +22,7 @@ from sevenbar.design.synthesis.wish import wish_of_function, wish_of_pairs
 from sevenbar.errors import RequestError
 
 QUARTER = (0.0, math.pi / 2)
+PAGE = Path(__file__).parent.parent / "docs" / "synthesis.md"
 
 
 def errors_of(linkage, zeros, wanted, branch, count=2001):
@@ -65,7 +71,7 @@ def test_the_slopes_of_errors_and_limits_are_their_differences(branch):
 def test_x_squared_over_a_quarter_turn_errs_by_less_than_three_thousandths_of_a_degree(squared):
     best = squared.candidates[0]
     errors = np.degrees(told_errors(best, square))
-    assert np.abs(errors).max() < 0.00296
+    assert np.abs(errors).max() < 0.00283
     assert np.abs(errors).max() == pytest.approx(math.degrees(best.error_greatest), rel=1e-3)
     assert np.sqrt((errors**2).mean()) == pytest.approx(math.degrees(best.error_rms), rel=1e-2)
     assert best.error_greatest < math.radians(best.claim.figures["error_greatest_least_squares_deg"])
@@ -74,14 +80,13 @@ def test_x_squared_over_a_quarter_turn_errs_by_less_than_three_thousandths_of_a_
 
 @pytest.mark.slow
 def test_the_greatest_errors_are_equal_and_alternate(squared):
-    """As Chebyshev has it: seven greatest errors for seven unknowns, one of which the error bends with."""
+    """Chebyshev: of seven unknowns the best has eight greatest errors of alternating sign."""
     errors = told_errors(squared.candidates[0], square)
     turns = np.flatnonzero(np.diff(np.sign(np.diff(errors)))) + 1
     peaks = np.concatenate([errors[:1], errors[turns], errors[-1:]])
     assert (np.diff(np.sign(peaks)) != 0).all()
-    equal = np.abs(peaks) > 0.98 * np.abs(peaks).max()
     assert len(peaks) == 8
-    assert equal.sum() >= 7
+    assert np.abs(peaks).min() > 0.98 * np.abs(peaks).max()
 
 
 @pytest.mark.slow
@@ -258,3 +263,47 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
     z = fit.packed(point)
     turned = z * np.array([1, 1, -1, 1, 1, 1, 1]) + np.array([0, 0, 0, 0, 0, math.pi, 0])
     np.testing.assert_allclose(fit.errors(turned, 1)[0], fit.errors(z, 1)[0], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["expression", "precision"])
+def test_examples_in_docstrings_give_what_they_show(name):
+    module = importlib.import_module(f"sevenbar.design.synthesis.{name}")
+    assert doctest.testmod(module) == (0, {"expression": 1, "precision": 1}[name])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["function", "swing"])
+def test_examples_of_long_searches_give_what_they_show(name):
+    module = importlib.import_module(f"sevenbar.design.synthesis.{name}")
+    assert doctest.testmod(module) == (0, 2)
+
+
+@pytest.mark.slow
+def test_the_example_of_the_page_prints_what_its_comments_say():
+    (code,) = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("row", "wish"),
+    [
+        ("x^2, 0 to 1", {"function": "x^2"}),
+        ("x^2, five precision points", {"function": "x^2", "precision": 5}),
+        ("x^2, seven precision points", {"function": "x^2", "precision": 7}),
+        ("log10 x, 1 to 2", {"function": "log10(x)", "x_range": (1, 2)}),
+        ("log10 x, 1 to 10 | none", {"function": "log10(x)", "x_range": (1, 10), "limits": Limits()}),
+    ],
+)
+def test_the_table_of_the_page_is_that_of_today(row, wish):
+    (line,) = [
+        line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith(f"| {row} |")
+    ]
+    told = [float(cell) for cell in line.split("|")[-4:-1]]
+    best = function_generation(count=1, **wish).candidates[0]
+    today = [math.degrees(v) for v in (best.error_greatest, best.error_rms, best.transmission_lowest)]
+    # rounding, and a last step more or less on another machine
+    assert today == pytest.approx(told, rel=0.05)

@@ -51,7 +51,7 @@ def test_a_linkage_with_M_zero_is_as_quick_one_way_as_back():
 @pytest.mark.parametrize(("degrees", "ratio"), [(60, 1.2), (90, 1.0)])
 def test_swing_and_time_ratio_are_met_by_designs_that_differ(degrees, ratio):
     found = swing_generation(math.radians(degrees), ratio, count=2)
-    lowest = []
+    lowest, rows = [], []
     for candidate in found.candidates:
         motion = candidate.draft.linkage.motion()
         assert motion.motion_type == "crank-rocker"
@@ -60,7 +60,10 @@ def test_swing_and_time_ratio_are_met_by_designs_that_differ(degrees, ratio):
         assert circuit.time_ratio == pytest.approx(ratio, abs=1e-9)
         assert candidate.transmission_lowest == pytest.approx(circuit.transmission.lowest, abs=1e-4)
         lowest.append(circuit.transmission.lowest)
+        rows.append(np.abs([candidate.draft.linkage.dimensions[name] for name in NAMES]))
     assert len(lowest) == 2
+    # and no mirror images
+    assert np.abs(rows[0] - rows[1]).max() > 50.0
     assert lowest[0] > lowest[1] > math.radians(40)
 
 

@@ -306,29 +306,32 @@ def tally(refusals: Iterable[Refusal]) -> str:
     return ", ".join(f"{count} by {fault}" for fault, count in counts.most_common())
 
 
-def likeness(draft: Draft, *, scale_free: bool) -> Floats:
+def likeness(draft: Draft, *, scale_free: bool, mirrored: bool = False) -> Floats:
     """The dimensions in which designs are compared, lengths in parts of the longest, angles [rad].
 
     `scale_free` where only ratios of the lengths matter; else the longest stands for itself as a logarithm.
+    `mirrored` where signs do not matter, as a mirror image does the same.
     """
     dimensions = [d for d in draft.dimensions if d.kind != "speed"]
     values = np.array([d.value * d.scale for d in dimensions])
     lengths = np.array([d.kind in ("length", "pitch") for d in dimensions])
     longest = np.abs(values[lengths]).max(initial=0.0) or 1.0
     values[lengths] /= longest
+    if mirrored:
+        values = np.abs(values)
     return values if scale_free else np.append(values, math.log(longest))
 
 
 def distinct(
-    candidates: Iterable[Candidate], *, scale_free: bool, count: int | None = None
+    candidates: Iterable[Candidate], *, scale_free: bool, mirrored: bool = False, count: int | None = None
 ) -> list[Candidate]:
-    """The candidates that differ, the first of those that are alike; at most `count`."""
+    """The candidates that differ, the first of those that are alike by `likeness`; at most `count`."""
     kept: list[Candidate] = []
     seen: list[Floats] = []
     for candidate in candidates:
         if count is not None and len(kept) >= count:
             break
-        own = likeness(candidate.draft, scale_free=scale_free)
+        own = likeness(candidate.draft, scale_free=scale_free, mirrored=mirrored)
         if all(len(own) != len(other) or np.abs(own - other).max() > SAME for other in seen):
             kept.append(candidate)
             seen.append(own)
@@ -354,7 +357,9 @@ def toml_of(candidate: Candidate, head: Sequence[str]) -> str:
     """The design as TOML: comments with what was wanted and what it does, then the description."""
     told = [f"{name} = {_plain(value)}" for name, value in candidate.columns.items() if value is not None]
     measured = told[: len(told) - sum(d.kind != "speed" for d in candidate.draft.dimensions)]
-    lines = [f"# {line}" if line else "#" for line in (*head, "", *measured)]
+    # a name or a command may hold what would end a comment
+    clean = ("".join(c if c.isprintable() else " " for c in line) for line in (*head, "", *measured))
+    lines = [f"# {line}" if line else "#" for line in clean]
     return "\n".join(lines) + "\n\n" + candidate.draft.toml()
 
 

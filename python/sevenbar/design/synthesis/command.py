@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 Transmission = Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")]
 Size = Annotated[
-    str | None, typer.Option(help="Shortest link and longest dimension [mm], as in 50:1000 or 5cm:1m.")
+    str | None, typer.Option(help="Shortest link and longest dimension in mm, as in 50:1000 or 5cm:1m.")
 ]
 MotionType = Annotated[
     str | None,

@@ -82,11 +82,6 @@ class Limits:
         return "; ".join(parts) or "none"
 
 
-def extent(row: Floats) -> tuple[float, float]:
-    """The shortest link and the longest dimension of a design (6,) [length]."""
-    return float(row[2:5].min()), float(np.abs(row).max())
-
-
 #: (longest dimension, its sign, shortest link) of each inequality of `size_room`, as columns of a row (6,).
 _PAIRS = [
     (column, sign, short)

@@ -179,7 +179,8 @@ def swing_generation(
             kept.append(result)
         else:
             refused.append((far, result))
-    best = distinct(ranked(kept, lambda c: -(c.transmission_lowest or 0.0)), scale_free=True, count=count)
+    order = ranked(kept, lambda c: -(c.transmission_lowest or 0.0))
+    best = distinct(order, scale_free=True, mirrored=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(told, limits, tuple(renamed(best, told)), refusals, searched, len(chosen), seed)
 
@@ -267,7 +268,7 @@ def _chosen(wish: _Wish, most: int, seed: int) -> tuple[list[tuple[Floats, int, 
     chosen: list[tuple[Floats, int, Ends]] = []
     seen: list[Floats] = []
     for _, i, branch in sorted(scored):
-        own = np.arctan(rows[i])
+        own = np.abs(np.arctan(rows[i]))
         if any(np.abs(own - other).max() < START_APART for other in seen):
             continue
         ends = ends_of_swing(rows[i], branch)
