@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import math
 import sys
 import traceback
@@ -12,13 +13,8 @@ import typer
 import typer.core
 
 import sevenbar as sb
-from sevenbar.design.command import design
-from sevenbar.design.maps.command import map_
-from sevenbar.design.tolerance.command import tolerance
 from sevenbar.errors import RequestError, SevenbarError, shown
-from sevenbar.export.command import export
 from sevenbar.folder import check_targets
-from sevenbar.measuring.command import calibrate, compare
 from sevenbar.options import (
     Figures,
     Force,
@@ -32,19 +28,44 @@ from sevenbar.options import (
     tell_written,
     words,
 )
-from sevenbar.simulation.command import simulate
-from sevenbar.studio.command import studio
-from sevenbar.sweep.command import sweep
+
+#: Commands that live with what they do, imported when one of them is asked for: a report should not wait for
+#: the studio.
+_ELSEWHERE = {
+    "studio": "sevenbar.studio.command:studio",
+    "compare": "sevenbar.measuring.command:compare",
+    "calibrate": "sevenbar.measuring.command:calibrate",
+    "simulate": "sevenbar.simulation.command:simulate",
+    "export": "sevenbar.export.command:export",
+    "sweep": "sevenbar.sweep.command:sweep",
+    "map": "sevenbar.design.maps.command:map_",
+    "tolerance": "sevenbar.design.tolerance.command:tolerance",
+    "design": "sevenbar.design.command:design",
+}
 
 
 class _Commands(typer.core.TyperGroup):
     """The commands; a linkage in the place of one is told what is missing."""
 
+    def list_commands(self, ctx: Any) -> list[str]:
+        return [*super().list_commands(ctx), *_ELSEWHERE]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        if cmd_name not in _ELSEWHERE:
+            return super().get_command(ctx, cmd_name)
+        module, _, name = _ELSEWHERE[cmd_name].partition(":")
+        found = getattr(importlib.import_module(module), name)
+        if isinstance(found, typer.Typer):
+            return typer.main.get_command(found)
+        alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+        alone.command(cmd_name)(found)
+        return typer.main.get_command(alone)
+
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         from sevenbar.gallery import names
 
         word = args[0]
-        if word not in self.commands and (word in names() or word.endswith(".toml")):
+        if word not in self.list_commands(ctx) and (word in names() or word.endswith(".toml")):
             raise RequestError(
                 f"{word}: is a linkage, where a command should stand; give: sevenbar analyze {word}"
             )
@@ -235,12 +256,6 @@ def _points(
     if not all(math.isfinite(value) for value in (u, v, w)):
         raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
-
-
-for _command in (studio, compare, calibrate, simulate, export, sweep, tolerance):
-    app.command()(_command)
-app.command("map")(map_)
-app.add_typer(design)
 
 
 @app.command()

@@ -10,6 +10,7 @@ from sevenbar.design.synthesis.path_command import path
 
 design = typer.Typer(
     name="design",
+    add_completion=False,
     no_args_is_help=True,
     help="Find linkages for a wanted motion, and points of links; each is a file that opens in the studio.",
 )
