@@ -349,6 +349,12 @@ def test_a_loop_that_any_change_of_a_length_opens_is_told_of():
     assert found.error_greatest < 1e-8
 
 
+def test_a_named_point_of_the_ground_has_no_path():
+    draft = RSSR.with_point("G", 4, (1.0, 2.0, 3.0))
+    with pytest.raises(RequestError, match="point: 'G' is on link 4, the ground, which stands still"):
+        path_generation(draft, PATH, "G")
+
+
 def test_a_start_that_cannot_be_assembled_is_told_of():
     with pytest.raises(
         RequestError, match="linkage: cannot-assemble, the loop moves nowhere as it is described"

@@ -161,6 +161,11 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
     linkage = draft.linkage
     if isinstance(point, str):
         for known in linkage.points:
+            if known.name == point and known.link == len(linkage.joints):
+                raise RequestError(
+                    f"point: '{point}' is on link {known.link}, the ground, which stands still; give a point "
+                    f"of link 1 to {known.link - 1}"
+                )
             if known.name == point:
                 return draft, known
         names = [known.name for known in linkage.points]
