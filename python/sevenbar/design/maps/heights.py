@@ -26,16 +26,17 @@ CUT = (2.0, 96.0)
 EXACT = 1e-3
 
 #: Most values taken for one point of a contour: false position gains a digit or two with each.
-MOST_TRIES = 8
+MOST_TRIES = 6
 
 #: Boundaries are sampled so many times in a cell of the grid, and so many times more in narrow places.
 ALONG, DENSER = 2, 8
 
+#: How far inside their region samples of a boundary are taken [share], at least 2 tolerances: nothing to be
+#: seen on a sheet, and room for the boundary to bend between two samples of this distance [share].
+INSIDE, BEND = 3e-5, 7.5e-3
+
 #: Rounds in which narrow places are given more samples.
 ROUNDS = 3
-
-#: How far inside their region samples of a boundary are taken [tolerances].
-INSIDE = 2.0
 
 #: A triangle lies in its region when points this far from its sides [parts of the way to its middle] do.
 SHRUNK = 0.02
@@ -154,6 +155,7 @@ def _round_levels(values: Floats) -> list[float]:
 def _net(of: Map) -> tuple[Floats, Integers, Integers]:
     """Places [shares], their kinds, and triangles between places of one kind that cross no boundary."""
     lines = len(of.grid)
+    step = min(1.0 / (ALONG * (lines - 1)), BEND * _margin(of) / INSIDE)
     ticks = np.linspace(0.0, 1.0, lines)
     x, y = np.meshgrid(ticks, ticks)
     crossings, numbers = np.column_stack([x.ravel(), y.ravel()]), of.grid.ravel()
@@ -165,7 +167,7 @@ def _net(of: Map) -> tuple[Floats, Integers, Integers]:
         ]
         if not loops or not of.kinds[kind].circuits:
             continue
-        own, corners = _triangles(of, kind, loops, crossings[numbers == kind], 1.0 / (ALONG * (lines - 1)))
+        own, corners = _triangles(of, kind, loops, crossings[numbers == kind], step)
         nodes.append(own)
         kinds.append(np.full(len(own), kind))
         triangles.append(corners + count)
@@ -181,7 +183,7 @@ def _triangles(
     """Triangles between places of one kind, given ones and others along the boundary, and those places."""
     from matplotlib.tri import Triangulation
 
-    parts = [_beside(loop, step / DENSER, INSIDE * of.tolerance) for loop in loops]
+    parts = [_beside(loop, step / DENSER, _margin(of)) for loop in loops]
     chosen = np.concatenate([np.arange(len(part)) % DENSER == 0 for part in parts])
     beside = np.concatenate(parts)
     right = of.plane.kinds_at(beside) == kind
@@ -211,6 +213,11 @@ def _triangles(
             break
         chosen |= new
     return own, corners
+
+
+def _margin(of: Map) -> float:
+    """How far inside their region samples of a boundary are taken [share]."""
+    return max(INSIDE, 2 * of.tolerance)
 
 
 def _beside(loop: Floats, step: float, inside: float) -> Floats:
@@ -259,7 +266,17 @@ def _contours(
         )
         for kind, own in sorted(pieces.items()):
             for line in joined(own):
-                yield Contour(level, kind, np.array([places[edge] for edge in line]))
+                yield from _inside(of, level, kind, np.array([places[edge] for edge in line]))
+
+
+def _inside(of: Map, level: float, kind: int, places: Floats) -> Iterable[Contour]:
+    """The parts of a line that lie in regions of its kind."""
+    inside = of.numbers_at(places) == kind
+    starts = np.flatnonzero(inside & ~np.concatenate([[False], inside[:-1]]))
+    ends = np.flatnonzero(inside & ~np.concatenate([inside[1:], [False]]))
+    for start, end in zip(starts, ends, strict=True):
+        if end > start:
+            yield Contour(level, kind, places[start : end + 1])
 
 
 def _crossed(

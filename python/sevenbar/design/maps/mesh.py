@@ -112,7 +112,7 @@ class _Making:
                 bent += self._joined(stale, chords)
                 # where rounding cuts a side that nothing should cut, both squares beside it must know
                 ends = [corner for edge in list(self.cuts)[known:] for corner in edge]
-                stale = _touching(ends, scheme) & self.quiet
+                stale = _touching(ends, self.quiet)
                 self.quiet -= stale
                 doubtful |= stale
             split = [square for square in bent if square[2] > 1]
@@ -127,7 +127,7 @@ class _Making:
             children = self._split(split)
             doubtful.update(children)
             new = list(self.kinds)[known:]
-            stale = set(children) | (_touching(new, scheme) & doubtful)
+            stale = set(children) | _touching(new, doubtful)
         return self._mesh([chord for own in chords.values() for chord in own], doubtful)
 
     def _mesh(self, chords: list[Chord], doubtful: set[Square]) -> Mesh:
@@ -308,12 +308,13 @@ def _middle(heart: Corner, size: int) -> tuple[float, float]:
     return heart[0] / (2 * size), heart[1] / (2 * size)
 
 
-def _touching(corners: Iterable[Corner], scheme: Scheme) -> set[Square]:
-    """Squares of any width with one of these corners on a side; not all of them are in the mesh."""
+def _touching(corners: Iterable[Corner], squares: set[Square]) -> set[Square]:
+    """Those of the squares with one of these corners on a side."""
+    widths = {width for _, _, width in squares}
     found: set[Square] = set()
-    for x, y in corners:
-        for width in (1 << power for power in range(scheme.finest + 1)):
+    for x, y in set(corners):
+        for width in widths:
             for left in {x // width, (x - 1) // width}:
                 for low in {y // width, (y - 1) // width}:
                     found.add((left * width, low * width, width))
-    return found
+    return found & squares
