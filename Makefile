@@ -72,11 +72,14 @@ wheel: $(VENV)/.maturin  ## Build dist/*.whl
 	$(BIN)/maturin build --release $(LOCKED) --out "$(DIST)"
 
 .PHONY: bench
-bench: $(VENV)/.installed  ## Time the closed form and the general loop against their peers
-	$(BIN)/python -m pip install --quiet "scipy>=1.13"
+bench: $(VENV)/.installed  ## Time the closed form, the general loop and their batches against their peers
+	$(BIN)/python -m pip install --quiet "scipy>=1.13" "clarabel>=0.9"
 	$(BIN)/python benches/rssr_output.py
 	$(BIN)/python benches/seven_r.py
 	$(BIN)/python benches/finite_differences.py
+	$(BIN)/python benches/sweep.py
+	$(BIN)/python benches/sweep_loops.py
+	$(BIN)/python benches/least_acceleration.py
 
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too
