@@ -467,6 +467,15 @@ impl<'a> Passes<'a> {
         rows
     }
 
+    /// Rows at the nodes of the first pass, the last left out.
+    pub fn node_rows(&self) -> Vec<Row> {
+        let pass = &self.passes[0];
+        let nodes = &self.curve.nodes[pass.from..pass.to];
+        let mut rows = Vec::with_capacity(nodes.len());
+        self.rows_at(0, nodes.iter().map(|n| n.at.values[self.input]), &mut rows);
+        rows
+    }
+
     /// Rows at the inputs of a law, once for each pass.
     pub fn law_rows(&self, law: &[[f64; 4]], turns: bool) -> Vec<Row> {
         let mut rows = Vec::new();

@@ -132,8 +132,7 @@ pub(super) fn free_direction(columns: &[[f64; 6]; COLUMNS], least_pivot: f64) ->
             }
         }
         greatest = f64::max(greatest, size);
-        // not a number is no pivot either
-        if !(size > least_pivot * greatest) {
+        if size <= least_pivot * greatest {
             return None;
         }
         a.swap(n, row);

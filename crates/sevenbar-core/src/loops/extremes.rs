@@ -1,19 +1,16 @@
 //! The greatest and the least of the output's rates along a circuit on which the input goes round.
 //!
-//! Rows bracket the zeros of the next derivative, and in these the extremes are; the jerk's, whose derivative no row has, by the
-//! rows between lesser or greater neighbours. Only those are refined that may be the greatest or the least.
+//! Rows on the grid and at the nodes of the curve, which stand close where rates change fast, bracket the zeros of the next
+//! derivative, and in these the extremes are; the jerk's, whose derivative no row has, by the rows between lesser or greater
+//! neighbours. Only those are refined that may be the greatest or the least.
 
 use super::chain::Columns;
 use super::circuits::{Passes, Row, UNIT};
 use super::rates::ORDERS;
 use crate::outcome::RowStatus;
-use std::f64::consts::TAU;
 
 /// The least and the greatest value of a quantity, each with the input there.
 pub type Ends = [[f64; 2]; 2];
-
-/// Rows in a turn from which extremes are bracketed.
-const LEAST_ROWS: f64 = 180.0;
 
 /// A derivative of the output at unit speed, of order four, below which it is zero.
 const NO_SLOPE: f64 = 1e-13;
@@ -21,31 +18,37 @@ const NO_SLOPE: f64 = 1e-13;
 /// Inputs [rad] nearer than this to each other are one.
 const SAME_INPUT: f64 = 1e-14;
 
+/// Rows at inputs [rad] nearer than this to each other bracket nothing.
+const SAME_SAMPLE: f64 = 1e-9;
+
 /// Refinements of a bracket.
 const MOST_REFINEMENTS: usize = 40;
 
-/// How many times as dense as a grid of this step [rad] rows must be for extremes.
-pub(super) fn times_as_dense(step: f64) -> f64 {
-    (step * LEAST_ROWS / TAU).ceil().max(1.0)
-}
-
-/// Whether a row of the denser grid is one of the grid: its origin and step.
-pub(super) fn is_on_grid(input: f64, (origin, step): (f64, f64)) -> bool {
-    let place = (input - origin) / step;
-    (place - place.round()).abs() < 0.5 / times_as_dense(step)
-}
-
 /// The lowest and highest velocity, acceleration and jerk of the output; none where there are rows without rates.
+///
+/// Inputs are given in the turns of the rows, which follow each other from the first on.
 pub(super) fn output_extremes(
     passes: &Passes,
     rows: &[Row],
     output: usize,
     gained: &Columns,
 ) -> [Option<Ends>; ORDERS] {
-    if rows.is_empty() || rows.iter().any(|r| r.status != RowStatus::Ok) {
+    let at_nodes = passes.node_rows();
+    let Some(first) = rows.first().map(|r| r.at.values[passes.input]) else {
+        return [None; ORDERS];
+    };
+    if rows.iter().chain(&at_nodes).any(|r| r.status != RowStatus::Ok) {
         return [None; ORDERS];
     }
-    let search = Search { passes, rows, output, gained };
+    let span = gained[passes.input];
+    let mut samples: Vec<(f64, &Row)> = rows
+        .iter()
+        .chain(&at_nodes)
+        .map(|r| (first + (r.at.values[passes.input] - first).rem_euclid(span), r))
+        .collect();
+    samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+    samples.dedup_by(|a, b| a.0 - b.0 < SAME_SAMPLE);
+    let search = Search { passes, samples: &samples, output, span };
     std::array::from_fn(|order| Some(search.ends(order)))
 }
 
@@ -59,9 +62,11 @@ struct Sample {
 
 struct Search<'a, 'b> {
     passes: &'a Passes<'b>,
-    rows: &'a [Row],
+    /// Rows by their inputs, rising.
+    samples: &'a [(f64, &'a Row)],
     output: usize,
-    gained: &'a Columns,
+    /// Of the input, all the way round.
+    span: f64,
 }
 
 impl Search<'_, '_> {
@@ -82,29 +87,21 @@ impl Search<'_, '_> {
     }
 
     /// A row before or after the others is one a turn back or on.
-    fn input(&self, k: i64) -> f64 {
-        let count = self.rows.len() as i64;
-        let turns = k.div_euclid(count) as f64;
-        self.row(k).at.values[self.passes.input] + turns * self.gained[self.passes.input]
-    }
-
-    fn row(&self, k: i64) -> &Row {
-        &self.rows[k.rem_euclid(self.rows.len() as i64) as usize]
+    fn place(&self, k: i64) -> (f64, &Row) {
+        let count = self.samples.len() as i64;
+        let (input, row) = self.samples[k.rem_euclid(count) as usize];
+        (input + k.div_euclid(count) as f64 * self.span, row)
     }
 
     fn sample(&self, k: i64, order: usize) -> Sample {
-        let row = self.row(k);
-        Sample {
-            input: self.input(k),
-            value: self.rate(row, order),
-            slope: self.slope(row, order),
-        }
+        let (input, row) = self.place(k);
+        Sample { input, value: self.rate(row, order), slope: self.slope(row, order) }
     }
 
     fn ends(&self, order: usize) -> Ends {
         let mut ends = [[f64::INFINITY, 0.0], [f64::NEG_INFINITY, 0.0]];
-        for (k, row) in self.rows.iter().enumerate() {
-            look(&mut ends, self.rate(row, order), self.input(k as i64));
+        for (input, row) in self.samples {
+            look(&mut ends, self.rate(row, order), *input);
         }
         for (low, high) in self.brackets(order, &ends) {
             self.refine(order, low, high, &mut ends);
@@ -118,7 +115,7 @@ impl Search<'_, '_> {
             lowest - more <= ends[0][0] || highest + more >= ends[1][0]
         };
         let mut found = Vec::new();
-        for k in 0..self.rows.len() as i64 {
+        for k in 0..self.samples.len() as i64 {
             if order + 1 < ORDERS {
                 let (low, high) = (self.sample(k, order), self.sample(k + 1, order));
                 // tangents bound what lies between
@@ -129,13 +126,18 @@ impl Search<'_, '_> {
                 }
                 continue;
             }
-            let [before, here, after] = [k - 1, k, k + 1].map(|k| self.rate(self.row(k), order));
-            let (rise, next) = (here - before, after - here);
-            // the parabola through the three reaches an eighth of this farther at most
-            if rise * next <= 0.0 && reaches(here, here, (next - rise).abs()) {
-                let middle = self.sample(k, order);
+            let [before, here, after] = [k - 1, k, k + 1].map(|k| self.place(k));
+            let [before, here, after] = [before, here, after].map(|(at, row)| (at, self.rate(row, order)));
+            let (rise, next) = (here.1 - before.1, after.1 - here.1);
+            if rise * next > 0.0 {
+                continue;
+            }
+            let middle = self.sample(k, order);
+            // the tangent bounds what lies beside
+            let more = middle.slope.abs() * (here.0 - before.0).max(after.0 - here.0);
+            if reaches(here.1, here.1, more) {
                 let rising = middle.slope > 0.0;
-                let is_most = rise > next;
+                let is_most = rise > 0.0 || next < 0.0;
                 let beside = if rising == is_most { k + 1 } else { k - 1 };
                 let other = self.sample(beside, order);
                 if middle.slope * other.slope < 0.0 {
@@ -153,14 +155,14 @@ impl Search<'_, '_> {
     /// Looks at the extreme between two samples whose slopes differ in sign.
     fn refine(&self, order: usize, mut low: Sample, mut high: Sample, ends: &mut Ends) {
         let passes = self.passes;
-        let (start, span) = (passes.passes[0].start, self.gained[passes.input]);
+        let start = passes.passes[0].start;
         for step in 0..MOST_REFINEMENTS {
             let input = if step % 3 == 2 {
                 0.5 * (low.input + high.input)
             } else {
                 (low.input * high.slope - high.input * low.slope) / (high.slope - low.slope)
             };
-            let inside = start + (input - start).rem_euclid(span);
+            let inside = start + (input - start).rem_euclid(self.span);
             let Some(row) = passes.row(0, inside, &UNIT) else {
                 break;
             };

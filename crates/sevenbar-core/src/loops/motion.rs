@@ -5,7 +5,7 @@ use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
 use super::circuits::{Passes, Row};
 use super::curve::{Curve, End, Node, combined, dot};
 use super::dense::singular_values;
-use super::extremes::{Ends, is_on_grid, output_extremes, times_as_dense};
+use super::extremes::{Ends, output_extremes};
 use super::modes::{CLOSED, Completeness, ModeFinder, polish};
 use super::rates::ORDERS;
 use super::rows::Rows;
@@ -223,21 +223,15 @@ impl Loop {
         let closed = passes.curve.end == End::Closed;
         let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
         let rocks = passes.rocks() || !turning(a);
-        let bounded = !rocks && closed && law.is_none();
-        let step = if bounded {
-            grid.1 / times_as_dense(grid.1)
-        } else {
-            grid.1
-        };
-        let mut rows = passes.rows(grid.0, step);
+        let mut rows = passes.rows(grid.0, grid.1);
         if !rocks {
-            begin_at_zero(chain, &mut rows, a, &gained, step);
+            begin_at_zero(chain, &mut rows, a, &gained, grid.1);
         }
-        let mut extremes = [None; ORDERS];
-        if bounded {
-            extremes = output_extremes(passes, &rows, b, &gained);
-            rows.retain(|r| is_on_grid(r.at.values[a], grid));
-        }
+        let extremes = if rocks || !closed || law.is_some() {
+            [None; ORDERS]
+        } else {
+            output_extremes(passes, &rows, b, &gained)
+        };
         // whole turns that bring the first row into (-pi, pi]
         let mut shift = [0.0; COLUMNS];
         if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
@@ -416,7 +410,7 @@ impl Curves {
     }
 
     /// The curve ahead on which a mode lies, if there is one, in this direction there.
-    fn from_ahead(&mut self, chain: &Chain, (mode, direction): &Start) -> Option<Curve> {
+    fn taken_ahead(&mut self, chain: &Chain, (mode, direction): &Start) -> Option<Curve> {
         let (k, node) = self
             .ahead
             .iter()
@@ -464,7 +458,7 @@ impl Curves {
                 direction = direction.map(|d| -d);
             }
             starts.push((*mode, direction));
-            curves.push(self.from_ahead(chain, &(*mode, direction)));
+            curves.push(self.taken_ahead(chain, &(*mode, direction)));
         }
         let left: Vec<Start> = starts
             .iter()

@@ -2,9 +2,9 @@
 
 use super::chain::{Chain, Columns, Configuration, Joint};
 use super::circuits::Passes;
-use super::curve::End;
+use super::curve::{Curve, End};
 use super::dense::singular_values;
-use super::modes::{ModeFinder, random_pose};
+use super::modes::{ModeFinder, random_pose, same};
 use super::starts::Random;
 use crate::rigid::Pose;
 
@@ -38,6 +38,14 @@ fn seven_r() -> Chain {
     )
 }
 
+/// A loop of seven axes anywhere.
+fn general_loop(random: &mut Random) -> Chain {
+    let mut links: Vec<Pose> = (0..6).map(|_| random_pose(random)).collect();
+    let all = links.iter().fold(Pose::STILL, |a, b| a.then(b));
+    links.push(all.inverse());
+    Chain::new(vec![Joint::Turn; 7], links)
+}
+
 #[test]
 fn the_loop_of_liu_and_zhu_has_sixteen_modes() {
     let chain = loop_of(
@@ -63,10 +71,7 @@ fn the_paper_s_loop_has_eight_solutions_all_of_them_real() {
 fn general_loops_have_sixteen_solutions_and_an_even_number_of_real_ones() {
     let mut random = Random(77);
     for _ in 0..40 {
-        let mut links: Vec<Pose> = (0..6).map(|_| random_pose(&mut random)).collect();
-        let all = links.iter().fold(Pose::STILL, |a, b| a.then(b));
-        links.push(all.inverse());
-        let chain = Chain::new(vec![Joint::Turn; 7], links);
+        let chain = general_loop(&mut random);
         let finder = ModeFinder::new(&chain, 0);
         assert_eq!(finder.complex_count(), Some(16));
         let modes = finder.at(0.0);
@@ -103,4 +108,67 @@ fn rows_side_by_side_are_the_rows_solved_singly() {
             assert!((row.condition / single.condition - 1.0).abs() < 1e-2);
         }
     }
+}
+
+#[test]
+fn modes_from_the_circle_of_complex_inputs_are_those_found_singly() {
+    let mut random = Random(5);
+    let mut chains: Vec<Chain> = (0..12).map(|_| general_loop(&mut random)).collect();
+    chains.push(seven_r());
+    for chain in &chains {
+        for input in [0, 3] {
+            let finder = ModeFinder::new(chain, input);
+            for (k, rough) in finder.around(24).iter().enumerate() {
+                let singly = finder.at(std::f64::consts::TAU * k as f64 / 24.0);
+                let modes = finder.polished(rough);
+                assert_eq!(modes.len(), singly.len(), "value {k}");
+                assert!(modes.iter().zip(&singly).all(|(a, b)| same(chain, a, b)));
+            }
+        }
+    }
+}
+
+/// Whether a closed configuration is a place of a curve.
+fn passes(chain: &Chain, curve: &Curve, at: &Configuration) -> bool {
+    let mut nodes = curve.nodes.iter();
+    nodes.any(|n| chain.passes_through(n, at).is_some())
+}
+
+#[test]
+fn curves_joined_from_pieces_are_those_followed_whole_in_either_direction() {
+    let mut random = Random(9);
+    let mut chains: Vec<Chain> = (0..8).map(|_| general_loop(&mut random)).collect();
+    chains.push(seven_r());
+    let mut compared = 0;
+    for chain in &chains {
+        let finder = ModeFinder::new(chain, 0);
+        let modes: Vec<Configuration> = (0..6).flat_map(|k| finder.at(f64::from(k))).collect();
+        let joined = chain.closed_curves(&modes);
+        for mode in &modes {
+            let whole = chain.follow(&[(*mode, direction(chain, mode))]).swap_remove(0);
+            let through: Vec<&Curve> = joined.iter().filter(|c| passes(chain, c, mode)).collect();
+            if whole.end != End::Closed {
+                assert!(through.is_empty());
+                continue;
+            }
+            assert_eq!(through.len(), 1);
+            compared += 1;
+            let gained =
+                |c: &Curve, k: usize| c.nodes[c.nodes.len() - 1].at.values[k] - c.nodes[0].at.values[k];
+            let other = chain.reversed(through[0]).unwrap();
+            let sign = if (0..7).all(|k| (gained(&whole, k) - gained(through[0], k)).abs() < 1e-9) {
+                1.0
+            } else {
+                -1.0
+            };
+            for k in 0..7 {
+                assert!((gained(&whole, k) - sign * gained(through[0], k)).abs() < 1e-9);
+                assert!((gained(&other, k) + gained(through[0], k)).abs() < 1e-9);
+            }
+            for node in &whole.nodes {
+                assert!(passes(chain, through[0], &node.at) && passes(chain, &other, &node.at));
+            }
+        }
+    }
+    assert!(compared > 50);
 }
