@@ -14,7 +14,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar import _core
-from sevenbar.general import _expanded
+from sevenbar.general import expanded
 
 Floats = np.ndarray
 Batch = Mapping[str, np.ndarray]
@@ -62,7 +62,7 @@ def ends(linkage: sb.Linkage) -> tuple[int, int]:
 
 def batch(linkages: Sequence[sb.Linkage], threads: int = 1, samples: int = SAMPLES) -> Batch:
     """All of them, which have one pattern of joints, at once."""
-    expanded = [_expanded(linkage) for linkage in linkages]
+    expanded = [expanded(linkage) for linkage in linkages]
     (letters,) = {letters for letters, *_ in expanded}
     return _core.measure_loops(
         letters,
@@ -135,7 +135,7 @@ def test_random_loops_come_to_what_the_motion_of_each_says() -> None:
 @pytest.mark.parametrize(("name", "letters"), GALLERY.items())
 def test_loops_of_the_gallery_come_to_what_their_motion_says(name: str, letters: str) -> None:
     linkage = sb.load(name)
-    assert _expanded(linkage)[0] == letters
+    assert expanded(linkage)[0] == letters
     got = batch([linkage])
     assert_is_the_motion(got, [linkage])
     assert got["status"] == [0]
