@@ -137,7 +137,10 @@ def test_the_same_rule_bounds_the_wedges_over_both_axes():
     of = made("the paper's axes")
     places = np.concatenate([line.places for line in of.boundaries])
     M, N = of.values(places).T
-    assert np.abs(np.abs(N) * 550 - 2 * np.abs(M) * 250).max() < 1e-4 * 550
+    off = np.abs(np.abs(N) - 2 * np.abs(M) * 250 / 550)
+    # at M = N = 0 all boundaries meet, and with them the line N = 0 on which it is a change point
+    assert off.max() < of.tolerance * 2400
+    assert off[np.abs(M) > 0.1].max() < 1e-6
 
 
 def test_the_loop_fails_to_close_where_the_coupler_is_the_least_or_the_greatest_distance_of_the_circles():
