@@ -62,14 +62,14 @@ def ends(linkage: sb.Linkage) -> tuple[int, int]:
 
 def batch(linkages: Sequence[sb.Linkage], threads: int = 1, samples: int = SAMPLES) -> Batch:
     """All of them, which have one pattern of joints, at once."""
-    expanded = [expanded(linkage) for linkage in linkages]
-    (letters,) = {letters for letters, *_ in expanded}
+    parts = [expanded(linkage) for linkage in linkages]
+    (letters,) = {letters for letters, *_ in parts}
     return _core.measure_loops(
         letters,
-        np.array([advances for _, advances, _, _ in expanded]),
+        np.array([advances for _, advances, _, _ in parts]),
         np.array([linkage.base for linkage in linkages]),
         np.array([linkage.ground for linkage in linkages]),
-        np.array([links for _, _, links, _ in expanded]),
+        np.array([links for _, _, links, _ in parts]),
         *ends(linkages[0]),
         samples,
         threads,

@@ -77,7 +77,7 @@ def run(
         >>> from sevenbar.sweep import grid
         >>> found = run(sb.load("rssr"), {"L1": grid(200, 500, 4)}, ["motion_type"])
         >>> found.table()["motion_type"].to_pylist()
-        ['crank-rocker', 'crank-rocker', 'crank-rocker', 'double-rocker']
+        ['crank-rocker', 'double-rocker', 'double-rocker', 'double-rocker']
     """
     plan = Plan.of(
         linkage, axes, measures, method=method, count=count, seed=seed, samples=samples,
