@@ -16,7 +16,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 
 from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
-from sevenbar.design.maps.outline import within
+from sevenbar.design.maps.lettering import LINE, RASTER, names, take
 from sevenbar.design.maps.plane import Kind
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.figure import STYLE, new_figure
@@ -47,12 +47,8 @@ OTHERS = ("#c7b8dd", "#e9c3d3", "#bfe0dc", "#d9d9d9", "#dfe3b4", "#b9bfd9")
 SHADE = -0.16
 
 HATCH = "#c4c4c4"
-LINE = "#1c1c1c"
 CONTOUR = "#7a1f5c"
 MARK = "#c1121f"
-
-#: Places across a map where the name of a region is tried.
-RASTER = 160
 
 #: Contours shorter than this have no value on them, longer ones than that have two [share of the ranges].
 SHORT, LONG = 0.07, 0.9
@@ -65,9 +61,6 @@ ROOM = 0.015
 
 #: Room that the value on a contour takes, to each side [share].
 LABEL = (0.03, 0.02)
-
-#: Height and width of a letter, in parts of the size of the font.
-LETTER = (1.35, 0.56)
 
 
 def sheet(size: str) -> tuple[float, float]:
@@ -101,7 +94,7 @@ def draw(of: Map, heights: Heights | None = None, *, size: str = "A4") -> Figure
         _design(axes, of, scale, taken)
         if heights is not None:
             _contours(axes, heights, of, scale, taken)
-        _names(axes, of, scale, taken, (width, height))
+        names(axes, of, scale, taken, (width, height))
         _frame(axes, of, scale)
         _side(figure, axes, of, heights, scale)
         _title(figure, axes, of, heights, scale)
@@ -184,7 +177,7 @@ def _contours(axes: Axes, heights: Heights, of: Map, scale: float, taken: np.nda
                 zorder=5,
             )
             label.set_path_effects([*halo])
-            _take(taken, middle, LABEL)
+            take(taken, middle, LABEL)
 
 
 def _unit(unit: str) -> str:
@@ -205,7 +198,7 @@ def _design(axes: Axes, of: Map, scale: float, taken: np.ndarray) -> None:
     here = (design.x, design.y)
     stroke: list[AbstractPathEffect] = [withStroke(linewidth=2.8 * scale, foreground="white")]
     share = of.shares_of(np.array([here]))[0]
-    _take(taken, share, (0.03, 0.03))
+    take(taken, share, (0.03, 0.03))
     for step in design.steps:
         if step.value is None:
             continue
@@ -228,7 +221,7 @@ def _design(axes: Axes, of: Map, scale: float, taken: np.ndarray) -> None:
         far = of.shares_of(np.array([end]))[0]
         middle = 0.5 * (far + share)
         reach = np.abs(far - share) / 2
-        _take(taken, middle, (reach[0] + 0.012, reach[1] + 0.012))
+        take(taken, middle, (reach[0] + 0.012, reach[1] + 0.012))
         text = f"{step.value - here[place]:+.4g}"
         if abs(far[place] - share[place]) < 0.07:
             middle = far + (0.03 if step.way == "up" else -0.03) * np.eye(2)[place]
@@ -248,74 +241,9 @@ def _design(axes: Axes, of: Map, scale: float, taken: np.ndarray) -> None:
             clip_on=True,
         )
         label.set_path_effects(stroke)
-        _take(taken, middle, (0.035, 0.02) if place == 0 else (0.02, 0.035))
+        take(taken, middle, (0.035, 0.02) if place == 0 else (0.02, 0.035))
     axes.plot(*here, "o", ms=8.5 * scale, mfc="white", mec=MARK, mew=1.8 * scale, zorder=8)
     axes.plot(*here, "o", ms=2.6 * scale, color=MARK, zorder=9)
-
-
-def _take(taken: np.ndarray, middle: Floats, half: Sequence[float]) -> None:
-    """Marks a box [shares] as taken, so that no name is written there."""
-    low = np.clip(((middle - half) * RASTER).astype(int), 0, RASTER)
-    high = np.clip(np.ceil((middle + half) * RASTER).astype(int), 0, RASTER)
-    taken[low[1] : high[1], low[0] : high[0]] = True
-
-
-def _names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[float, float]) -> None:
-    """Writes the name of each region where it fits, lying or standing, in the place with most room."""
-    ticks = (np.arange(RASTER) + 0.5) / RASTER
-    x, y = np.meshgrid(ticks, ticks)
-    numbers = np.full(x.size, -1)
-    places = np.column_stack([x.ravel(), y.ravel()])
-    for index, region in enumerate(of.regions):
-        numbers[within([region.outline, *region.holes], places)] = index
-    owner = numbers.reshape(RASTER, RASTER)
-    box = axes.get_position()
-    size = np.array([box.width * inches[0], box.height * inches[1]])
-    for index, region in enumerate(of.regions):
-        free = (owner == index) & ~taken
-        name = of.name(of.kinds[region.kind])
-        for points in (15.0, 12.0, 9.5):
-            letter = points * scale / 72
-            text = np.array([LETTER[1] * letter * len(name), LETTER[0] * letter])
-            found = None
-            for rotation, extent in ((0, text), (90, text[::-1])):
-                found = found or _room(free, extent / size, rotation)
-            if found:
-                (px, py), rotation = found
-                at = of.values(np.array([[px, py]]))[0]
-                label = axes.text(
-                    float(at[0]),
-                    float(at[1]),
-                    name,
-                    fontsize=points * scale,
-                    ha="center",
-                    va="center",
-                    rotation=rotation,
-                    zorder=7,
-                    color=LINE,
-                )
-                label.set_path_effects([withStroke(linewidth=3 * scale, foreground="#ffffffb0")])
-                break
-
-
-def _room(free: np.ndarray, extent: Floats, rotation: int) -> tuple[tuple[float, float], int] | None:
-    """The middle [shares] of the free box of this extent [shares] with most room round it, if any."""
-    best = None
-    for room in (2.4, 1.7, 1.25, 1.05):
-        w, h = np.maximum(1, np.ceil(extent * RASTER * np.array([1 + (room - 1) * 0.4, room]))).astype(int)
-        if w > RASTER or h > RASTER:
-            continue
-        total = np.zeros((RASTER + 1, RASTER + 1))
-        total[1:, 1:] = np.cumsum(np.cumsum(free, axis=0), axis=1)
-        inside = total[h:, w:] - total[:-h, w:] - total[h:, :-w] + total[:-h, :-w]
-        rows, columns = np.nonzero(inside == w * h)
-        if rows.size:
-            # of all places the one nearest to their middle
-            away = np.hypot(rows - rows.mean(), columns - columns.mean())
-            i = int(away.argmin())
-            best = ((columns[i] + w / 2) / RASTER, (rows[i] + h / 2) / RASTER)
-            break
-    return None if best is None else (best, rotation)
 
 
 def _frame(axes: Axes, of: Map, scale: float) -> None:

@@ -1,0 +1,87 @@
+"""Where words stand on a map: names of regions in the room that lines, marks and values leave."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+
+from sevenbar.design.maps.atlas import Map
+from sevenbar.design.maps.outline import within
+from sevenbar.motion import Floats
+
+#: Places across a map where the name of a region is tried.
+RASTER = 160
+
+#: Height and width of a letter, in parts of the size of the font.
+LETTER = (1.35, 0.56)
+
+#: The ink of boundaries and names.
+LINE = "#1c1c1c"
+
+
+def take(taken: np.ndarray, middle: Floats, half: Sequence[float]) -> None:
+    """Marks a box [shares] as taken, so that no name is written there."""
+    low = np.clip(((middle - half) * RASTER).astype(int), 0, RASTER)
+    high = np.clip(np.ceil((middle + half) * RASTER).astype(int), 0, RASTER)
+    taken[low[1] : high[1], low[0] : high[0]] = True
+
+
+def names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[float, float]) -> None:
+    """Writes the name of each region where it fits, lying or standing, in the place with most room."""
+    ticks = (np.arange(RASTER) + 0.5) / RASTER
+    x, y = np.meshgrid(ticks, ticks)
+    numbers = np.full(x.size, -1)
+    places = np.column_stack([x.ravel(), y.ravel()])
+    for index, region in enumerate(of.regions):
+        numbers[within([region.outline, *region.holes], places)] = index
+    owner = numbers.reshape(RASTER, RASTER)
+    box = axes.get_position()
+    size = np.array([box.width * inches[0], box.height * inches[1]])
+    for index, region in enumerate(of.regions):
+        free = (owner == index) & ~taken
+        name = of.name(of.kinds[region.kind])
+        for points in (15.0, 12.0, 9.5):
+            letter = points * scale / 72
+            text = np.array([LETTER[1] * letter * len(name), LETTER[0] * letter])
+            found = None
+            for rotation, extent in ((0, text), (90, text[::-1])):
+                found = found or _room(free, extent / size, rotation)
+            if found:
+                (px, py), rotation = found
+                at = of.values(np.array([[px, py]]))[0]
+                label = axes.text(
+                    float(at[0]),
+                    float(at[1]),
+                    name,
+                    fontsize=points * scale,
+                    ha="center",
+                    va="center",
+                    rotation=rotation,
+                    zorder=7,
+                    color=LINE,
+                )
+                label.set_path_effects([withStroke(linewidth=3 * scale, foreground="#ffffffb0")])
+                break
+
+
+def _room(free: np.ndarray, extent: Floats, rotation: int) -> tuple[tuple[float, float], int] | None:
+    """The middle [shares] of the free box of this extent [shares] with most room round it, if any."""
+    best = None
+    for room in (2.4, 1.7, 1.25, 1.05):
+        w, h = np.maximum(1, np.ceil(extent * RASTER * np.array([1 + (room - 1) * 0.4, room]))).astype(int)
+        if w > RASTER or h > RASTER:
+            continue
+        total = np.zeros((RASTER + 1, RASTER + 1))
+        total[1:, 1:] = np.cumsum(np.cumsum(free, axis=0), axis=1)
+        inside = total[h:, w:] - total[:-h, w:] - total[h:, :-w] + total[:-h, :-w]
+        rows, columns = np.nonzero(inside == w * h)
+        if rows.size:
+            # of all places the one nearest to their middle
+            away = np.hypot(rows - rows.mean(), columns - columns.mean())
+            i = int(away.argmin())
+            best = ((columns[i] + w / 2) / RASTER, (rows[i] + h / 2) / RASTER)
+            break
+    return None if best is None else (best, rotation)
