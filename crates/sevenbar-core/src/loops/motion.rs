@@ -224,6 +224,12 @@ impl Loop {
         let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
         let rocks = passes.rocks() || !turning(a);
         let mut rows = passes.rows(grid.0, grid.1);
+        if !closed {
+            // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
+            let lost = |r: &Row| r.status == RowStatus::NoSolution;
+            rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
+            rows.drain(..rows.iter().take_while(|r| lost(r)).count());
+        }
         if !rocks {
             begin_at_zero(chain, &mut rows, a, &gained, grid.1);
         }
