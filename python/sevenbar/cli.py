@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import math
 import sys
 import traceback
 from pathlib import Path
@@ -24,6 +23,7 @@ from sevenbar.options import (
     Source,
     Speed,
     figure_formats,
+    place_of,
     progress_bar,
     tell_written,
     words,
@@ -249,13 +249,9 @@ def _points(
     count = len(linkage.joints)
     if not 1 <= link <= count:
         raise RequestError(f"--link: {link} is not a link; give 1 to {count}, the last is the ground")
-    try:
-        u, v, w = (float(word) for word in at.split(","))
-    except ValueError:
-        u = v = w = math.nan
-    if not all(math.isfinite(value) for value in (u, v, w)):
-        raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
-    return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
+    place = place_of(at)
+    u, v, w = place
+    return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, place)}
 
 
 @app.command()

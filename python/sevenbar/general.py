@@ -54,18 +54,10 @@ class GeneralLoop:
 
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move one link only, in words."""
-        owner = [0] * (max(self._link) + 1)
-        for joint, last in enumerate(self._link):
-            owner[last] = joint
-        for inner in range(len(owner)):
-            if inner not in self._link:
-                owner[inner] = owner[inner + 1]
         names = [joint.name for joint in self._linkage.joints]
 
-        def told(word: str, held: int, other: int) -> str:
-            a, b = owner[held], owner[other]
-            first, second = names[a], names[b]
-            link = 1 + (a if (a + 1) % len(names) == b else b)
+        def told(word: str, link: int, held: int, other: int) -> str:
+            first, second = names[held], names[other]
             match word:
                 case "between-balls" if self._linkage.kind == "RSSR":
                     return f"spin of the coupler (link {link}) about the line of {first} and {second}"
@@ -78,7 +70,26 @@ class GeneralLoop:
                 case _:
                     return f"slide of link {link} along the common direction of {second} and {first}"
 
-        return tuple(told(*freedom) for freedom in self._core.idle)
+        return tuple(told(*freedom) for freedom in self._idle())
+
+    def idle_links(self) -> frozenset[int]:
+        """The links that have such a freedom, counted from 1."""
+        return frozenset(link for _, link, _, _ in self._idle())
+
+    def _idle(self) -> list[tuple[str, int, int, int]]:
+        """Each such freedom: the core's word, the link, and the joints held and beside it."""
+        owner = [0] * (max(self._link) + 1)
+        for joint, last in enumerate(self._link):
+            owner[last] = joint
+        for inner in range(len(owner)):
+            if inner not in self._link:
+                owner[inner] = owner[inner + 1]
+        count = len(self._linkage.joints)
+        found = []
+        for word, held, other in self._core.idle:
+            a, b = owner[held], owner[other]
+            found.append((word, 1 + (a if (a + 1) % count == b else b), a, b))
+        return found
 
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column."""

@@ -266,6 +266,11 @@ class Linkage:
         """Freedoms that move no other link."""
         return self._general.idle() + self._unheld
 
+    @property
+    def idle_links(self) -> frozenset[int]:
+        """Links, counted from 1, with a freedom of their own that moves no other link."""
+        return self._general.idle_links()
+
     @cached_property
     def _unheld(self) -> tuple[str, ...]:
         """Idle freedoms that the core does not hold: it knows those of one link only."""

@@ -65,18 +65,18 @@ def _end(pick: Callable[[Circuit], Extremes | None], end: str) -> Callable[[Circ
     return value
 
 
-def _pair(quantity: Quantity, what: str) -> tuple[Measure, Measure]:
+def _ends(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]:
     """Lowest and highest value of a rate of the output, which a circuit has under the same name."""
-    return tuple(  # type: ignore[return-value]
+    return [
         Measure(
-            f"{quantity}_{end}",
+            f"{rate}_{end}",
             "circuit",
-            quantity,
-            _end(lambda circuit: getattr(circuit, quantity), end),
-            f"{end} {what} of the output; none where there is no bound",
+            rate,
+            _end(lambda circuit: getattr(circuit, rate), end),
+            f"{end} {rate} of the output; none where there is no bound",
         )
         for end in ("lowest", "highest")
-    )
+    ]
 
 
 #: Every measure that has a name.
@@ -106,9 +106,9 @@ MEASURES: dict[str, Measure] = {
             lambda c: _degrees(_end(lambda c: c.transmission, "highest")(c)),
             "greatest transmission angle",
         ),
-        *_pair("velocity", "velocity"),
-        *_pair("acceleration", "acceleration"),
-        *_pair("jerk", "jerk"),
+        *_ends("velocity"),
+        *_ends("acceleration"),
+        *_ends("jerk"),
     )
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -49,16 +50,60 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     return endings
 
 
-@contextmanager
-def progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on the error stream, so that what is printed can be piped on."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+def place_of(at: str) -> tuple[float, float, float]:
+    """The place that `--at` gives; raises `RequestError` for what is not three numbers."""
+    try:
+        u, v, w = (float(word) for word in at.split(","))
+    except ValueError:
+        u = v = w = math.nan
+    if not all(math.isfinite(value) for value in (u, v, w)):
+        raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
+    return u, v, w
 
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as bar:
-        task = bar.add_task(title, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+@contextmanager
+def progress_bar(title: str, *, rate: bool = False) -> Iterator[Callable[[int, int], None]]:
+    """A bar on the error stream, so that what is printed can be piped on; with `rate` how many a second.
+
+    It is shown when the first progress is told, so that a refusal stands alone and short work has none.
+    """
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TaskID,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        """Steps a second."""
+
+        def render(self, task: Task) -> Text:
+            speed = task.finished_speed or task.speed
+            return Text("" if speed is None else f"{speed:,.0f}/s")
+
+    columns = [TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()]
+    bar = Progress(*columns, *([Rate()] if rate else []), TimeRemainingColumn(), console=Console(stderr=True))
+    task: TaskID | None = None
+
+    def progress(done: int, total: int) -> None:
+        nonlocal task
+        if task is None:
+            bar.start()
+            # what was there already is no rate
+            task = bar.add_task(title, total=total, completed=done)
+        bar.update(task, completed=done, total=total)
+
+    try:
+        yield progress
+    finally:
+        if task is not None:
+            bar.stop()
 
 
 def tell_written(paths: Sequence[Path], *, below: bool = True) -> None:

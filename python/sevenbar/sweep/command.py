@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json as json_module
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from sevenbar.errors import RequestError
-from sevenbar.options import InputJoint, OutputJoint, Source, words
+from sevenbar.options import InputJoint, OutputJoint, Source, progress_bar, words
 
 if TYPE_CHECKING:
     from sevenbar.sweep.result import Sweep
@@ -88,7 +86,7 @@ def sweep(
         )
     finished = out is not None and is_finished(out)
     try:
-        with _progress_bar(f"sweep of {draft.linkage.name}") as progress:
+        with progress_bar(f"sweep of {draft.linkage.name}", rate=True) as progress:
             found = carry_out(
                 plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
                 progress=progress,
@@ -106,52 +104,6 @@ def sweep(
         typer.echo(
             f"\n{'there already' if finished else 'written'}: {out} (sweep.json, {_counted(parts, 'part')})"
         )
-
-
-@contextmanager
-def _progress_bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """A bar on the error stream with the rate and the time left, of what this run does."""
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        ProgressColumn,
-        Task,
-        TextColumn,
-        TimeRemainingColumn,
-    )
-    from rich.text import Text
-
-    class Rate(ProgressColumn):
-        """Linkages a second."""
-
-        def render(self, task: Task) -> Text:
-            speed = task.finished_speed or task.speed
-            return Text("" if speed is None else f"{speed:,.0f}/s")
-
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        Rate(),
-        TimeRemainingColumn(),
-    )
-    bar = Progress(*columns, console=Console(stderr=True))
-    tasks: list[Any] = []
-
-    def progress(done: int, total: int) -> None:
-        if not tasks:
-            # shown when the work begins, so that a refusal stands alone; what was there already is no rate
-            bar.start()
-            tasks.append(bar.add_task(title, total=total, completed=done))
-        bar.update(tasks[0], completed=done)
-
-    try:
-        yield progress
-    finally:
-        if tasks:
-            bar.stop()
 
 
 def _print(found: Sweep) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
@@ -72,15 +70,7 @@ def map_(
     chosen = with_contours(names) if names else ()
     loaded = sb.load(linkage)
     check_targets(findings.targets(out, names, endings) if out is not None else [], force=force)
-    with ExitStack() as bars:
-        shown_by: list[Callable[[int, int], None]] = []
-
-        def progress(done: int, total: int) -> None:
-            # an RSSR has no motions one by one, and is done before a bar is seen
-            if not shown_by:
-                shown_by.append(bars.enter_context(progress_bar(f"mapping {loaded.name}")))
-            shown_by[0](done, total)
-
+    with progress_bar(f"mapping {loaded.name}") as progress:
         found = motion_map(loaded, ranges, grid=grid, input=input_joint, progress=progress)
         heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
     written = [] if out is None else findings.write(found, heights, out, endings, size=size, force=force)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shlex
 import sys
 from pathlib import Path
@@ -12,7 +11,16 @@ import typer
 
 from sevenbar.errors import RequestError, shown
 from sevenbar.folder import check_targets
-from sevenbar.options import Figures, Force, Source, figure_formats, progress_bar, tell_written, words
+from sevenbar.options import (
+    Figures,
+    Force,
+    Source,
+    figure_formats,
+    place_of,
+    progress_bar,
+    tell_written,
+    words,
+)
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.candidates import Candidate
@@ -64,12 +72,13 @@ def path(
     from sevenbar.design.synthesis import path_report
     from sevenbar.design.synthesis.path import check_counts, generated, path_task
     from sevenbar.design.synthesis.path_table import read_path
+    from sevenbar.design.synthesis.told import targets
     from sevenbar.draft import Draft
     from sevenbar.files import text_of
 
     endings = figure_formats(figures, out)
     draft = Draft.of(text_of(linkage), linkage)
-    check_targets([] if out is None else _targets(out, designs, endings), force=force)
+    check_targets([] if out is None else targets(out, designs, endings), force=force)
     points, inputs = read_path(wanted, draft.linkage, point=point or "", timed=timing)
     if phase and not timing:
         raise RequestError("--phase: inputs have no say without --timing; give both, or leave --phase out")
@@ -93,12 +102,6 @@ def path(
         return
     path_report.print_text(task, found, str(wanted), seed)
     tell_written(written)
-
-
-def _targets(out: Path, designs: int, endings: tuple[str, ...]) -> list[Path]:
-    """The files that may be written, for a look before long work."""
-    names = [f"design_{i}.{end}" for i in range(1, designs + 1) for end in ("toml", *endings)]
-    return [out / name for name in (*names, "summary.csv", "summary.json")]
 
 
 def _written(
@@ -135,13 +138,7 @@ def _where(name: str | None, link: int | None, at: str | None) -> Where:
     if link is None or at is None:
         missing = "--point" if link is None and at is None else "--at" if at is None else "--link"
         raise RequestError(f"{missing}: missing; give --point NAME, or --link with --at")
-    try:
-        place = tuple(float(word) for word in at.split(","))
-    except ValueError:
-        place = (math.nan,)
-    if len(place) != 3 or not all(map(math.isfinite, place)):
-        raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
-    return link, place
+    return link, place_of(at)
 
 
 def _bound(word: str) -> tuple[str, tuple[float, float]]:

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -136,7 +135,8 @@ def path_task(
         raise RequestError(
             "transmission: its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
         )
-    if len(draft.linkage.idle) and "between" not in draft.linkage.idle[0] and own.link in _idle_links(draft):
+    # the spin of an RSSR's coupler has a convention
+    if draft.linkage.kind != "RSSR" and own.link in draft.linkage.idle_links:
         raise NotCoveredError(
             f"point: the {draft.linkage.idle[0]} is not determined, so neither is a path on it; "
             "give a point of another link"
@@ -148,12 +148,6 @@ def path_task(
     task = replace(task, low=low, high=high)
     _refuse_unreachable(task)
     return task
-
-
-def _idle_links(draft: Draft) -> set[int]:
-    """Links that are told to spin or slide idly."""
-    words = " ".join(draft.linkage.idle).replace(",", " ").split()
-    return {int(after) for word, after in pairwise(words) if word == "link" and after.isdigit()}
 
 
 def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
