@@ -71,6 +71,31 @@ format: $(VENV)/.installed-dev  ## Write the formatting and the safe repairs int
 wheel: $(VENV)/.maturin  ## Build dist/*.whl
 	$(BIN)/maturin build --release $(LOCKED) --out "$(DIST)"
 
+# zig links against an old glibc and for other processors; twice the same core, since it is one abi3 wheel for all Pythons
+.PHONY: release
+release: $(VENV)/.maturin  ## Into dist/: wheels for Linux (x86_64, aarch64; glibc 2.17 on) and the source, checked
+	$(BIN)/pip install "ziglang>=0.13" "twine>=6" "abi3audit>=0.0.20"
+	rm -rf "$(DIST)"
+	for processor in x86_64 aarch64; do \
+	  rustup target add $$processor-unknown-linux-gnu 2>/dev/null && \
+	  PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --locked --zig --compatibility manylinux2014 \
+	    --target $$processor-unknown-linux-gnu --out "$(DIST)" || exit 1; \
+	done
+	$(BIN)/maturin sdist --out "$(DIST)"
+	$(BIN)/twine check --strict "$(DIST)"/*
+	$(BIN)/abi3audit --strict "$(DIST)"/*.whl
+	@ls -l "$(DIST)"
+
+# build123d (extra cad) has asked for NumPy 2 since its first version that serves, so it is left out
+.PHONY: oldest
+oldest: wheel  ## The fast tests with the oldest versions of all dependencies that pyproject.toml allows
+	rm -rf "$(VENV)-oldest"
+	$(PYTHON) -m venv "$(VENV)-oldest"
+	$(BIN)/python tests/oldest_versions.py >"$(VENV)-oldest/versions.txt"
+	$(VENV)-oldest/bin/pip install -r "$(VENV)-oldest/versions.txt" "$(DIST)"/*.whl \
+	  hypothesis mpmath playwright pytest pytest-xdist
+	$(VENV)-oldest/bin/pytest -n auto --dist worksteal -m "not slow and not proof" -o filterwarnings= \
+	  --deselect tests/test_layers.py
 .PHONY: bench
 bench: $(VENV)/.installed  ## Time the closed form, the general loop and their batches against their peers
 	$(BIN)/python -m pip install --quiet "scipy>=1.13" "clarabel>=0.9"

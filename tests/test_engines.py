@@ -78,6 +78,7 @@ def test_the_paper_s_rssr_in_mujoco_is_sevenbar_s_to_the_figures_asked_for(rssr_
     assert 1e-9 < run.gap / run.course.circuit.size < 1e-5
 
 
+@pytest.mark.slow
 def test_the_paper_s_seven_r_in_exudyn_is_sevenbar_s_on_all_joints():
     run = simulate(sb.load("seven_r"), "exudyn")
     assert len([found for found in run.differences if found.quantity.endswith(" angle")]) == 7
@@ -167,6 +168,7 @@ def test_constraints_that_do_not_repeat_each_other_are_not_hidden_as_if_they_did
     assert moved(way, spoilt(model, 0.5), "mujoco").gap > 5 * moved(way, model, "mujoco").gap
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
     ("name", "options"),

@@ -67,6 +67,7 @@ def closing(joint, values):
     return turn @ slide
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", GALLERY)
 def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, tmp_path):
     motion, circuit, row = posed(name, tmp_path, "urdf")
@@ -94,6 +95,7 @@ def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, tmp
     assert np.abs(gap[:3, :3]).max() < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rssr", "seven_r", "rsur", "six_bar", "rccc"])
 def test_mujoco_imports_the_tree(name, tmp_path):
     motion, circuit, row = posed(name, tmp_path, "urdf")

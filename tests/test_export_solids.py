@@ -153,6 +153,7 @@ def test_glb_holds_watertight_parts_of_the_cad_s_volume(name, tmp_path):
         assert np.linalg.norm(1000 * mesh.center_mass - middle) < 2e-3 * np.linalg.norm(1000 * mesh.extents)
 
 
+@pytest.mark.slow
 def test_glb_s_nodes_are_the_links_in_their_frames(tmp_path):
     linkage = sb.load("seven_r")
     motion = linkage.motion(24)
@@ -169,6 +170,7 @@ def test_glb_s_nodes_are_the_links_in_their_frames(tmp_path):
         np.testing.assert_allclose(upright @ frame[:3, :3], circuit.link_motion(link).rotation[0], atol=1e-12)
 
 
+@pytest.mark.slow
 def test_stl_is_one_file_in_the_linkage_s_unit_or_a_folder_of_parts(tmp_path):
     motion = sb.load("rssr").motion(24)
     assert export(motion, "stl", tmp_path / "all.stl") == [tmp_path / "all.stl"]

@@ -53,7 +53,10 @@ def test_drawn_links_are_rigid_and_meet_in_the_joints(motions: dict[str, sb.Moti
                 assert np.nanmax(gap) < 1e-9 * max(circuit.size, 1.0)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=() if name in ("rssr", "bennett") else pytest.mark.slow) for name in names()],
+)
 def test_each_figure_of_each_linkage_can_be_drawn(motions: dict[str, sb.Motion], name: str) -> None:
     motion = motions[name]
     middle = motion.circuits[0].input_range or (0.3, 0.3)

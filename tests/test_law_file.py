@@ -345,6 +345,7 @@ def test_the_command_line_takes_a_law_and_writes_its_rows(tmp_path):
     assert float(first["crank_rad_s"]) == pytest.approx(np.radians(100 + 80 * np.cos(2)), rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("linkage", "joint", "unit", "first", "last", "posed"),
     [
@@ -370,6 +371,7 @@ def test_a_law_beyond_the_range_of_circuits_is_told_so(tmp_path, linkage, joint,
     assert (tmp_path / "out" / "configuration.png").exists() == posed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("linkage", ["rssr", "rssp"])
 @pytest.mark.parametrize("rows", [1, 8])
 def test_a_law_that_rests_is_a_motion_of_its_rows(tmp_path, linkage, rows):

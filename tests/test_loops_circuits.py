@@ -162,6 +162,7 @@ def test_a_closed_circuit_returns_to_its_first_row_and_holds_no_row_twice(family
 # All modes lie on circuits
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_each_mode_at_an_input_lies_on_exactly_one_row_of_one_circuit(family: str, amount: str) -> None:
     samples = 36
@@ -316,6 +317,7 @@ def same_circuits(linkage: sb.Linkage, samples: int, name: object) -> None:
     assert len(set(partners)) == len(partners), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_half_the_step_gives_the_same_circuits_of_the_gallery(name: str) -> None:
     for samples in (45, 180, 360):

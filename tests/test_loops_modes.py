@@ -33,8 +33,8 @@ from reference_loops import ISOLATED, Found, Loop, closed_poses, doubles, missed
 REFERENCES = Path(__file__).parent / "references"
 
 #: Loops of each family, and starts of the search for each loop.
-GENERAL_LOOPS = {"few": 150, "many": 1_500, "all": 10_000}
-SPECIAL_LOOPS = {"few": 12, "many": 120, "all": 1_000}
+GENERAL_LOOPS = {"few": 40, "many": 600, "all": 10_000}
+SPECIAL_LOOPS = {"few": 4, "many": 60, "all": 1_000}
 STARTS = 300
 #: Slides are unbounded, and joints of several freedoms make more unknowns: both take more starts.
 SPECIAL_STARTS = 500

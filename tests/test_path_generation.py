@@ -63,6 +63,7 @@ def test_timed_points_come_at_their_inputs(place):
     assert np.diff(free.claim.inputs) == pytest.approx(np.diff(inputs), abs=1e-12)
 
 
+@pytest.mark.slow
 def test_the_path_of_the_papers_7r_point_is_made_again_from_a_start_that_is_off():
     draft = Draft.of_linkage(sb.load("seven_r"))
     point = next(p for p in draft.linkage.points if p.name == "P")

@@ -55,7 +55,9 @@ CASES: dict[str, tuple[str, tuple[str, str] | None]] = {
 }
 
 
-@pytest.fixture(params=[4, pytest.param(150, marks=pytest.mark.slow)])
+@pytest.fixture(
+    params=[4, pytest.param(40, marks=pytest.mark.slow), pytest.param(400, marks=pytest.mark.proof)]
+)
 def steps(request: pytest.FixtureRequest) -> int:
     return request.param
 
