@@ -104,7 +104,7 @@ def rssr_frame() -> None:
     ball_a, ball_b = (circuit.point(link, (0.0, 0.0, 0.0)).position[row] for link in (2, 3))
     foot_a, foot_b = np.array([0.0, 0.0, N]), np.array([M, D, 0.0])
     x, y, z = np.eye(3)
-    place = Drawing(math.radians(-56), math.radians(22), (-330.0, 1130.0, -380.0, 1000.0))
+    place = Drawing(math.radians(-56), math.radians(22), (-330.0, 1130.0, -500.0, 1000.0))
     for axis, length, text, at in ((x, 1040, "x", (8, -2)), (y, 560, "y", (8, 2)), (z, 1000, "z", (0, 9))):
         place.arrow(np.zeros(3), length * axis, AXIS)
         place.word(length * axis, text, AXIS, at)
