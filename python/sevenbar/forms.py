@@ -49,7 +49,7 @@ def rssr(
         >>> sb.rssr(M=700, N=700, L1=250, L3=550, D=0).motion().motion_type
         'crank-rocker'
 
-    Source: Sun and Zhou, Figure 2, eq. (5) to (7).
+    Source: docs/rssr.md, (1) and (2); Sun and Zhou, Figure 2, eq. (5) to (7).
     """
     dimensions = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D}
     if L2 is not None:
@@ -128,7 +128,7 @@ def from_dh(
         >>> bennett.columns
         ('theta_1', 'theta_2', 'theta_3', 'theta_4')
 
-    Source: the 7R paper's loop and its u, v, w.
+    Source: docs/conventions.md, (1); the 7R paper's loop and its u, v, w.
     """
     columns = {"length": length, "twist": twist, "offset": offset, "angle": angle, "pitch": pitch}
     rows = _rows(joints, {key: _plain(values) for key, values in columns.items()}, _plain(names))

@@ -67,6 +67,8 @@ class Linkage:
     to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
     `dimensions` are the named numbers of the form it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made.
+
+    Source: docs/theory.md, (1).
     """
 
     name: str
@@ -210,7 +212,7 @@ class Linkage:
             >>> round(float(linkage.output([0.3]).position[0, 0]), 6)
             -0.084963
 
-        Source: Sun and Zhou, eq. (8), (9), and (12), (13) with their signs mended.
+        Source: docs/rssr.md, (3) to (9); Sun and Zhou, eq. (8), (9), and (12), (13) with their signs mended.
         """
         solver = self._rssr("output")
         column, _ = self._ends(input, None)
@@ -242,6 +244,8 @@ class Linkage:
             >>> import sevenbar as sb
             >>> len(sb.load("seven_r").assembly_modes(0.3))
             8
+
+        Source: docs/theory.md, (6); docs/rssr.md, (4).
         """
         column, _ = self._ends(input, None)
         (value,) = finite_array("theta", theta)
@@ -307,6 +311,8 @@ class Linkage:
 
         Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which several
         links between two balls spin idly.
+
+        Source: docs/theory.md, (7) to (16); docs/rssr.md, (3) to (8).
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
         if self._has_closed_form(method):

@@ -76,6 +76,8 @@ def rssr_types(dimensions: Floats, side: str, threads: int) -> tuple[npt.NDArray
     """Codes of motion types (n,) and limits (n, 4) [rad] of RSSRs.
 
     `dimensions` (6, n) has the rows `RSSR_ROWS` of the paper's layout; `side` "crank" or "rocker" drives.
+
+    Source: docs/theory_many.md, (1) to (6).
     """
     return _core.classify_rssr(np.ascontiguousarray(dimensions), side, threads)
 

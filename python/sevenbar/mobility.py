@@ -18,6 +18,8 @@ class Mobility:
     `freedoms` of all joints; `gruebler = freedoms - 6`; `rank` of the joints' screws in the poses found,
     idle freedoms aside (`None` where no pose was found); `finite` the freedoms that remain for motion, idle
     ones aside; `idle` and `redundant` in words.
+
+    Source: docs/theory.md, (17) and (18).
     """
 
     freedoms: int

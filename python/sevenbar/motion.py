@@ -230,6 +230,8 @@ class Circuit:
 
         `at` is written as for the points of the file: (u, v, w) in Denavit-Hartenberg rows, in the
         link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints.
+
+        Source: docs/theory.md, (16).
         """
         frame = self._frame(link)
         place = finite_array("at", at)

@@ -13,6 +13,8 @@ nothing that could be seen: of an RSSR measured by its angles, making all length
 direction one dimension stays at its nominal value, and the report names it and those that undo its change;
 intervals of the others then hold for that value. A dimension whose change alone would open an overconstrained
 loop is held too.
+
+Source: docs/theory_design.md, (10) and (11).
 """
 
 from __future__ import annotations

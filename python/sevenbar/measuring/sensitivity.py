@@ -15,6 +15,8 @@ give the rates by the input. The RSSR needs one equation only, `F = (|A - B|^2 -
 
 The derivatives of the *rates* by p and x take (2) at `p + i h e`, `u + i h du/dp` with h = 1e-30 and read the
 imaginary part over h: exact to rounding, as no difference is formed (every step of (2) is analytic).
+
+Source: docs/theory_design.md, (1) to (3).
 """
 
 from __future__ import annotations

@@ -4,6 +4,8 @@
 //! beside the real ones, on which pairs of solutions meet; and from places of it straight down to the real values. What was
 //! learnt along the circle predicts the first step of the way down. Everything but the input stands still and is real, so a
 //! step costs a third of one in [`super::paths`], whose rules of acceptance it shares.
+//!
+//! Source: docs/theory_many.md, (7) and (8).
 
 use super::lanes::Lanes;
 use super::paths::{

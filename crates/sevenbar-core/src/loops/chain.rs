@@ -1,4 +1,6 @@
 //! The closed chain as it is followed: at most seven freedoms, a closure error, and the joints' screws.
+//!
+//! Source: docs/theory.md, (1) to (5).
 
 use crate::rigid::{Pose, Vec3, dot, norm, scale};
 use crate::vector_math::ROUNDER;
@@ -146,6 +148,8 @@ fn screw<N: Number>(axis: &[N; 3], point: &[N; 3], advance: f64) -> Twist<N> {
 }
 
 /// `[a, b]`: how the screw `b` changes while its body moves with the twist `a`.
+///
+/// Source: docs/theory.md, (13).
 #[inline(always)]
 pub(super) fn bracket<N: Number>(a: &Twist<N>, b: &Twist<N>) -> Twist<N> {
     let turn = cross(&a[..3], &b[..3]);

@@ -15,6 +15,8 @@
 //!
 //! In a chain with redundant constraints the argument holds for the constraints that count, and that the others close as well
 //! is looked at in every node. A ball's three columns are the vector of its turn.
+//!
+//! Source: docs/theory.md, (7) to (12).
 
 use super::chain::{
     COLUMNS, Chain, Columns, Configuration, Joint, Placed, Twist, cross, short_way, squared_up, twist_of,
@@ -270,6 +272,8 @@ impl Chain {
     }
 
     /// A bound of the distances within the loop, and of how slides move its points: half the way round.
+    ///
+    /// Source: docs/theory.md, (10).
     #[inline(always)]
     fn farthest<N: Number>(&self, at: &Configuration<N>) -> N {
         // a little more where the loop does not quite close
@@ -289,6 +293,8 @@ impl Chain {
     }
 
     /// `k` of the argument on the curve itself, a step ahead, and `|A+| K5 s^5 / 120`.
+    ///
+    /// Source: docs/theory.md, (8) to (11).
     #[inline(always)]
     fn change<N: Number>(&self, node: &Node<N>, s: N) -> (N, N) {
         let (mut u, mut v, mut w) = (N::splat(0.0), N::splat(0.0), N::splat(0.0));

@@ -117,6 +117,8 @@ impl<N: Number> Inverse<N> {
 
 /// The direction that six rows of seven columns leave free, oriented so that it makes the determinant positive as a seventh
 /// row; none where a pivot is below this part of the greatest number. It changes continuously with the matrix.
+///
+/// Source: docs/theory_many.md, (9).
 pub(super) fn free_direction(columns: &[[f64; 6]; COLUMNS], least_pivot: f64) -> Option<Columns> {
     let mut a: [[f64; COLUMNS]; 6] = std::array::from_fn(|r| std::array::from_fn(|c| columns[c][r]));
     let mut order: [usize; COLUMNS] = std::array::from_fn(|c| c);

@@ -3,6 +3,8 @@
 //! Rows on the grid and at the nodes of the curve, which stand close where rates change fast, bracket the zeros of the next
 //! derivative, and in these the extremes are; the jerk's, whose derivative no row has, by the rows between lesser or greater
 //! neighbours. Only those are refined that may be the greatest or the least.
+//!
+//! Source: docs/theory_many.md, (11).
 
 use super::chain::Columns;
 use super::circuits::{Passes, Row, UNIT};

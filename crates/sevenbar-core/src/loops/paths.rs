@@ -5,6 +5,8 @@
 //! twists enter as `e^(i t)` and `e^(i a)`, so that everything is rational; these, the `p` and the input's slide move on
 //! straight lines from the start to the end parameters. Where only the input differs they stay within one linkage; but see
 //! [`super::around`].
+//!
+//! Source: docs/theory.md, (6).
 
 use super::lanes::Lanes;
 use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};

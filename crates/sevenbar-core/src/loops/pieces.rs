@@ -2,6 +2,8 @@
 //!
 //! Where the screws have rank six of seven, their minors give the curve one direction all along. All places are left in that
 //! direction, so every piece ends where another begins, and round a closed curve they join.
+//!
+//! Source: docs/theory_many.md, (9).
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration};
 use super::curve::{Curve, End};

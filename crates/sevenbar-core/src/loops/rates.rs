@@ -3,6 +3,8 @@
 //! A joint's screw is carried by the link before it, `Si' = [Vi, Si]` with `Vi = sum Sj uj (j before i)`, so the series of the
 //! screws follow from those of the joint rates `u`, and these order by order from one factorised matrix:
 //! `A u_k = - sum (a >= 1) Si_a ui_(k-a)`. Nothing is differenced and no angle is differentiated.
+//!
+//! Source: docs/theory.md, (13) to (16).
 
 use super::chain::{
     COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket, twist_of,
@@ -28,6 +30,8 @@ pub(super) type Screws<N, const TERMS: usize = ORDERS> = [[Twist<N>; COLUMNS]; T
 
 impl Chain {
     /// The screws' coefficients of an order, from those of lower ones and the rates.
+    ///
+    /// Source: docs/theory.md, (13) and (14).
     #[inline(always)]
     fn carry<N: Number, const TERMS: usize>(
         &self,
@@ -67,6 +71,8 @@ impl Chain {
 
     /// The joint rates, order by order, and the series of the screws, by the inverse of the screws with one more row, on which
     /// the rates are `given`. Where that row holds one column, the inverse may be that of a place very near.
+    ///
+    /// Source: docs/theory.md, (15).
     #[inline(always)]
     pub fn rates<N: Number, const TERMS: usize>(
         &self,
@@ -186,6 +192,8 @@ fn rotation_series(now: &Rotation, spin: &[Vec3; ORDERS]) -> [[Taylor<4>; 3]; 3]
 }
 
 /// A point carried by a link with the series of its twist: position, velocity, acceleration, jerk.
+///
+/// Source: docs/theory.md, (16).
 pub(super) fn point_rates(place: Vec3, twist: &[Twist; ORDERS]) -> [Vec3; 4] {
     let mut series = [[0.0; 3]; 4];
     series[0] = place;

@@ -179,6 +179,8 @@ fn redo_near_limits(pair: &Pair, angles: &[f64], law: &[[f64; BLOCK]; MAX_ORDER]
 /// With `u = p - B` and the follower's radius r the closure `(|u|^2 - L2^2)/2 = 0` has the derivatives `u . p'` by the
 /// input and `r (x sin - y cos)` by the output; the paper's Q, R, S, T of eq. (13) are the second ones. Returns whether
 /// a pose lies so near a limit that it wants more care.
+///
+/// Source: docs/rssr.md, (3) to (9).
 #[inline(always)]
 fn block<const FUSED: bool, const ORDER: usize>(
     pair: &Pair,

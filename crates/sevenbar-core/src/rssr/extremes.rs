@@ -1,4 +1,6 @@
 //! Extremes of what a designer reads, located by root finding: the output's rates and the transmission angle.
+//!
+//! Source: docs/theory_many.md, (10).
 
 use super::domain::Extent;
 use super::pair::Pair;

@@ -11,6 +11,8 @@
 //!
 //! How far the product misses W is measured, not assumed, and set beside the margins on which the count and the
 //! zeros stand. A direction that does not stand clear is doubtful, and for the solver that counts by signs.
+//!
+//! Source: docs/theory_many.md, (1) to (6).
 
 use super::Input;
 use crate::simd::multiply_add;

@@ -4,6 +4,8 @@
 //! coupler holds `|A - B| = L2`. With one of the two angles held, the other solves
 //! `E cos x + F sin x = K` (Sun and Zhou, eq. (4)), so there are at most two assembly modes; an angle is a limit
 //! where the two meet: `E^2 + F^2 = K^2`, a quartic in the tangent of its half.
+//!
+//! Source: docs/rssr.md, (1) to (3).
 
 mod batch;
 mod circuits;

@@ -1,4 +1,6 @@
 //! The closure of the RSSR with one side link given: both solutions for the other.
+//!
+//! Source: docs/rssr.md, (3) to (5) and (9).
 
 use super::{Circle, Input};
 use crate::rigid::{dot, scale, sub};
@@ -104,6 +106,8 @@ impl Pair {
     /// `rho^2 - K^2` is the product of how far the coupler reaches past the nearest and how far it stays short of the
     /// farthest point of the follower's circle, both squared. Near a limit one of them is a small difference of large squares;
     /// they are formed with their rounding errors kept, so that only the rounding of sine and cosine is left to magnify.
+    ///
+    /// Source: docs/rssr.md, (5) and (9).
     pub fn reach(&self, driver: f64) -> Reach {
         let (s, c) = driver.sin_cos();
         let at = |f: &TrigLinear| Twofold::new(f.c0) + Twofold::product(f.c1, c) + Twofold::product(f.s1, s);
@@ -136,6 +140,8 @@ impl Pair {
     }
 
     /// `atan2(F, E) -+ acos(K / rho)`, the phase cut as eq. (8) and (9) cut it.
+    ///
+    /// Source: docs/rssr.md, (4).
     pub(super) fn angle(&self, reach: &Reach, slope: f64, branch: usize) -> f64 {
         let mut phase = reach.ball[1].atan2(reach.ball[0]);
         if phase < self.phase_cut() {

@@ -1,4 +1,6 @@
 //! Derivatives of the follower for any motion of the driver, to any order.
+//!
+//! Source: docs/rssr.md, (6) to (8).
 
 use super::pair::Pair;
 use crate::taylor::{Taylor, sin_cos_coefficient};
@@ -10,6 +12,8 @@ impl Pair {
     /// The closure `K - E cos x - F sin x = 0` holds order by order; each coefficient of `x` enters its own order linearly,
     /// with the factor that the first derivative has (the paper's `R` of eq. (12), (13)). `None` where the coupler does not reach or
     /// at a dead centre of the driver, where no rate exists.
+    ///
+    /// Source: docs/rssr.md, (6) to (8).
     pub fn follower_taylor<const N: usize>(&self, driver: Taylor<N>, branch: usize) -> Option<Taylor<N>> {
         let reach = self.reach(driver.value());
         let slope = reach.slope.filter(|_| !reach.is_dead_centre())?;

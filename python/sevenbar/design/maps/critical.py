@@ -51,6 +51,8 @@ def critical_gaps(dimensions: Floats, near: Floats) -> Floats:
     [rad] count, too. For a crank angle a the balls are nearest and farthest at
     `f = g -+ L3 sqrt(H)`, `H = (D - L1 sin a)^2 + N^2`, twice f the squared distance; the critical a are
     zeros of `(M sin a - D cos a)^2 H - L3^2 cos^2 a (D - L1 sin a)^2`, of degree four.
+
+    Source: docs/theory_design.md, (12) to (14).
     """
     parts = [
         _gaps(dimensions[:, start : start + CHUNK], near[start : start + CHUNK])

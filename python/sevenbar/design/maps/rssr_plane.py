@@ -76,6 +76,8 @@ class RssrPlane(Plane):
 
         A dimension that changes by x moves a ball by x, so no distance by more; the coupler is a distance,
         and one that follows is `|(L1 - M, L3, N)|`.
+
+        Source: docs/theory_design.md, (15).
         """
         rate, size = 0.0, max(map(abs, self._constant.values()))
         for label, axis in self._moved.items():

@@ -9,6 +9,8 @@ vectors y_k with `sum |y_k| <= 1` give a lower bound that no point of the box go
 
 and the solver's dual variables, brought to `sum |y_k| = 1`, make it the greatest. The bound is evaluated
 here.
+
+Source: docs/theory_design.md, (17) and (18).
 """
 
 from __future__ import annotations
@@ -101,7 +103,10 @@ def least_greatest(constant: Floats, gradient: Floats, low: Floats, high: Floats
 
 
 def lower_bound(constant: Floats, gradient: Floats, low: Floats, high: Floats, dual: Floats) -> float:
-    """What the greatest size is not below anywhere in the box, by dual vectors (n, 3) with `sum |y| <= 1`."""
+    """What the greatest size is not below anywhere in the box, by dual vectors (n, 3) with `sum |y| <= 1`.
+
+    Source: docs/theory_design.md, (18).
+    """
     centre = (low + high) / 2
     slope = np.einsum("ki,kij->j", dual, gradient)
     # from the centre, so that what rounding leaves of the slope counts by half a side

@@ -35,6 +35,8 @@ class LinkRates:
     3) [1/s^order] what a change of the written point adds; `input` (n,) [rad, or length], `time` (n,) [s].
 
     The acceleration's gradient is `(alpha x + omega x omega x) R`.
+
+    Source: docs/theory_design.md, (16).
     """
 
     input: Floats

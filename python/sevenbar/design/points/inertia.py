@@ -6,6 +6,8 @@ input:
     force = -m a,     torque = sum m (a - g) . dp/dq
 
 which at constant speed is `sum m (a - g) . v / omega`. Over a closed cycle the mean by time of power is zero.
+
+Source: docs/theory_design.md, (22).
 """
 
 from __future__ import annotations

@@ -5,6 +5,8 @@ c`. Since `det G = -|omega x alpha|^2`, there is one wherever the axis of rotati
 Where it keeps it, as in planar motion, G has rank two: a line of points along the axis has the least
 acceleration, which is the part along the axis. Where the link does not turn at all every point has the same
 acceleration.
+
+Source: docs/theory_design.md, (21).
 """
 
 from __future__ import annotations

@@ -9,6 +9,8 @@ input s_i, is a smooth function of the point, and
 is solved by Newton's method. With `F = |c + G x|^2 / 2` and F_s its derivative by the input
 
     grad f = G^T a / f,    hess f = (G^T G - F_sx F_sx^T / F_ss - grad f grad f^T) / f
+
+Source: docs/theory_design.md, (19) and (20).
 """
 
 from __future__ import annotations

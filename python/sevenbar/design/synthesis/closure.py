@@ -8,7 +8,7 @@ With A and B the balls, x = L1 cos alpha - M, y = L1 sin alpha - D, the closure 
 and the output follows its dimensions by `G_beta dbeta = -G_p dp`, where G_beta = +- sqrt(W).
 Designs are rows (n, 6) of M, N, L1, L2, L3, D in one length unit; inputs (m,) or (n, m) [rad].
 
-Source: docs/rssr.md, equations (3) to (5).
+Source: docs/rssr.md, (3) to (5); docs/theory_design.md, (26).
 """
 
 from __future__ import annotations

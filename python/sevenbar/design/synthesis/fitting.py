@@ -12,6 +12,8 @@ on one branch. First the sum of squares is made least (scipy's trust region, lim
 by linear programs (`programs`): at the end the greatest errors are equal and alternate. With precision points
 alone, t is minus the least squared sine of the transmission angle. Newton's steps then bring the precision
 points to rounding.
+
+Source: docs/theory_design.md, (26).
 """
 
 from __future__ import annotations

@@ -9,6 +9,8 @@ screw `Ad_W S`; a dimension that moves the line itself, by a twist X (a drawn pl
 since `exp(X) C exp(-X)` is the step about the moved line. So one walk along the word gives the closure, the
 point, and the derivatives of both by every joint value q and every dimension p; those of the passive joints
 come from `F_u du = -F_x dx - F_p dp`.
+
+Source: docs/theory_design.md, (1) and (5).
 """
 
 from __future__ import annotations

@@ -3,6 +3,8 @@
 The rigid motion that brings points P_j nearest to others w_j has the rotation of the singular vectors of
 `sum (w_j - w)(P_j - P)^T` (Kabsch); with s the singular values, the last with the sign of the determinant,
 the squares left are `|w|^2 + |P|^2 - 2 s`, s = s1 + s2 + s3, and with a free scale `|w|^2 - s^2 / |P|^2`.
+
+Source: docs/theory_design.md, (28).
 """
 
 from __future__ import annotations

@@ -5,6 +5,8 @@ solution each point is the foot of its wanted point, as the derivative by its in
 Where the linkage may stand anywhere, each evaluation is placed by `path_match.placed`. What is left is then
 square to every small rigid motion B of the points, so with the part of the derivatives along B taken off the
 gradient of the sum of squares stays exact (variable projection).
+
+Source: docs/theory_design.md, (29).
 """
 
 from __future__ import annotations

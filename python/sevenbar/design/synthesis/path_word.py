@@ -5,6 +5,8 @@
 with the line S as it lies with all joints at zero, and the amount t a joint value, a dimension or a constant.
 In `[rssr]` and in Denavit-Hartenberg rows the lines are axes of one frame and dimensions are amounts; in a
 drawing joints are the only steps, and dimensions move their lines.
+
+Source: docs/theory_design.md, (5).
 """
 
 from __future__ import annotations

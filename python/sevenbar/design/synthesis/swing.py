@@ -8,6 +8,8 @@ zero there, a change dp of the dimensions moves an end by
 so the swing follows dp as if the crank stood still, and the stroke between the two ends by both dalpha. Two
 equations, swing and stroke, leave three of the five ratios free: these make the least transmission angle of
 the whole turn as great as can be.
+
+Source: docs/theory_design.md, (27).
 """
 
 from __future__ import annotations

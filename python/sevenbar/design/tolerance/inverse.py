@@ -1,4 +1,7 @@
-"""Tolerances from a wanted error: those by which every dimension has the same greatest effect."""
+"""Tolerances from a wanted error: those by which every dimension has the same greatest effect.
+
+Source: docs/theory_design.md, (9).
+"""
 
 from __future__ import annotations
 

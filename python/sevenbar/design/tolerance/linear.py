@@ -5,6 +5,8 @@ With s the derivatives of an output, t the half widths and sigma the standard de
     worst = sum |s_i t_i|,        deviation^2 = sum (s_i sigma_i)^2                                        (1)
 
 and the share of a dimension in the variance is that of its term in the second sum, over the whole cycle.
+
+Source: docs/theory_design.md, (7).
 """
 
 from __future__ import annotations

@@ -15,6 +15,8 @@ and (1) are analytic in numbers and joints, so every derivative by a number is a
 pose where they fail.
 
 Arrays are components first: numbers (k, samples, rows or 1), passive columns (m, samples, rows).
+
+Source: docs/theory_design.md, (2) to (4).
 """
 
 from __future__ import annotations

@@ -4,6 +4,8 @@ An extreme of y(x, p) over x changes with p as y itself does at that place, dy*/
 envelope theorem); where a symmetric linkage has it at two places, this is true of one of them. The place
 changes by `dx*/dp = -(partial y'/partial p) / y''`. A dead centre of the input is an
 extreme of the input over the output, so the loop driven by its output tells how it moves.
+
+Source: docs/theory_design.md, (6).
 """
 
 from __future__ import annotations

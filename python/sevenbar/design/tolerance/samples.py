@@ -7,6 +7,8 @@ design along the cycle, l those of the linear estimate, and means over samples,
 
 estimate bias and ratio of standard deviations with the statistical error of the differences only, which is
 far below that of either side alone.
+
+Source: docs/theory_design.md, (8).
 """
 
 from __future__ import annotations
