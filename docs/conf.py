@@ -19,14 +19,18 @@ extensions = [
     "sphinx_copybutton",
     "formulas",
     "beyond_docs",
+    "docstrings",
+    "made_pages",
 ]
 exclude_patterns = ["_*"]
 
 # what is indented in these pages is what a program printed or was told
 highlight_language = "text"
 default_role = "py:obj"
+# quotes are typed as they stand
+smartquotes = False
 
-myst_enable_extensions = ["amsmath", "dollarmath"]
+myst_enable_extensions = ["amsmath", "attrs_inline", "dollarmath"]
 myst_heading_anchors = 3
 
 # a notebook that fails, or takes longer than a reader would wait, fails the build
@@ -38,6 +42,7 @@ nb_merge_streams = True
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
+autodoc_type_aliases = {name: name for name in ("Floats", "Integers", "Words", "Format")}
 python_maximum_signature_line_length = 80
 
 copybutton_prompt_text = r">>> |\.\.\. |\$ "
