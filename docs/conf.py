@@ -21,6 +21,7 @@ extensions = [
     "beyond_docs",
     "docstrings",
     "made_pages",
+    "own_server",
 ]
 exclude_patterns = ["_*"]
 

@@ -13,16 +13,20 @@ PAGES = {
 
 _LINK = re.compile(r"\]\((\.\./[^)#]+)(#[^)]*)?\)")
 
+#: Notebooks have their pages through the link docs/examples, which only a reference by name passes.
+_NOTEBOOK = re.compile(r"\[([^\]`]+)\]\(\.\./(examples/[^)#]+)\.ipynb\)")
 
-def _shown(target: str) -> str:
-    """The page of a target; notebooks have one through the link docs/examples."""
-    notebook = target.startswith("../examples/") and target.endswith(".ipynb")
-    return target.removeprefix("../") if notebook else PAGES.get(target, target)
+
+def mended(page: str) -> str:
+    """A page with its links led to the site's own pages."""
+    page = _NOTEBOOK.sub(r"{doc}`\1 </\2>`", page)
+    return _LINK.sub(lambda link: f"]({PAGES.get(link[1], link[1])}{link[2] or ''})", page)
 
 
 def _mend(_app: Sphinx, docname: str, content: list[str]) -> None:
-    if "/" not in docname:
-        content[0] = _LINK.sub(lambda link: f"]({_shown(link[1])}{link[2] or ''})", content[0])
+    if not docname.startswith("examples/"):
+        # from a folder of docs/ the way out is one longer
+        content[0] = mended(content[0].replace("](../../", "](../") if "/" in docname else content[0])
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -6,7 +6,7 @@ from typing import Any, get_args, get_type_hints
 
 import typer
 
-from markdown import code, table
+from page_tables import code, table
 from sevenbar.cli import app
 
 #: The page that shows how to use each command.

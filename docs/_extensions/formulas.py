@@ -2,6 +2,7 @@
 
 import html
 import logging
+import re
 from pathlib import Path
 
 import ziamath
@@ -12,6 +13,8 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
+
+from primes import with_full_primes
 
 #: The font's characters that formulas may use: Latin, Greek, punctuation and arrows, operators, letters of
 #: mathematics. The rest of the font is two thirds of its size.
@@ -31,9 +34,14 @@ logging.getLogger("fontTools.subset").setLevel(logging.WARNING)
 _converter = LatexToMathML()
 
 
+#: Environments that would number their lines, which is Sphinx's to do.
+_NUMBERED = re.compile(r"\\(begin|end)\{(align|alignat|equation|flalign|gather|multline)\}")
+
+
 def _mathml(latex: str, node: nodes.Node, *, displayed: bool) -> str:
     try:
-        return _converter.convert_with_local_state(latex, displaystyle=displayed)
+        plain = _NUMBERED.sub(r"\\\1{\2*}", latex)
+        return with_full_primes(_converter.convert_with_local_state(plain, displaystyle=displayed))
     except LatexError as error:
         place = f"{node.source}:{node.line}" if node.line else node.source
         raise ExtensionError(f"{place}: formula {latex!r} cannot be written as MathML: {error}") from error
@@ -48,7 +56,7 @@ def _displayed(translator: HTML5Translator, node: nodes.math_block) -> None:
     translator.body.append(translator.starttag(node, "div", CLASS="formula"))
     translator.body.append(_mathml(node.astext(), node, displayed=True))
     if node["number"]:
-        number = html.escape(get_node_equation_number(translator, node))
+        number = html.escape(str(get_node_equation_number(translator, node)))
         translator.body.append(f'<span class="equation-number">({number})')
         translator.add_permalink_ref(node, "Link to this equation")
         translator.body.append("</span>")

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import sevenbar as sb
-from markdown import code, table
+from page_tables import code, table
 from sevenbar import gallery, report, summary
 
 #: Where the pictures are written, below the pages' folder.

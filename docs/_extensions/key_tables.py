@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from markdown import code, table
+from page_tables import code, table
 from sevenbar.schema import TABLES, LinkageForm, json_schema
 
 #: Where the JSON schema is written, below the pages' folder; pages link it from there.
