@@ -24,7 +24,18 @@ WITH_EXAMPLES = [
 ]
 
 
-@pytest.mark.parametrize("name", WITH_EXAMPLES)
+#: Those whose examples take seconds.
+LONG = (
+    "sevenbar.design.maps.heights",
+    "sevenbar.design.synthesis.function",
+    "sevenbar.design.synthesis.swing",
+)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in WITH_EXAMPLES],
+)
 def test_docstring_examples_give_what_they_show(name):
     tested = doctest.testmod(importlib.import_module(name.removesuffix(".__init__")))
     assert tested.attempted > 0
