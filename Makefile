@@ -106,6 +106,11 @@ bench: $(VENV)/.installed  ## Time the closed form, the general loop and their b
 	$(BIN)/python benches/sweep_loops.py
 	$(BIN)/python benches/least_acceleration.py
 
+.PHONY: docs
+docs: $(VENV)/.installed-docs  ## The documentation site, into build/site; a warning fails it
+	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet --doctree-dir build/site-pages docs build/site
+	@echo "open build/site/index.html"
+
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too
 	rm -rf $(VENV) target build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
@@ -130,6 +135,11 @@ $(VENV)/.installed: $(VENV)/.maturin $(RUST) $(LOST)
 
 $(VENV)/.installed-dev: $(VENV)/.maturin $(RUST) $(LOST)
 	$(BIN)/maturin develop --release $(LOCKED) --extras dev
+	@touch $(VENV)/.installed $@
+
+# with what the notebooks and the examples of docstrings use
+$(VENV)/.installed-docs: $(VENV)/.maturin $(RUST) $(LOST)
+	$(BIN)/maturin develop --release $(LOCKED) --extras docs,calibrate,design,frame,law,sweep
 	@touch $(VENV)/.installed $@
 
 # for the tests in a browser, which fail without it; all others run on

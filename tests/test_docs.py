@@ -16,17 +16,34 @@ ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+#: Every module with an example in a docstring.
+WITH_EXAMPLES = [
+    ".".join(path.relative_to(ROOT / "python").with_suffix("").parts)
+    for path in sorted((ROOT / "python").rglob("*.py"))
+    if ">>> " in path.read_text(encoding="utf-8")
+]
+
+
+#: Those whose examples take seconds.
+LONG = (
+    "sevenbar.design.maps.heights",
+    "sevenbar.design.synthesis.function",
+    "sevenbar.design.synthesis.swing",
+)
+
+
 @pytest.mark.parametrize(
     "name",
-    [
-        *("measuring.calibrate", "measuring.compare", "errors", "files", "forms"),
-        *(f"design.tolerance.{module}" for module in ("inverse", "samples", "sensitivities", "tolerances")),
-        *("design.maps.atlas", "draft", "sweep.axes", "sweep.run", "sweep.space"),
-        *("gallery", "linkage", "mobility", "motion", "schema", "table", "units"),
-    ],
+    [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in WITH_EXAMPLES],
 )
 def test_docstring_examples_give_what_they_show(name):
-    assert doctest.testmod(importlib.import_module(f"sevenbar.{name}")).failed == 0
+    tested = doctest.testmod(importlib.import_module(name.removesuffix(".__init__")))
+    assert tested.attempted > 0
+    assert tested.failed == 0
+
+
+def test_the_modules_with_examples_are_found():
+    assert {"sevenbar.linkage", "sevenbar.design.points.least", "sevenbar.units"} <= set(WITH_EXAMPLES)
 
 
 def test_the_examples_of_the_readme_print_what_their_comments_say():
@@ -55,7 +72,8 @@ def test_the_report_in_the_readme_is_the_report_of_today():
 
 
 @pytest.mark.parametrize(
-    ("name", "count"), [("measured", 4), pytest.param("tolerance", 3, marks=pytest.mark.slow)]
+    ("name", "count"),
+    [("analyze", 4), ("measured", 4), pytest.param("tolerance", 3, marks=pytest.mark.slow)],
 )
 def test_what_a_page_prints_is_what_its_commands_print_today(name, count, tmp_path):
     page = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
@@ -85,6 +103,19 @@ def test_the_example_of_the_page_on_measured_values_prints_what_its_comments_say
     promised = re.findall(r"print\(.*\)  # (.*)", code)
     assert float(rms) == pytest.approx(float(promised[0]), abs=1e-6)
     assert [names, inside] == promised[1:]
+
+
+@pytest.mark.parametrize("name", ["analyze", "index"])
+def test_the_example_of_a_page_prints_what_its_comments_say(name, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    page = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    promised = re.findall(r"print\(.*\)  # (.*)", code)
+    # a line in a loop is printed for each circuit
+    assert list(dict.fromkeys(printed.getvalue().splitlines())) == promised
 
 
 def test_the_example_of_the_page_on_tolerances_prints_what_its_comments_say():
@@ -122,7 +153,7 @@ def test_the_tables_on_the_engines_are_those_of_today():
 
 
 def test_links_of_the_documentation_lead_somewhere():
-    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
+    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]:
         for target in re.findall(r"\]\((?!https:)([^)#]+)\)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 

@@ -40,7 +40,13 @@ def text_of(source: str | os.PathLike[str]) -> str:
 
 
 def loads(content: str, source: str = "text") -> Linkage:
-    """The linkage described by a TOML text; `source` is its name in messages."""
+    """The linkage described by a TOML text; `source` is its name in messages.
+
+    >>> import sevenbar as sb
+    >>> from sevenbar import gallery
+    >>> sb.loads(gallery.text("bennett")).name
+    'Bennett linkage'
+    """
     for number, line in enumerate(content.splitlines(), 1):
         if len(line) > LONGEST_LINE:
             raise _unreadable(

@@ -13,13 +13,21 @@ MOST_OFFERED = 3
 
 
 def names() -> tuple[str, ...]:
-    """The names of all linkages of the gallery, in alphabetic order."""
+    """The names of all linkages of the gallery, in alphabetic order.
+
+    >>> len(names()), names()[0]
+    (19, 'bennett')
+    """
     folder = resources.files(__package__ or "sevenbar") / "gallery"
     return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
 
 
 def title(name: str) -> str:
-    """What a linkage of the gallery is called."""
+    """What a linkage of the gallery is called.
+
+    >>> title("bennett")
+    'Bennett linkage'
+    """
     return str(tomllib.loads(text(name))["name"])
 
 

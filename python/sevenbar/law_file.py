@@ -27,7 +27,7 @@ QUANTITIES = ("value", "velocity", "acceleration", "jerk")
 
 
 def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | None = None) -> Law:
-    """The law of a table of text for a joint of a linkage: its drive's, or `input`.
+    r"""The law of a table of text for a joint of a linkage: its drive's, or `input`.
 
     A header names each column and its unit, as in `time [s], crank [deg], crank [rad/s]` or
     `time_s,crank_deg,crank_rad_s`. The unit says what a column is. Needed are a time and the value of the
@@ -36,6 +36,17 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
 
     Raises `TableError` for a file that is no such table, `RequestError` for a joint that cannot drive,
     `MissingExtraError` where a spline is needed and SciPy is missing.
+
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import sevenbar as sb
+        >>> head = "time [s],crank [deg],crank [deg/s],crank [deg/s^2],crank [deg/s^3]"
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     table = Path(folder) / "law.csv"
+        ...     _ = table.write_text(f"{head}\n0,0,0,90,0\n1,45,90,90,0\n")
+        ...     law = load_law(table, sb.load("rssr"))
+        >>> law.q.round(6).tolist()
+        [0.0, 0.785398]
     """
     column = linkage.column(linkage.drive.joint if input is None else input, "input")
     table = read_table(Path(path), "an input law")

@@ -255,7 +255,12 @@ class Linkage:
         return self._general.modes(column, value)
 
     def mobility(self) -> Mobility:
-        """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name."""
+        """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name.
+
+        >>> import sevenbar as sb
+        >>> print(sb.load("bennett").mobility())
+        Gruebler -2, redundant constraints 3, moves with 1
+        """
         return self._mobility
 
     @cached_property
@@ -313,6 +318,11 @@ class Linkage:
         links between two balls spin idly.
 
         Source: docs/theory.md, (7) to (16); docs/rssr.md, (3) to (8).
+
+            >>> import sevenbar as sb
+            >>> motion = sb.load("rscr").motion()
+            >>> [(circuit.motion_type, circuit.turns) for circuit in motion]
+            [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
         if self._has_closed_form(method):

@@ -147,6 +147,10 @@ def rows_of(motion: Motion, measures: Sequence[Measure]) -> list[dict[str, float
     """The measures of a motion: one row, or where one of them is of circuits a row for each circuit.
 
     A motion without circuits keeps one row, whose `circuit` is `None`.
+
+        >>> import sevenbar as sb
+        >>> rows_of(sb.load("seven_r").motion(), measures_named(["motion_type", "circuits"]))
+        [{'motion_type': 'double-crank', 'circuits': 8}]
     """
     shared = {m.name: m.value(motion) for m in measures if m.per == "linkage"}
     own = [m for m in measures if m.per == "circuit"]

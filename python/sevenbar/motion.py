@@ -121,7 +121,15 @@ class Law:
     def of(
         t: npt.ArrayLike, q: npt.ArrayLike, dq: npt.ArrayLike, ddq: npt.ArrayLike, dddq: npt.ArrayLike = 0.0
     ) -> Law:
-        """A law from array-likes; a single number stands for every sample."""
+        """A law from array-likes; a single number stands for every sample.
+
+        >>> import numpy as np
+        >>> import sevenbar as sb
+        >>> t = np.linspace(0, 1, 50)
+        >>> law = sb.Law.of(t, q=3 * t**2, dq=6 * t, ddq=6)
+        >>> sb.load("rssr").motion(law=law).circuits[0].time.size
+        50
+        """
         arrays = {"t": t, "q": q, "dq": dq, "ddq": ddq, "dddq": dddq}
         checked = {name: finite_array(name, values) for name, values in arrays.items()}
         count = checked["t"].size
@@ -232,6 +240,13 @@ class Circuit:
         link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints.
 
         Source: docs/theory.md, (16).
+
+            >>> import numpy as np
+            >>> import sevenbar as sb
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> trace = circuit.point(link=1, at=(250, 0, 0))  # the crank's ball: 250 mm at 10 rad/s
+            >>> bool(np.allclose(np.linalg.norm(trace.acceleration, axis=1), 25000))
+            True
         """
         frame = self._frame(link)
         place = finite_array("at", at)
@@ -240,7 +255,14 @@ class Circuit:
         return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
 
     def link_motion(self, link: int) -> LinkMotion:
-        """How link 1, 2, .. turns along the circuit: angular velocity and acceleration, report frame."""
+        """How link 1, 2, .. turns along the circuit: angular velocity and acceleration, report frame.
+
+        >>> import numpy as np
+        >>> import sevenbar as sb
+        >>> crank = sb.load("rssr").motion().circuits[0].link_motion(1)
+        >>> bool(np.allclose(crank.velocity, (0, 0, 10)))
+        True
+        """
         self._frame(link)
         # the axes of the link's frame as far points, so that differences lose nothing
         places = [np.zeros(3), *(self.size * np.eye(3))]
@@ -321,7 +343,12 @@ class Motion:
         return iter(self.circuits)
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """Every row of every circuit, column by column; each name ends in its unit."""
+        """Every row of every circuit, column by column; each name ends in its unit.
+
+        >>> import sevenbar as sb
+        >>> list(sb.load("planar_4r").motion().columns())[:6]
+        ['circuit', 'branch', 'sample', 'status', 'time_s', 'theta_1_deg']
+        """
         unit = self.linkage.length_unit
         parts = [_circuit_columns(circuit, self.linkage, unit) for circuit in self.circuits]
         if not parts:

@@ -69,6 +69,11 @@ def configuration(motion: Motion, circuit: int = 0, positions: int | None = None
     three). Lengths are in the linkage's unit, equal along all three axes. Raises `RequestError` where there
     is no such circuit.
 
+        >>> import sevenbar as sb
+        >>> figure = configuration(sb.load("bennett").motion())
+        >>> figure.axes[0].get_zlabel()
+        'z [mm]'
+
     Source: Sun and Zhou, Figure 3.
     """
     chosen = chosen_circuit(motion, circuit)
@@ -161,6 +166,11 @@ def curves(motion: Motion, against: Literal["both", "input", "time"] = "both") -
     `against` "input" [deg] or "time" [s] draws one of the two; "both" puts time on a second scale above where
     the input turns fully at constant speed, else in a second column. Where a rocking input goes back, the
     sign of the velocity is turned. Raises `RequestError` where the motion has no circuit.
+
+        >>> import sevenbar as sb
+        >>> figure = curves(sb.load("rssr").motion(), against="input")
+        >>> [axes.get_ylabel() for axes in figure.axes]
+        ['output angle [deg]', 'angular velocity [rad/s]', 'angular acceleration [rad/s²]']
 
     Source: Sun and Zhou, Figures 3 and 4.
     """

@@ -56,6 +56,11 @@ def as_dict(motion: Motion) -> dict[str, Any]:
     """The report as plain values: angles in radians, lengths in the linkage's unit, null beside a status.
 
     Values of a sliding input or output are lengths; `linkage.columns` tells which slide.
+
+        >>> import sevenbar as sb
+        >>> told = as_dict(sb.load("rssr").motion())
+        >>> told["motion_type"], len(told["circuits"])
+        ('crank-rocker', 2)
     """
     linkage = motion.linkage
     report = {
@@ -166,7 +171,12 @@ def print_text(motion: Motion, console: Console | None = None) -> None:
 
 
 def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
-    """The report for people as Markdown, and pictures by their file names."""
+    """The report for people as Markdown, and pictures by their file names.
+
+    >>> import sevenbar as sb
+    >>> markdown(sb.load("rssr").motion()).splitlines()[0]
+    '# RSSR of Sun and Zhou'
+    """
     told = summary(motion)
     parts = [f"# {_plain(told.title)}"]
     parts.append(
@@ -218,6 +228,12 @@ def write(
     tell all, also joints, and path_<name> for each named point. All files are finished in a folder beside it
     before the first is put in place. Raises `OutputError` where that cannot be done, and where one of them
     exists and `force` is not given.
+
+        >>> import tempfile
+        >>> import sevenbar as sb
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     sorted(path.name for path in write(sb.load("rssr").motion(), folder, ["svg"]))
+        ['configuration.svg', 'motion.csv', 'motion.svg', 'report.json', 'report.md']
     """
 
     def fill(staging: Path) -> None:

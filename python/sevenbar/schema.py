@@ -9,8 +9,17 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
-from pydantic_core import ErrorDetails
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    WithJsonSchema,
+)
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import ErrorDetails, core_schema
 
 from sevenbar.contradictions import contradictions, grounds
 from sevenbar.errors import DescriptionError, Problem, shown, suggestion
@@ -54,15 +63,23 @@ class _Form(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
+def _key(meaning: str, unit: str = "") -> Any:
+    """What a key means, and the unit of its numbers in words: for the JSON schema and the page."""
+    return Field(description=meaning, json_schema_extra={"unit": unit} if unit else None)
+
+
 class RssrForm(_Form):
     """The layout of Sun and Zhou, Figure 2; L2 left out is `|A1 B1|` as in eq. (7)."""
 
-    M: Number
-    N: Number
-    L1: Length
-    L3: Length
-    D: Number
-    L2: Length | None = None
+    M: Annotated[Number, _key("the rocker's axis goes along x through (M, D, 0)", "length")]
+    N: Annotated[Number, _key("height of the crank's circle, which is about z", "length")]
+    L1: Annotated[Length, _key("crank", "length")]
+    L3: Annotated[Length, _key("rocker", "length")]
+    D: Annotated[Number, _key("the rocker's axis goes along x through (M, D, 0)", "length")]
+    L2: Annotated[
+        Length | None,
+        _key("coupler; left out, that which closes with both joints at zero", "length"),
+    ] = None
 
     @property
     def coupler(self) -> float:
@@ -73,12 +90,23 @@ class RssrForm(_Form):
 class JointForm(_Form):
     """A joint as drawn in one assembled pose, in ground coordinates."""
 
-    kind: Annotated[str, one_of("joint kind", JOINT_KINDS)]
-    at: Vector
-    name: Text | None = None
-    axis: Direction | None = None
-    axes: Annotated[tuple[Direction, Direction], AfterValidator(crossing)] | None = None
-    pitch: Number | None = None
+    kind: Annotated[
+        str,
+        one_of("joint kind", JOINT_KINDS),
+        WithJsonSchema({"enum": list(JOINT_KINDS)}),
+        _key("what the joint lets move"),
+    ]
+    at: Annotated[Vector, _key("any point of the axis; of U and S the centre", "length")]
+    name: Annotated[Text | None, _key("left out, theta_1, theta_2 .. by its place")] = None
+    axis: Annotated[Direction | None, _key("of R P H C, which need it: any length but 0")] = None
+    axes: Annotated[
+        Annotated[tuple[Direction, Direction], AfterValidator(crossing)] | None,
+        _key("of U, which needs them: held by the link before, by that after; not parallel"),
+    ] = None
+    pitch: Annotated[
+        Number | None,
+        _key("of H, which needs it: right-handed, left-hand if negative", "length per turn"),
+    ] = None
 
 
 class LinkForm(_Form):
@@ -88,43 +116,70 @@ class LinkForm(_Form):
     whose `angle` stays 0, and the offset of P, which then stays 0.
     """
 
-    joint: Annotated[str, one_of("joint kind", ROW_KINDS), BeforeValidator(_row_kind)] = "R"
-    name: Text | None = None
-    length: Number = 0.0
-    twist: Angle = 0.0
-    offset: Number = 0.0
-    angle: Angle = 0.0
-    pitch: Number = 0.0
+    joint: Annotated[
+        str,
+        one_of("joint kind", ROW_KINDS),
+        BeforeValidator(_row_kind),
+        WithJsonSchema({"enum": list(ROW_KINDS)}),
+        _key("the joint before this link"),
+    ] = "R"
+    name: Annotated[Text | None, _key("of the joint; left out, theta_1, theta_2 ..")] = None
+    length: Annotated[Number, _key("of the link, along x; may be negative", "length")] = 0.0
+    twist: Annotated[Angle, _key("of the link, about x", "angle_unit")] = 0.0
+    offset: Annotated[Number, _key("of R and H, along the joint's axis (H: at theta = 0)", "length")] = 0.0
+    angle: Annotated[Angle, _key("of P: its fixed theta", "angle_unit")] = 0.0
+    pitch: Annotated[
+        Number,
+        _key("of H, which needs it: right-handed, left-hand if negative", "length per turn"),
+    ] = 0.0
 
 
 class PointForm(_Form):
     """A named point carried by a link."""
 
-    name: Text
-    link: int = Field(strict=True, ge=1)
-    at: Vector
+    name: Annotated[Text, _key("its own among the points")]
+    link: Annotated[int, Field(strict=True, ge=1), _key("the link that carries it, counted from 1")]
+    at: Annotated[Vector, _key("its place, in the coordinates of the form", "length")]
 
 
 class DriveForm(_Form):
     """The input and its speed."""
 
-    speed: Speed = 1.0
-    joint: Text | None = None
-    output: Text | None = None
+    speed: Annotated[
+        Speed,
+        _key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
+    ] = 1.0
+    joint: Annotated[Text | None, _key("the input; left out, the first joint that is no ball")] = None
+    output: Annotated[
+        Text | None, _key("the output; left out, the last joint that is neither a ball nor the input")
+    ] = None
 
 
 class LinkageForm(_Form):
     """A whole file of format 1."""
 
-    format: Literal[1]
-    name: Text = "linkage"
-    length_unit: Annotated[str, one_of("unit", LENGTHS)] = "mm"
-    angle_unit: Annotated[str, one_of("unit", ANGLES)] = "deg"
-    drive: DriveForm = DriveForm()
-    rssr: RssrForm | None = None
-    joint: tuple[JointForm, ...] | None = None
-    link: tuple[LinkForm, ...] | None = None
-    point: tuple[PointForm, ...] = ()
+    format: Annotated[Literal[1], _key("of this file")]
+    name: Annotated[Text, _key("of the linkage, for reports and figures")] = "linkage"
+    length_unit: Annotated[
+        str,
+        one_of("unit", LENGTHS),
+        WithJsonSchema({"enum": list(LENGTHS)}),
+        _key("of all lengths; carried into every header, never converted"),
+    ] = "mm"
+    angle_unit: Annotated[
+        str,
+        one_of("unit", ANGLES),
+        WithJsonSchema({"enum": list(ANGLES)}),
+        _key("of the angles written in this file"),
+    ] = "deg"
+    drive: Annotated[DriveForm, _key("the input, the output, the speed")] = DriveForm()
+    rssr: Annotated[RssrForm | None, _key("the RSSR paper's dimensions")] = None
+    joint: Annotated[tuple[JointForm, ...] | None, _key("joints as drawn, in loop order")] = None
+    link: Annotated[
+        tuple[LinkForm, ...] | None,
+        _key("Denavit-Hartenberg rows in loop order, the last is the ground"),
+    ] = None
+    point: Annotated[tuple[PointForm, ...], _key("points to be traced")] = ()
 
     @property
     def joints(self) -> tuple[tuple[str, str], ...]:
@@ -140,6 +195,35 @@ class LinkageForm(_Form):
         """The columns of input and output."""
         drive = {"joint": self.drive.joint, "output": self.drive.output}
         return driven([Written("", *joint) for joint in self.joints], drive)[:2]
+
+
+#: The three ways to write a linkage: a file has one of them.
+FORMS = ("rssr", "link", "joint")
+
+
+class _TomlSchema(GenerateJsonSchema):
+    """JSON schema of a TOML file, in which a key that is not given is left out: there is no null."""
+
+    def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        inner = self.generate_inner(schema["schema"])
+        plain = isinstance(schema.get("default"), (str, int, float))
+        return {**inner, "default": schema["default"]} if plain else inner
+
+
+def json_schema() -> dict[str, Any]:
+    """The JSON schema (draft 2020-12) of a file of format 1, for editors that complete and check TOML.
+
+    It tells keys, kinds of values and allowed words. What belongs together is told by `load` alone.
+
+        >>> json_schema()["properties"]["length_unit"]["enum"]
+        ['um', 'mm', 'cm', 'm', 'in', 'ft']
+    """
+    schema = LinkageForm.model_json_schema(schema_generator=_TomlSchema)
+    one_form = [{"required": [form]} for form in FORMS]
+    return {"$schema": GenerateJsonSchema.schema_dialect, **schema, "oneOf": one_form}
 
 
 def check(raw: object, *, source: str = "") -> LinkageForm:

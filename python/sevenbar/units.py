@@ -33,6 +33,9 @@ def turning_speed(value: object) -> float:
     """The speed [rad/s] of `"10 rad/s"`, `"60 rpm"`, `"90 deg/s"`, `"1 rev/s"`, or a number in rad/s.
 
     Raises `RequestError` for anything else, for zero, and for a number that is not finite.
+
+        >>> turning_speed("60 rpm")
+        6.283185307179586
     """
     return _speed(value, TURNING_SPEEDS, "turning", "'10 rad/s' or '60 rpm'")
 

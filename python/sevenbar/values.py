@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from pydantic import BeforeValidator, ValidationInfo
+from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from sevenbar.errors import RequestError, shown, suggestion
@@ -110,8 +110,8 @@ def _speed(value: object, info: ValidationInfo) -> float:
 
 Number = Annotated[float, BeforeValidator(_number)]
 Angle = Annotated[float, BeforeValidator(_angle)]
-Length = Annotated[float, BeforeValidator(_length)]
+Length = Annotated[float, BeforeValidator(_length), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})]
 Vector = Annotated[tuple[float, float, float], BeforeValidator(_vector)]
 Direction = Annotated[tuple[float, float, float], BeforeValidator(_direction)]
 Text = Annotated[str, BeforeValidator(_text)]
-Speed = Annotated[float, BeforeValidator(_speed)]
+Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]

@@ -154,6 +154,12 @@ def export(
     Files appear whole or not at all, and take the place of others only with `force`. Raises `RequestError`
     for what cannot be, `MissingExtraError` for a library that is not installed, and `OutputError` for a file
     that exists or cannot be written.
+
+        >>> import tempfile
+        >>> import sevenbar as sb
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     [path.name for path in export(sb.load("rssr"), "mjcf", f"{folder}/rssr.xml")]
+        ['rssr.xml']
     """
     target = Path(path)
     word = format_of(target, to)

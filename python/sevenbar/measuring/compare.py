@@ -135,7 +135,13 @@ def per_cent(part: float) -> str:
 
 
 def ends_of(linkage: Linkage, input: str | None = None, output: str | None = None) -> Ends:
-    """The two joints that a measurement of a linkage is about: the drive's, or those named."""
+    """The two joints that a measurement of a linkage is about: the drive's, or those named.
+
+    >>> import sevenbar as sb
+    >>> ends = ends_of(sb.load("rssp"))
+    >>> ends.output, ends.output_slides
+    ('slider', True)
+    """
     first = linkage.column(linkage.drive.joint if input is None else input, "input")
     second = linkage.other_column(first) if output is None else linkage.column(output, "output")
     if first == second:

@@ -112,11 +112,22 @@ def read_measured(
     units: Mapping[str, str] | None = None,
     skip_nan: bool = False,
 ) -> Measured | MeasuredExtremes:
-    """The measured values of a file: rows, or a table of extremes with the columns `lowest`, `highest`.
+    r"""The measured values of a file: rows, or a table of extremes with the columns `lowest`, `highest`.
 
     `columns` names the column of a quantity by its header or its number from 1, `units` its unit; both may
     be left out where the header tells. `skip_nan` leaves out rows in which a used cell holds no number.
     Raises `TableError` with the line and what is wrong there, `RequestError` for a wrong argument.
+
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import sevenbar as sb
+        >>> from sevenbar.measuring.compare import ends_of
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     table = Path(folder) / "bench.csv"
+        ...     _ = table.write_text("crank [deg],rocker [deg]\n0,0.0\n90,12.5\n")
+        ...     measured = read_measured(table, ends_of(sb.load("rssr")))
+        >>> len(measured), measured.outputs
+        (2, ('angle',))
     """
     columns, units = dict(columns or {}), dict(units or {})
     for name, given in (("column", columns), ("unit", units)):

@@ -71,6 +71,11 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     Bodies are `link_1` .. and the crosses of universal joints; joints are named as Sevenbar's columns, a
     ball by its own name, the slide of a screw `<joint>.slide`. `loop` is the equality that closes the loop
     between two sites, `time_step` [s] also sets how fast it comes back.
+
+        >>> import sevenbar as sb
+        >>> course, model = sb.simulation.prepared(sb.load("rssr"))
+        >>> mjcf(model).splitlines()[0]
+        '<mujoco model="RSSR of Sun and Zhou">'
     """
     metre = LENGTHS[model.length_unit]
     root = Element("mujoco", model=model.name)

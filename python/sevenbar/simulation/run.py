@@ -42,6 +42,11 @@ def simulate(
     row of Sevenbar's motion: until the circuit closes, or along one pass of an input with dead centres.
     Raises `RequestError` for what cannot be simulated, `MissingExtraError` where the engine is not installed
     and `EngineError` where the engine loses the motion.
+
+        >>> import sevenbar as sb
+        >>> found = simulate(sb.load("rssr"), "mujoco", steps=360)
+        >>> found.difference("rocker angle").greatest < 1e-3
+        True
     """
     ready(engine)
     way, model = prepared(linkage, steps=steps, circuit=circuit, input=input, output=output, speed=speed)

@@ -45,12 +45,20 @@ Given = Grid | Span | Sequence[float | str] | npt.NDArray[np.float64]
 
 
 def grid(low: float | str, high: float | str, count: int) -> Grid:
-    """`count` values evenly from `low` to `high`; numbers in the file's unit, or texts as "25 cm"."""
+    """`count` values evenly from `low` to `high`; numbers in the file's unit, or texts as "25 cm".
+
+    >>> grid(200, "50 cm", 4)
+    Grid(low=200, high='50 cm', count=4)
+    """
     return Grid(low, high, count)
 
 
 def span(low: float | str, high: float | str) -> Span:
-    """The values from `low` to `high`, to be sampled; numbers in the file's unit, or texts as "25 cm"."""
+    """The values from `low` to `high`, to be sampled; numbers in the file's unit, or texts as "25 cm".
+
+    >>> span(200, 500)
+    Span(low=200, high=500)
+    """
     return Span(low, high)
 
 

@@ -82,6 +82,13 @@ def measure_heights(
     Of measures of circuits the "highest" or the "lowest" value of all circuits is taken, or that of the
     circuit of an index. Raises `RequestError` for measures that are words or counts, and for levels that are
     no numbers.
+
+        >>> import sevenbar as sb
+        >>> from sevenbar.design.maps import motion_map
+        >>> drawn = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": (300, 800)})
+        >>> (swing,) = measure_heights(drawn, ["swing"])
+        >>> swing.levels
+        (40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 160.0, 180.0, 200.0)
     """
     chosen = with_contours(measures)
     _check_take(take)

@@ -91,7 +91,7 @@ def inertia(
     circuit: int = 0,
     branch: int = 0,
 ) -> Inertia:
-    """Inertia forces and input torque of masses [kg]: by the names of the linkage's points, or as `Mass`es.
+    """Inertia forces and input torque of masses [kg], by the names of the linkage's points or as `Mass`.
 
     `gravity` (3,) [m/s^2] is in the report frame, as in (0, 0, -9.80665); none where it is left out.
 

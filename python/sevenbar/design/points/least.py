@@ -160,7 +160,14 @@ def least_rms_point(
     circuit: int = 0,
     branch: int = 0,
 ) -> LeastPoint:
-    """The point with the least root mean square by time of a rate; as `least_acceleration_point`."""
+    """The point with the least root mean square by time of a rate; as `least_acceleration_point`.
+
+    >>> import sevenbar as sb
+    >>> motion = sb.load("seven_r").motion()
+    >>> box = [(-200, 200)] * 3
+    >>> bool(least_rms_point(motion, 4, box).value < least_acceleration_point(motion, 4, box).value)
+    True
+    """
     return least_point(motion, link, box, of=of, measure="rms", circuit=circuit, branch=branch)
 
 

@@ -94,6 +94,14 @@ def nearest_path_point(
     beside is not looked at.
 
     Raises `RequestError` for arguments that do not fit, or inputs at which the circuit has no pose.
+
+        >>> import sevenbar as sb
+        >>> motion = sb.load("rssr").motion()
+        >>> curve = motion.circuits[0].point(2, (500, 40, 20)).position[::30]
+        >>> inputs = motion.circuits[0].input[::30]
+        >>> found = nearest_path_point(motion, 2, curve, [(0, 900), (-100, 100), (-100, 100)], inputs=inputs)
+        >>> found.at.round(6).tolist()
+        [500.0, 40.0, 20.0]
     """
     low, high = box_of(box)
     wanted = _places(curve)

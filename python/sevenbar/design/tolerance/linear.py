@@ -135,6 +135,11 @@ def linear_estimate(
     `given` are half widths by name or pattern, `distribution` normal, uniform or triangular, `output` a
     joint or a point's coordinate, of which `quantity` position, velocity or acceleration is told. Raises
     `RequestError` for arguments that do not fit, and where no row is left.
+
+        >>> import sevenbar as sb
+        >>> found = linear_estimate(sb.load("rssr"), {"L1": 0.5, "L2": 0.5})
+        >>> bool((found.deviation <= found.worst).all())
+        True
     """
     found = of if isinstance(of, Sensitivities) else sensitivities(of)
     if not isinstance(given, Tolerances):

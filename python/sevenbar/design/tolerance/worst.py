@@ -56,7 +56,14 @@ def worst_case(
     output: str | None = None,
     quantity: str = "position",
 ) -> WorstCase:
-    """The worst case of an output along the cycle; the arguments are those of `linear_estimate`."""
+    """The worst case of an output along the cycle; the arguments are those of `linear_estimate`.
+
+    >>> import numpy as np
+    >>> import sevenbar as sb
+    >>> found = worst_case(sb.load("rssr"), {"L1": 0.5, "L2": 0.5})
+    >>> bool(np.degrees(found.high).max() < 0.5), abs(found.difference) < 0.01
+    (True, True)
+    """
     linear = (
         given if isinstance(given, Linear) else linear_estimate(of, given, output=output, quantity=quantity)
     )

@@ -1,0 +1,93 @@
+"""Every command with its arguments and options, from the program's own command line."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+
+import typer
+
+from page_tables import code, table
+from sevenbar.cli import app
+
+#: The page that shows how to use each command.
+PAGES = {
+    "analyze": "analyze.md",
+    "modes": "analyze.md#modes",
+    "plot": "analyze.md#figures",
+    "gallery": "gallery.md",
+    "studio": "studio.md",
+    "compare": "measured.md",
+    "calibrate": "measured.md",
+    "simulate": "simulation.md",
+    "export": "export.md",
+    "sweep": "sweep.md",
+    "map": "maps.md",
+    "tolerance": "tolerance.md",
+    "design function": "synthesis.md",
+    "design swing": "synthesis.md",
+    "design path": "path.md",
+    "design point": "points.md",
+    "design inertia": "points.md",
+}
+
+
+#: What an option's value is, by its type.
+KINDS = {int: "COUNT", float: "NUMBER", str: "TEXT", Path: "PATH"}
+
+
+def commands() -> dict[str, Any]:
+    """Every command by its words, in the order of `sevenbar --help`."""
+    return dict(_below(typer.main.get_command(app), ""))
+
+
+def _below(group: Any, words: str) -> Iterator[tuple[str, Any]]:
+    context = typer.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        if hasattr(command, "list_commands"):
+            yield from _below(command, f"{words}{name} ")
+        else:
+            yield f"{words}{name}", command
+
+
+def all_commands(_pages: Path, _: str) -> str:
+    """A section for each command."""
+    return "\n".join(_section(words, command) for words, command in commands().items())
+
+
+def _section(words: str, command: Any) -> str:
+    kinds = get_type_hints(command.callback)
+    arguments = [param for param in command.params if param.param_type_name == "argument"]
+    shown = [param for param in command.params if not param.hidden]
+    usage = " ".join([*(_metavar(param) for param in arguments), "[OPTIONS]"])
+    return (
+        f"## sevenbar {words}\n\n{command.help}\n\n"
+        f"    sevenbar {words} {usage}\n\n"
+        f"How to use it: []({PAGES[words]}).\n\n"
+        f"{table(('', 'value', 'meaning'), [_row(param, kinds[param.name]) for param in shown])}"
+    )
+
+
+def _metavar(argument: Any) -> str:
+    name = argument.metavar or argument.name.upper()
+    return name if argument.required or name.startswith("[") else f"[{name}]"
+
+
+def _row(param: Any, kind: Any) -> tuple[str, str, str]:
+    told = param.help or ""
+    if param.param_type_name == "argument":
+        return code(_metavar(param)), "", told
+    if param.required:
+        told += " Required."
+    elif not param.is_flag and param.default is not None:
+        told += f" Left out: {code(str(param.default))}."
+    names = ", ".join(code(name) for name in (*param.opts, *param.secondary_opts))
+    return names, "" if param.is_flag else code(param.metavar or _kind(kind)), told
+
+
+def _kind(kind: Any) -> str:
+    """What a value is, from the type of the command's argument: `list[str] | None` is a text."""
+    inner = [part for part in get_args(kind) if part is not type(None)]
+    if inner:
+        return _kind(inner[0])
+    return KINDS[kind]

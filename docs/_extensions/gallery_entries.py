@@ -1,0 +1,72 @@
+"""The gallery: each linkage drawn and analysed when the site is built."""
+
+import re
+from pathlib import Path
+
+import sevenbar as sb
+from page_tables import code, table
+from sevenbar import gallery, report, summary
+
+#: Where the pictures are written, below the pages' folder.
+PICTURES = "_made/gallery"
+
+#: What the report tells of a motion and a gallery need not.
+LEFT_OUT = {"dimensions", "established", "mobility", "closure error"}
+
+
+def all_entries(pages: Path, _: str) -> str:
+    """A table of all linkages and a section for each."""
+    (pages / PICTURES).mkdir(parents=True, exist_ok=True)
+    motions = {name: sb.load(name).motion() for name in gallery.names()}
+    head = ("linkage", "name", "loop", "motion type", "circuits")
+    rows = [
+        (
+            f"[{motion.linkage.name}](#{name})",
+            f"`{name}`",
+            _loop(motion),
+            motion.motion_type,
+            str(len(motion.circuits)),
+        )
+        for name, motion in motions.items()
+    ]
+    sections = [_section(name, motion, pages) for name, motion in motions.items()]
+    return table(head, rows) + "\n" + "\n".join(sections)
+
+
+def _link(name: str, motion: sb.Motion) -> str:
+    """A link to a linkage's section."""
+    return f"[{motion.linkage.name}](#{name})"
+
+
+def _loop(motion: sb.Motion) -> str:
+    return " ".join(motion.linkage.kind)
+
+
+def _section(name: str, motion: sb.Motion, pages: Path) -> str:
+    picture = f"{PICTURES}/{name}.svg"
+    drawn = motion.circuits[report.posed_circuit(motion) or 0]
+    sb.plot.save(sb.plot.configuration(motion, circuit=drawn.index), pages / picture)
+    text = gallery.text(name)
+    remarks = re.match(r"(?:#.*\n)*", text)[0]
+    told = " ".join(line.lstrip("# ") for line in remarks.splitlines())
+    facts = [(fact, told) for fact, told in summary.facts_of(motion) if fact not in LEFT_OUT]
+    rows = [*facts, ("mobility", str(motion.mobility)), ("modes", _modes(motion, drawn))]
+    parts = (
+        f"({name})=",
+        f"## {motion.linkage.name}",
+        told,
+        f"![{motion.linkage.name}]({picture}){{width=34em}}",
+        table(("", code(name)), rows),
+        f"<details><summary><code>sevenbar gallery {name}</code></summary>",
+        f"```toml\n{text}```",
+        "</details>\n",
+    )
+    return "\n\n".join(parts)
+
+
+def _modes(motion: sb.Motion, drawn: sb.Circuit) -> str:
+    """How many modes there are at an input of the circuit that is drawn, a third of the way along it."""
+    column = drawn.input_column
+    value = float(drawn.input[len(drawn.input) // 3])
+    modes = motion.linkage.assembly_modes(value, input=motion.input)
+    return f"{len(modes)} at {motion.input} = {summary.joint_text(motion.linkage, column, value)}"

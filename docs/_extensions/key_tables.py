@@ -1,0 +1,66 @@
+"""The keys of linkage files, from the schema that checks them."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from page_tables import code, table
+from sevenbar.schema import TABLES, LinkageForm, json_schema
+
+#: Where the JSON schema is written, below the pages' folder; pages link it from there.
+SCHEMA = "_made/sevenbar.schema.json"
+
+#: What JSON calls the values, in words.
+KINDS = {"number": "number", "integer": "whole number", "string": "text", "object": "table"}
+
+
+def keys_of(_pages: Path, head: str) -> str:
+    """A table of the keys of `[head]`, of the whole file without one."""
+    schema = json_schema()
+    form = TABLES[head] if head else LinkageForm
+    described = schema["$defs"][form.__name__] if head else schema
+    required = described.get("required", [])
+    rows = [
+        (code(name), _allowed(key), key.get("unit", ""), _default(name, key, required), key["description"])
+        for name, key in described["properties"].items()
+    ]
+    return table(("key", "value", "unit", "left out", "meaning"), rows)
+
+
+def _default(name: str, key: dict[str, Any], required: list[str]) -> str:
+    if name in required:
+        return "required"
+    return code(json.dumps(key["default"])) if "default" in key else ""
+
+
+def _allowed(key: dict[str, Any]) -> str:
+    """What a value may be, in words."""
+    if "const" in key:
+        return code(str(key["const"]))
+    if "enum" in key:
+        return " ".join(code(f'"{word}"') for word in key["enum"])
+    if "$ref" in key:
+        return "table"
+    if key["type"] == "array":
+        return _listed(key)
+    if isinstance(key["type"], list):
+        return " or ".join(KINDS[kind] for kind in key["type"])
+    limits = {"exclusiveMinimum": " > ", "minimum": " >= "}
+    bound = next((f"{sign}{key[limit]:g}" for limit, sign in limits.items() if limit in key), "")
+    return KINDS[key["type"]] + bound
+
+
+def _listed(key: dict[str, Any]) -> str:
+    items = key.get("prefixItems")
+    if items is None:
+        return "tables"
+    inner = items[0]
+    return f"{len(items)} times {_listed(inner)}" if inner["type"] == "array" else f"{len(items)} numbers"
+
+
+def written_schema(pages: Path, _: str) -> str:
+    """Writes the JSON schema beside the pages; a link to it."""
+    target = pages / SCHEMA
+    target.parent.mkdir(exist_ok=True)
+    target.write_text(json.dumps(json_schema(), indent=2) + "\n", encoding="utf-8")
+    return f"Download: [sevenbar.schema.json]({SCHEMA})"
