@@ -95,6 +95,10 @@ impl Curve {
         let mut marks: Vec<(f64, f64)> = Vec::new();
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
+            // a rate that is zero to the last digit at a node, as where another column turns back there, has no sign beside it
+            if turns_at(a, column) && a.rates[1][column] != 0.0 {
+                found.push(Turning { segment, node: *a });
+            }
             // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
             marks.clear();
             for look in 0..=LOOKS {
