@@ -81,6 +81,14 @@ bench: $(VENV)/.installed  ## Time the closed form, the general loop and their b
 	$(BIN)/python benches/sweep_loops.py
 	$(BIN)/python benches/least_acceleration.py
 
+LINKAGES ?= 1000000
+FILES ?= 10000000
+THREADS ?= 2
+SEED ?= 1
+.PHONY: fuzz
+fuzz: $(VENV)/.installed-dev  ## Hard use: LINKAGES, FILES, THREADS, SEED; writes docs/hard-use.md
+	$(BIN)/python -m fuzz run --page --linkages $(LINKAGES) --files $(FILES) --threads $(THREADS) --seed $(SEED)
+
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too
 	rm -rf $(VENV) target build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
