@@ -111,6 +111,14 @@ docs: $(VENV)/.installed-docs  ## The documentation site, into build/site; a war
 	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet --doctree-dir build/site-pages docs build/site
 	@echo "open build/site/index.html"
 
+LINKAGES ?= 1000000
+FILES ?= 10000000
+THREADS ?= 2
+SEED ?= 1
+.PHONY: fuzz
+fuzz: $(VENV)/.installed-dev  ## Hard use: LINKAGES, FILES, THREADS, SEED; writes docs/hard-use.md
+	$(BIN)/python -m fuzz run --page --linkages $(LINKAGES) --files $(FILES) --threads $(THREADS) --seed $(SEED)
+
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too
 	rm -rf $(VENV) target build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -61,7 +61,8 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
         if isinstance(link, int) and not isinstance(link, bool) and link > len(joints) > 0:
             last = f"give 1 to {len(joints)}, the last is the ground"
             problems.append(Problem(f"point[{i}].link", f"{shown(link)} is not a link; {last}"))
-        if isinstance(name, str) and name.strip() in taken:
+        # no name at all is told of elsewhere
+        if isinstance(name, str) and name.strip() and name.strip() in taken:
             problems.append(
                 Problem(f"point[{i}].name", f"{shown(name)} is taken already; give each point its own name")
             )

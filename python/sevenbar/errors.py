@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from datetime import date, time
 from difflib import get_close_matches
 
 
@@ -46,20 +47,27 @@ class Problem:
         return f"{self.place}: {self.message}" if self.place else self.message
 
 
+#: Mistakes that one message tells of; more of them come from a program, and all from one cause.
+MOST_TOLD = 50
+
+
 class DescriptionError(SevenbarError):
-    """A linkage description with mistakes: all of them at once, in `problems`."""
+    """A linkage description with mistakes: all of them in `problems`, the first `MOST_TOLD` in the text."""
 
     def __init__(self, problems: Sequence[Problem], source: str = "") -> None:
         self.problems = tuple(problems)
         self.source = source
         prefix = f"{source}: " if source else ""
-        super().__init__("\n".join(f"{prefix}{problem}" for problem in self.problems))
+        lines = [f"{prefix}{problem}" for problem in self.problems[:MOST_TOLD]]
+        if (more := len(self.problems) - MOST_TOLD) > 0:
+            lines.append(f"{prefix}and {more} more mistake{'s' * (more > 1)}; mend these first")
+        super().__init__("\n".join(lines))
 
 
 def shown(value: object, longest: int = 60) -> str:
-    """A value as it is quoted in a message: its repr, cut short."""
+    """A value as it is quoted in a message: its repr, a date or time as a file has it; cut short."""
     try:
-        text = repr(value)
+        text = str(value) if isinstance(value, date | time) else repr(value)
     except (RecursionError, ValueError):  # nested without end; an integer too long to print
         text = f"a {type(value).__name__} too large to print"
     return text if len(text) <= longest else text[: longest - 3] + "..."

@@ -34,7 +34,7 @@ MOST_FREEDOMS = 7
 #: An angle [rad] short of a full turn by less is zero.
 ROUNDING = 1e-12
 
-#: Limits [rad] nearer than this are one.
+#: Limits [rad, or parts of the size] nearer than this are one.
 SAME_LIMIT = 1e-6
 
 
@@ -123,7 +123,7 @@ class GeneralLoop:
             speed=math.nan if law is not None else speed,
             samples=samples,
             motion_type=_motion_type(circuits, mobility),
-            limits=merged(limits, turns=linkage.column_kinds[column] == "turn"),
+            limits=merged(limits, turns=linkage.column_kinds[column] == "turn", size=self.size),
             change_points=np.array([]),
             circuits=circuits,
             completeness=raw["completeness"],
@@ -318,16 +318,26 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
     return text
 
 
-def merged(limits: npt.ArrayLike, *, turns: bool) -> Floats:
-    """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once."""
+def size_of(linkage: Linkage) -> float:
+    """The size [length] of a loop, as the core has it: all links' lengths, and pitches by radian."""
+    lengths = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
+    return lengths + sum(abs(joint.pitch) / math.tau for joint in linkage.joints) or 1.0
+
+
+def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
+    """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once.
+
+    `size` [length] is that of the loop, by which a slide tells what is equal.
+    """
     values: Floats = np.asarray(limits, dtype=np.float64)
+    same = SAME_LIMIT if turns else SAME_LIMIT * size
     if turns:
         values = np.mod(values, math.tau)
         values[values > math.tau - ROUNDING] = 0.0
     values = np.sort(values)
     if values.size == 0:
         return np.array([])
-    kept: Floats = values[np.concatenate([[True], np.diff(values) > SAME_LIMIT])]
-    if turns and kept.size > 1 and kept[0] + math.tau - kept[-1] < SAME_LIMIT:
+    kept: Floats = values[np.concatenate([[True], np.diff(values) > same])]
+    if turns and kept.size > 1 and kept[0] + math.tau - kept[-1] < same:
         kept = kept[:-1]
     return kept

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar import _core
-from sevenbar.general import expanded, merged, pair, word
+from sevenbar.general import expanded, merged, pair, size_of, word
 from sevenbar.motion import Floats, Integers
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def loop_motions(linkages: Sequence[Linkage], input: int, output: int, samples: 
     missing = np.full(len(linkage), np.nan)
     columns |= {"circuit_type": own, "transmission_lowest": missing, "transmission_highest": missing}
     clear = (raw["status"] == DRIVEN) & (counts > 0)
-    limits = _limits(raw, linkage, len(linkages), turns=kinds[input] == "turn")
+    limits = _limits(raw, linkage, linkages, turns=kinds[input] == "turn")
     return Motions(clear, types, limits, counts, linkage, circuit, columns)
 
 
@@ -150,12 +150,16 @@ def _numbered(counts: Integers) -> tuple[Integers, Integers]:
     return linkage, np.arange(len(linkage)) - firsts[linkage]
 
 
-def _limits(raw: Mapping[str, Any], linkage: Integers, count: int, *, turns: bool) -> Floats:
+def _limits(raw: Mapping[str, Any], linkage: Integers, linkages: Sequence[Linkage], *, turns: bool) -> Floats:
     """The limits (n, m) of loops, from the input dead centres of their circuits."""
+    count = len(linkages)
     owner = np.repeat(linkage, raw["input_dead_centre_count"])
     inputs = raw["input_dead_centres"][:, 0]
     bounds = np.searchsorted(owner, np.arange(count + 1))
-    found = [merged(inputs[first:last], turns=turns) for first, last in pairwise(bounds)]
+    found = [
+        merged(inputs[first:last], turns=turns, size=1.0 if turns else size_of(loop))
+        for loop, (first, last) in zip(linkages, pairwise(bounds), strict=True)
+    ]
     limits = np.full((count, max(map(len, found), default=0)), np.nan)
     for row, values in zip(limits, found, strict=True):
         row[: len(values)] = values

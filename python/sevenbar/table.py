@@ -59,7 +59,7 @@ class Table:
     @property
     def labels(self) -> list[str]:
         """The columns as they are quoted in messages."""
-        return [f"'{name}'" if name else str(i) for i, name in enumerate(self.names, 1)]
+        return [shown(name) if name else str(i) for i, name in enumerate(self.names, 1)]
 
     @property
     def header(self) -> str:

@@ -22,6 +22,13 @@ pub struct TrigLinear {
     pub s1: f64,
 }
 
+/// The angle moved by whole turns into [0, 2 pi).
+pub(crate) fn within_turn(angle: f64) -> f64 {
+    let moved = angle.rem_euclid(TAU);
+    // an angle below zero by less than a rounding of the turn comes out as the whole turn
+    if moved < TAU { moved } else { 0.0 }
+}
+
 impl TrigLinear {
     /// The square, as a polynomial of degree two.
     pub fn square(&self) -> TrigQuadratic {
@@ -108,7 +115,7 @@ impl TrigQuadratic {
             .unwrap_or(0.0);
         let quartic = self.about(turn + PI);
         let (stationary, zeros) = monotonic_pieces(&quartic);
-        let angle = |t: f64| (turn + PI + 2.0 * t.atan()).rem_euclid(TAU);
+        let angle = |t: f64| within_turn(turn + PI + 2.0 * t.atan());
 
         let mut found: Vec<Zero> = zeros
             .iter()
@@ -267,10 +274,19 @@ mod tests {
     }
 
     #[test]
+    fn an_angle_a_rounding_below_zero_is_zero_not_a_turn() {
+        for angle in [-1e-17, -1e-300, -0.0, 0.0, TAU, -TAU] {
+            assert_eq!(within_turn(angle), 0.0, "{angle}");
+        }
+        assert!(within_turn(-1e-15) < TAU && within_turn(-1e-15) > TAU - 1e-14);
+        assert!((within_turn(7.0) - (7.0 - TAU)).abs() < 1e-15);
+    }
+
+    #[test]
     fn four_known_zeros_come_back() {
         for turn in 0..200 {
             let turn = f64::from(turn) * 0.1;
-            let mut want = [0.3, 1.1, 2.9, 5.0].map(|z: f64| (z + turn).rem_euclid(TAU));
+            let mut want = [0.3, 1.1, 2.9, 5.0].map(|z: f64| within_turn(z + turn));
             let zeros = with_zeros(want).zeros(1e-15).unwrap();
             want.sort_by(f64::total_cmp);
             assert_eq!(zeros.len(), 4);

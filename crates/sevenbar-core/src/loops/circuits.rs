@@ -95,6 +95,10 @@ impl Curve {
         let mut marks: Vec<(f64, f64)> = Vec::new();
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
+            // a rate that is zero to the last digit at a node, as where another column turns back there, has no sign beside it
+            if turns_at(a, column) && a.rates[1][column] != 0.0 {
+                found.push(Turning { segment, node: *a });
+            }
             // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
             marks.clear();
             for look in 0..=LOOKS {
@@ -282,7 +286,7 @@ impl<'a> Passes<'a> {
         let turnings = curve.turnings(chain, input);
         // each turning becomes a node; a closed curve then begins at the lowest
         insert(chain, &mut curve, &turnings, input);
-        let is_turning = |n: &Node| n.rates[0][input].abs() < STILL;
+        let is_turning = |n: &Node| turns_at(n, input);
         if curve.end == End::Closed && !turnings.is_empty() {
             let lowest = (0..curve.nodes.len() - 1)
                 .filter(|&k| is_turning(&curve.nodes[k]))
@@ -433,7 +437,7 @@ impl<'a> Passes<'a> {
         let closed = self.curve.end == End::Closed;
         let slack = SAME_ROW * step;
         for (n, pass) in self.passes.iter().enumerate() {
-            let at_limit = |node: usize| self.curve.nodes[node].rates[0][self.input].abs() < STILL;
+            let at_limit = |node: usize| turns_at(&self.curve.nodes[node], self.input);
             let (starts_at_limit, ends_at_limit) = (at_limit(pass.from), at_limit(pass.to));
             if starts_at_limit {
                 rows.push(self.limit_row(n, &self.curve.nodes[pass.from]));
@@ -492,8 +496,7 @@ impl<'a> Passes<'a> {
                 };
                 let ends = [(pass.from, pass.start), (pass.to, pass.end)];
                 let limit = ends.iter().find(|(node, end)| {
-                    let still = self.curve.nodes[*node].rates[0][self.input].abs() < STILL;
-                    still && (value - end).abs() < SAME_LIMIT
+                    turns_at(&self.curve.nodes[*node], self.input) && (value - end).abs() < SAME_LIMIT
                 });
                 if let Some((node, _)) = limit {
                     rows.push(self.limit_row(n, &self.curve.nodes[*node]));
@@ -545,23 +548,46 @@ pub(super) fn missing(pass: usize) -> Row {
     }
 }
 
+/// Makes each turning a node. The column's rate there is zero by its meaning: where the curve bends sharply, as beside a change point,
+/// the rate that is worked out is zero only to what rounding of the place leaves of it.
 fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], column: usize) {
+    let last = curve.nodes.len() - 1;
     // a curve that was begun at a dead centre has that node already
     let known = |t: &Turning| {
-        curve.nodes[t.segment..=t.segment + 1].iter().any(|n| {
+        (t.segment..=t.segment + 1).find(|&k| {
+            let n = &curve.nodes[k];
             n.rates[0][column].abs() < STILL && length(&chain.difference(&n.at, &t.node.at)) < SAME_PLACE
         })
     };
+    let places: Vec<Option<usize>> = turnings.iter().map(known).collect();
+    for &k in places.iter().flatten() {
+        curve.nodes[k].rates[0][column] = 0.0;
+        if curve.end == End::Closed && (k == 0 || k == last) {
+            curve.nodes[last - k].rates[0][column] = 0.0;
+        }
+    }
     let mut nodes = Vec::with_capacity(curve.nodes.len() + turnings.len());
-    let mut rest = turnings.iter().filter(|t| !known(t)).peekable();
+    let mut rest = turnings
+        .iter()
+        .zip(&places)
+        .filter(|(_, place)| place.is_none())
+        .map(|(t, _)| t)
+        .peekable();
     for (k, node) in curve.nodes.iter().enumerate() {
         nodes.push(*node);
         while let Some(t) = rest.next_if(|t| t.segment == k) {
-            nodes.push(t.node);
+            let mut node = t.node;
+            node.rates[0][column] = 0.0;
+            nodes.push(node);
         }
     }
     measure(chain, &mut nodes);
     curve.nodes = nodes;
+}
+
+/// Whether a column changes direction at a node, once `insert` has seen the curve.
+fn turns_at(node: &Node, column: usize) -> bool {
+    node.rates[0][column] == 0.0
 }
 
 /// A closed curve begun at another of its nodes, turns counted on.

@@ -50,6 +50,12 @@ pub(super) fn output_extremes(
         .collect();
     samples.sort_by(|a, b| a.0.total_cmp(&b.0));
     samples.dedup_by(|a, b| a.0 - b.0 < SAME_SAMPLE);
+    // the last may be the first, by a rounding short of a turn on
+    if let [first, .., last] = samples[..]
+        && first.0 + span - last.0 < SAME_SAMPLE
+    {
+        samples.pop();
+    }
     let search = Search { passes, samples: &samples, output, span };
     std::array::from_fn(|order| Some(search.ends(order)))
 }

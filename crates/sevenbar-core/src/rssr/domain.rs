@@ -1,6 +1,7 @@
 //! Where a turning joint can be: the ranges in which the loop closes, from the zeros of one quartic.
 
 use super::pair::Pair;
+use crate::trigonometric::within_turn;
 use std::f64::consts::{PI, TAU};
 
 /// The range of one turning joint on one circuit.
@@ -71,7 +72,7 @@ impl Domain {
             return Self { extents: vec![Extent::Full], degenerate: true, ..Self::default() };
         };
         for zero in zeros.iter_mut().filter(|z| !z.multiple) {
-            zero.angle = pair.polished_limit(zero.angle).rem_euclid(TAU);
+            zero.angle = within_turn(pair.polished_limit(zero.angle));
         }
         zeros.sort_by(|a, b| a.angle.total_cmp(&b.angle));
         let change_points: Vec<f64> = zeros.iter().filter(|z| z.multiple).map(|z| z.angle).collect();

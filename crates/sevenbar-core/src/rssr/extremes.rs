@@ -5,6 +5,7 @@
 use super::domain::Extent;
 use super::pair::Pair;
 use crate::taylor::Taylor;
+use crate::trigonometric::within_turn;
 use std::f64::consts::TAU;
 
 /// Cells in which a turn is searched; two stationary points within one cell are told apart as well.
@@ -41,7 +42,7 @@ pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 3] {
         }
         let extreme = |best: Option<&(f64, f64)>| {
             let &(input, value) = best.unwrap_or(&(f64::NAN, f64::NAN));
-            Extreme { input: input.rem_euclid(TAU), value }
+            Extreme { input: within_turn(input), value }
         };
         [
             extreme(candidates.iter().min_by(|a, b| a.1.total_cmp(&b.1))),

@@ -5,6 +5,7 @@ use super::extremes::{Extreme, rate_extremes, transmission_extremes};
 use super::pair::Pair;
 use super::{Input, Rssr};
 use crate::outcome::{DeadCentre, DeadCentreKind};
+use crate::trigonometric::within_turn;
 use std::f64::consts::TAU;
 
 /// What input and output can do; as numbers they are the codes of a batch.
@@ -136,7 +137,7 @@ impl Rssr {
                         .touches
                         .iter()
                         .filter(|&&t| extent.distance(t) == 0.0)
-                        .map(|&t| start + (t - start).rem_euclid(TAU))
+                        .map(|&t| start + within_turn(t - start))
                         .collect();
                     inside.sort_by(f64::total_cmp);
                     inside
@@ -169,7 +170,7 @@ impl Rssr {
         // where only the output's limits come so near, the place is known by the output
         let mut change_points = inputs.change_points;
         if change_points.is_empty() {
-            let input_at = |&output: &f64| backward.angle(&backward.reach(output), 0.0, 0).rem_euclid(TAU);
+            let input_at = |&output: &f64| within_turn(backward.angle(&backward.reach(output), 0.0, 0));
             change_points = outputs.change_points.iter().map(input_at).collect();
             change_points.sort_by(f64::total_cmp);
         }
@@ -221,7 +222,7 @@ fn circuit(forward: &Pair, outputs: &Domain, mut circuit: Circuit) -> Circuit {
 /// Gives every output dead centre to the circuit that passes through it.
 fn place_output_dead_centres(circuits: &mut [Circuit], forward: &Pair, backward: &Pair, outputs: &Domain) {
     for &output in &outputs.limits {
-        let input = backward.angle(&backward.reach(output), 0.0, 0).rem_euclid(TAU);
+        let input = within_turn(backward.angle(&backward.reach(output), 0.0, 0));
         let reach = forward.reach(input);
         let slope = reach.slope.unwrap_or(0.0);
         let [d0, d1] = [0, 1].map(|b| turn_between(forward.angle(&reach, slope, b), output).abs());
@@ -237,7 +238,7 @@ fn place_output_dead_centres(circuits: &mut [Circuit], forward: &Pair, backward:
             let (input, pass) = match circuit.input {
                 Extent::Full => (input, 0),
                 Extent::Arc(start, _) => (
-                    start + (input - start).rem_euclid(TAU),
+                    start + within_turn(input - start),
                     usize::from(branch_at(circuit, input) != branch),
                 ),
             };

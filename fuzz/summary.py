@@ -1,0 +1,186 @@
+"""A run as a whole: its cases, the journal by which it goes on after a stop, its summary as JSON."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import subprocess
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pydantic
+
+import sevenbar as sb
+from fuzz import ROOT
+from fuzz.tally import Tally
+from fuzz.watch import Watch
+from fuzz.ways import WAYS, Job
+from sevenbar.many import simd_level
+
+#: Which share of the linkages goes which way: the dear ones are few.
+LINKAGES = {"rssr batch": 0.85, "loop batch": 0.1, "rssr": 0.03, "loop": 0.0195, "screw": 0.0005}
+
+#: The same of the files.
+FILES = {"file": 0.99, "table": 0.01}
+
+FINDINGS = ROOT / "fuzz" / "findings"
+JOURNALS = ROOT / "build" / "fuzz"
+SUMMARY = ROOT / "docs" / "hard-use.json"
+
+
+@dataclass
+class Run:
+    """A run of so many linkages and files from a seed."""
+
+    linkages: int
+    files: int
+    seed: int
+    threads: int
+    tallies: dict[str, Tally] = field(default_factory=dict)
+    #: Most memory of a worker [bytes], after its first jobs and at the end of all.
+    first_memory: int = 0
+    peak_memory: int = 0
+    seconds: float = 0.0
+    _jobs_done: int = 0
+
+    def counts(self) -> dict[str, int]:
+        """How many cases go each way."""
+        shares = [(self.linkages, LINKAGES), (self.files, FILES)]
+        found = {way: round(total * share) for total, of in shares for way, share in of.items()}
+        # what rounding leaves goes the commonest way
+        for total, of in shares:
+            most = next(iter(of))
+            found[most] += total - sum(found[way] for way in of)
+        return found
+
+    def jobs(self) -> Iterator[Job]:
+        """All jobs, the ways in turn, so that a run cut short has met them all."""
+        queues = [self._jobs_of(way, count) for way, count in self.counts().items()]
+        totals = [max(1, -(-count // WAYS[way].size)) for way, count in self.counts().items()]
+        order = sorted((k / total, place) for place, total in enumerate(totals) for k in range(total))
+        for _, place in order:
+            if (job := next(queues[place], None)) is not None:
+                yield job
+
+    def _jobs_of(self, way: str, count: int) -> Iterator[Job]:
+        size = WAYS[way].size
+        for first in range(0, count, size):
+            yield Job(way, self.seed, first, min(first + size, count))
+
+    @property
+    def journal(self) -> Path:
+        """The lines of what is done: a run with the same numbers goes on from there."""
+        return JOURNALS / f"{self.linkages}-{self.files}-{self.seed}.jsonl"
+
+    def take(self, job: Job, plain: dict[str, Any], peak: int, seconds: float) -> None:
+        """Adds what a job came to."""
+        self.tallies.setdefault(job.way, Tally()).merge(plain)
+        self._jobs_done += 1
+        if self._jobs_done <= EARLY:
+            self.first_memory = max(self.first_memory, peak)
+        self.peak_memory = max(self.peak_memory, peak)
+        self.seconds += seconds
+
+    def go(self, tell: Any) -> None:
+        """Does all that the journal has not; `tell` is called with findings, and now and then with words."""
+        self.journal.parent.mkdir(parents=True, exist_ok=True)
+        done: dict[str, list[tuple[int, int]]] = {way: [] for way in WAYS}
+        if self.journal.exists():
+            for line in self.journal.read_text(encoding="utf-8").splitlines():
+                try:
+                    row = json.loads(line)
+                except ValueError:  # the line at which the run before was stopped
+                    continue
+                job = Job(*row["job"])
+                done[job.way].append((job.first, job.last))
+                self.take(job, row["tally"], row["peak"], row["seconds"])
+        covered = {way: {index for a, b in parts for index in (a,) if b > a} for way, parts in done.items()}
+        left = [job for job in self.jobs() if job.first not in covered[job.way]]
+        if self._jobs_done:
+            tell(f"{self._jobs_done} jobs are done already by {self.journal.relative_to(ROOT)}")
+        last = time.monotonic()
+        with self.journal.open("a", encoding="utf-8") as journal:
+
+            def noted(job: Job, tally: Tally, peak: int) -> None:
+                nonlocal last
+                now = time.monotonic()
+                seconds, last = now - last, now
+                plain = tally.plain()
+                self.take(job, plain, peak, seconds)
+                row = {"job": list(job), "tally": plain, "peak": peak, "seconds": seconds}
+                journal.write(json.dumps(row) + "\n")
+                journal.flush()
+                for finding in tally.findings:
+                    tell(f"found: {finding.way} {finding.index}: {finding.what[:150]}")
+                    keep(vars(finding), self.seed)
+                tell(None)
+
+            Watch(noted, self.threads).over(left)
+
+    def plain(self) -> dict[str, Any]:
+        """The summary as JSON holds it."""
+        return {
+            "date": datetime.now(UTC).strftime("%Y-%m-%d"),
+            "commit": _commit(),
+            "machine": {
+                "processor": _processor(),
+                "cores": os.cpu_count(),
+                "system": platform.system(),
+                "vector unit": simd_level(),
+            },
+            "versions": {
+                "sevenbar": sb.__version__,
+                "python": platform.python_version(),
+                "numpy": np.__version__,
+                "pydantic": pydantic.VERSION,
+            },
+            "linkages": self.linkages,
+            "files": self.files,
+            "seed": self.seed,
+            "threads": self.threads,
+            "minutes": self.seconds / 60,
+            "memory": {"first": self.first_memory, "peak": self.peak_memory},
+            "limits": {way: WAYS[way].limit for way in self.counts()},
+            "ways": {
+                way: self.tallies[way].plain() | {"findings": []}
+                for way in self.counts()
+                if way in self.tallies
+            },
+        }
+
+
+#: Jobs after which the memory of the workers is noted, to tell growth from size.
+EARLY = 40
+
+
+def keep(finding: dict[str, Any], seed: int) -> Path:
+    """Writes a finding to a file of its own, which `python -m fuzz replay` takes."""
+    FINDINGS.mkdir(parents=True, exist_ok=True)
+    path = FINDINGS / f"{finding['way'].replace(' ', '-')}-{seed}-{finding['index']}.json"
+    path.write_text(json.dumps(finding | {"seed": seed}, indent=1) + "\n", encoding="utf-8")
+    return path
+
+
+def _commit() -> str:
+    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=10"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    return next(
+        (line.partition(":")[2].strip() for line in lines if line.startswith("model name")),
+        platform.machine(),
+    )

@@ -1,0 +1,90 @@
+"""What hard use found and what was mended, each by the case that showed it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from random_linkages import random_rotation
+from sevenbar.errors import MOST_TOLD, DescriptionError, TableError
+from sevenbar.measuring.measured import Ends, read_measured
+from test_invariance import changed, joints_of
+
+
+@pytest.mark.parametrize("way", ["auto", "general"])
+def test_a_limit_a_rounding_below_zero_is_zero_and_not_a_whole_turn(way: str) -> None:
+    # (L1 - M)^2 + (D + L3)^2 + N^2 = 25 + 16 + ..; the coupler is that of a pose at crank 0
+    linkage = sb.rssr(M=-4, N=-4, L1=1, L2=float(np.sqrt(41)), L3=1, D=-3)
+    limits = linkage.motion(24, method=way).limits
+    assert limits.size == 2
+    assert (limits < 2 * np.pi).all()
+    assert limits[0] == pytest.approx(0.0, abs=1e-12)
+    assert limits[1] == pytest.approx(1.0622081145647357, abs=1e-9)
+
+
+def test_thousands_of_mistakes_are_one_message_of_some_lines() -> None:
+    with pytest.raises(DescriptionError) as caught:
+        sb.loads("format = 1\n" + '[[point]]\nname = ""\nlink = 0\nat = 0\n' * 900 + "[rssr]\n", "f.toml")
+    lines = str(caught.value).splitlines()
+    assert len(caught.value.problems) == 3 * 900 + 5
+    assert lines[:MOST_TOLD] == [f"f.toml: {problem}" for problem in caught.value.problems[:MOST_TOLD]]
+    assert lines[MOST_TOLD:] == [f"f.toml: and {3 * 900 + 5 - MOST_TOLD} more mistakes; mend these first"]
+
+
+def test_as_many_mistakes_as_a_message_holds_are_all_told() -> None:
+    names = "".join(f"wrong_{k} = 1\n" for k in range(MOST_TOLD + 1))
+    right = "M = 1\nN = 1\nL1 = 1\nL3 = 1\nD = 0\n"
+    for cut, last in ((names, "f.toml: and 1 more mistake; mend these first"), (names[:-12], "")):
+        with pytest.raises(DescriptionError) as caught:
+            sb.loads(f"format = 1\n[rssr]\n{right}{cut}", "f.toml")
+        assert str(caught.value).splitlines()[MOST_TOLD:] == ([last] if last else [])
+
+
+@pytest.mark.parametrize("value", ["1979-05-27", "07:32:00", "1979-05-27 07:32:00"])
+def test_a_date_in_the_place_of_a_number_is_quoted_as_the_file_has_it(value: str) -> None:
+    with pytest.raises(DescriptionError) as caught:
+        sb.loads(f"format = 1\n[rssr]\nM = {value}\nN = 1\nL1 = 1\nL3 = 1\nD = 0\n", "f.toml")
+    assert str(caught.value) == f"f.toml: rssr.M: {value} is not a number; give a number"
+
+
+def test_a_column_s_name_with_a_tab_in_it_is_told_without_one(tmp_path: Path) -> None:
+    (tmp_path / "t.csv").write_bytes(b"% time angle\n0-0\ntime\trocker\n,0\n")
+    with pytest.raises(TableError) as caught:
+        read_measured(tmp_path / "t.csv", Ends("crank", "rocker"))
+    assert "the columns are 'time\\trocker', 2; " in str(caught.value)
+    assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize("seed", [76336, 217])
+def test_an_output_that_turns_back_where_the_input_does_has_the_range_of_its_rows(seed: int) -> None:
+    # its rate is zero to the last digit at the input's dead centre, where no sign told of a change
+    for circuit in sb.from_axes(joints_of(seed)).motion(720):
+        assert circuit.output_range is not None
+        low, high = circuit.output_range
+        assert low - 1e-9 < circuit.output.min() < low + 1e-3
+        assert high - 1e-3 < circuit.output.max() < high + 1e-9
+
+
+def test_an_extreme_beside_the_first_row_of_a_circuit_is_found() -> None:
+    rng = np.random.default_rng(0)
+    rotation, shift = random_rotation(rng), rng.normal(size=3)
+    joints = changed(joints_of(58693), lambda p: rotation @ p + shift, lambda _, a: rotation @ a)
+    linkage = sb.from_axes(joints)
+    for coarse, fine in zip(linkage.motion(24, speed=1.0), linkage.motion(7200, speed=1.0), strict=True):
+        jerk = fine.dddq[:, fine.output_column]
+        assert coarse.jerk is not None
+        assert coarse.jerk.lowest == pytest.approx(jerk.min(), rel=1e-5)
+        assert coarse.jerk.highest == pytest.approx(jerk.max(), rel=1e-5)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-3, 1e6])
+def test_limits_of_a_slide_are_told_apart_in_any_unit(size: float) -> None:
+    joints = joints_of(194)
+    assert joints[0]["kind"] in "PC"
+    scaled = changed(joints, lambda p: size * p, lambda _, a: a)
+    limits = sb.from_axes(joints).motion(24).limits
+    assert limits.size == 4
+    np.testing.assert_allclose(sb.from_axes(scaled).motion(24).limits, size * limits, rtol=1e-9)

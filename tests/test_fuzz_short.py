@@ -1,0 +1,267 @@
+"""A short run of hard use, and that its watch sees what goes wrong: what `make fuzz` does by the million.
+
+Source: `fuzz.checks` say what must hold; here they are also shown cases that must break them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from fuzz import batches, checks, files, loops, messages, page, rssrs, summary, watch, ways
+from fuzz.tally import Finding, Tally
+from fuzz.toml import written
+from sevenbar.errors import RequestError
+from sevenbar.forms import from_description
+from sevenbar.gallery import names
+
+#: Cases of each way: some seconds together; the others take minutes.
+SHORT = {"rssr batch": 4096, "loop batch": 64, "rssr": 70, "loop": 57, "screw": 2, "file": 3000, "table": 400}
+LONG = {
+    "rssr batch": 60_000,
+    "loop batch": 640,
+    "rssr": 1400,
+    "loop": 760,
+    "screw": 10,
+    "file": 40_000,
+    "table": 4000,
+}
+
+#: A seed of its own, so that CI meets other cases than `make fuzz`.
+SEED = 20
+
+
+@pytest.mark.parametrize("amount", [SHORT, pytest.param(LONG, marks=pytest.mark.slow)], ids=["short", "long"])
+@pytest.mark.parametrize("way", list(ways.WAYS))
+def test_nothing_is_found(way: str, amount: dict[str, int]) -> None:
+    size, seed = ways.WAYS[way].size, SEED + (amount is LONG)
+    tally = Tally()
+    for first in range(0, amount[way], size):
+        job = ways.Job(way, seed, first, min(first + size, amount[way]))
+        tally.merge(ways.run(job, lambda _: None).plain())
+    assert tally.cases == amount[way]
+    assert [finding.what for finding in tally.findings] == []
+    assert tally.slowest[0] < ways.WAYS[way].limit
+    # the cases are not all of one kind
+    assert len(tally.seen) > 3
+
+
+@pytest.mark.parametrize("way", list(ways.WAYS))
+def test_a_case_follows_from_its_seed_and_number_alone(way: str) -> None:
+    content = ways.WAYS[way].content
+    assert content(5, 17) == content(5, 17)
+    assert len({str(content(5, k)) for k in range(12)}) > 6
+    assert content(5, 17) != content(6, 17)
+
+
+def test_a_description_is_written_without_losing_a_digit() -> None:
+    rng = np.random.default_rng(3)
+    for draw in loops.FAMILIES.values():
+        description = draw(rng)
+        try:
+            want = from_description(description).transforms
+        except sb.errors.SevenbarError:
+            continue
+        np.testing.assert_array_equal(sb.loads(written(description)).transforms, want)
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_gallery_holds_what_must_hold(name: str) -> None:
+    if sb.load(name).kind.count("H"):
+        pytest.skip("searched modes take long, and test_nothing_is_found has some")
+    assert (
+        checks.judged(sb.load(name), np.random.default_rng(1), Counter())
+        == sb.load(name).motion(24).motion_type
+    )
+
+
+def broken(circuit: sb.Circuit, **changes: object) -> list[str]:
+    motion = sb.load("seven_r").motion(24)
+    try:
+        checks.of_circuit(motion, dataclasses.replace(circuit, **changes))
+    except checks.Broken as told:
+        return [str(told)]
+    return []
+
+
+def test_what_must_hold_can_break() -> None:
+    circuit = sb.load("seven_r").motion(24).circuits[0]
+    assert broken(circuit) == []
+    rates = circuit.dddq.copy()
+    rates[3, 2] = np.nan
+    assert broken(circuit, dddq=rates) == [
+        "dddq: 1 numbers missing or infinite in rows whose status promises them"
+    ]
+    assert "closure error" in broken(circuit, residual=circuit.residual + 1e-6)[0]
+    assert "times" in broken(circuit, time=-circuit.time)[0]
+    assert "type" in broken(circuit, motion_type="double-winch")[0]
+    assert "range" in broken(circuit, input_range=(0.0, 1.0))[0]
+    assert circuit.velocity is not None
+    lower = dataclasses.replace(circuit.velocity, highest=0.5 * circuit.velocity.highest)
+    assert "above its extreme" in broken(circuit, velocity=lower)[0]
+
+
+def test_motions_that_contradict_themselves_break() -> None:
+    motion = sb.load("rssr").motion(24, input="rocker")
+    checks.of_motion(motion)
+    for changes, told in (
+        ({"limits": motion.limits[::-1]}, "do not rise"),
+        ({"limits": motion.limits + 6.2}, "outside a turn"),
+        ({"limits": np.array([])}, "0 limits"),
+        ({"motion_type": "rigid"}, "rigid with circuits"),
+        ({"motion_type": "double-crank"}, "double-crank of circuits"),
+        ({"circuits": ()}, "without a circuit"),
+    ):
+        with pytest.raises(checks.Broken, match=told):
+            checks.of_motion(dataclasses.replace(motion, **changes))
+    with pytest.raises(checks.Broken, match="in common"):
+        checks.circuits_are_distinct(dataclasses.replace(motion, circuits=motion.circuits[:1] * 2))
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "empty"),
+        ("f.toml: rssr.M: 3 is wrong.", "full stop"),
+        ("rssr.M: 3 is not a number", "without the file's name"),
+        ("f.toml: rssr.M: Input should be a valid number", "words for programmers"),
+        ("f.toml: \x1b[1m is not a number", "not printed"),
+        ("f.toml: " + "x" * 900, "characters in a message"),
+    ],
+)
+def test_a_message_that_helps_nobody_is_found(text: str, told: str) -> None:
+    with pytest.raises(checks.Broken, match=told):
+        messages.look_at(RequestError(text), "f.toml")
+
+
+def test_messages_of_one_kind_are_one_family() -> None:
+    errors = [
+        RequestError(f"f.toml: rssr.{key}: {value!r} is text; give a number without quotes")
+        for key, value in (("M", "7"), ("L1", "x y"))
+    ]
+    assert {messages.family(error, "f.toml") for error in errors} == {"~ is text"}
+
+
+# The watch
+
+
+def test_a_worker_that_dies_or_hangs_costs_its_case_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(ways.WAYS, "file", dataclasses.replace(ways.WAYS["file"], limit=1.5))
+    heard: list[tuple[ways.Job, Tally]] = []
+    run = watch.Watch(lambda job, tally, _: heard.append((job, tally)), threads=1)
+    monkeypatch.setattr(watch, "_work", _faulty_work)
+    run.over([ways.Job("file", 1, 0, 20)])
+    found = {finding.index: finding.what for _, tally in heard for finding in tally.findings}
+    assert found == {7: "died with 3", 12: "took longer than 1.5 s"}
+    # every case came back, and once
+    assert sum(tally.cases for _, tally in heard) == 20
+    assert sorted(k for job, _ in heard for k in range(job.first, job.last)) == list(range(20))
+    assert run.lost == 4
+
+
+def _faulty_work(jobs: object, slot: list[float]) -> None:
+    """A worker for which case 7 ends the process and case 12 never ends."""
+    while (job := jobs.recv()) is not None:  # type: ignore[attr-defined]
+        _, _, first, last = job
+        for index in range(first, last):
+            slot[1], slot[0] = index, time.monotonic()
+            if index == 7:
+                os._exit(3)
+            if index == 12:
+                time.sleep(60)
+        slot[1] = watch.NOTHING
+        jobs.send((Tally(cases=last - first).plain(), 1))  # type: ignore[attr-defined]
+
+
+def test_a_batch_that_takes_the_process_with_it_is_halved_until_one_case_is_left() -> None:
+    heard: list[tuple[ways.Job, Tally]] = []
+    run = watch.Watch(lambda job, tally, _: heard.append((job, tally)), threads=1)
+    blamed = [ways.Job("rssr batch", 1, 0, 64)]
+    while blamed:
+        job = blamed.pop()
+        if not job.first <= 41 < job.last:
+            continue
+        run._blame(job, -1, "died with -11")
+        blamed = list(run._jobs)
+        run._jobs.clear()
+    ((job, tally),) = heard
+    assert (job.first, tally.findings[0].index) == (41, 41)
+    assert sb.loads(tally.findings[0].content.partition("\n")[2]).kind == "RSSR"
+
+
+# A run and its page
+
+
+def test_a_run_that_was_stopped_goes_on_and_comes_to_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(summary, "JOURNALS", tmp_path)
+    monkeypatch.setattr(summary, "ROOT", tmp_path)
+    first = summary.Run(linkages=100, files=900, seed=3, threads=1)
+    assert sum(first.counts().values()) == 1000
+    first.go(lambda _: None)
+    lines = first.journal.read_text().splitlines()
+    # the journal of a run that was stopped in the middle of a line
+    first.journal.write_text("\n".join(lines[:2]) + "\n" + lines[2][:40])
+    again = summary.Run(linkages=100, files=900, seed=3, threads=1)
+    told: list[str | None] = []
+    again.go(told.append)
+    assert told[0] is not None
+    assert told[0].startswith("2 jobs are done already")
+    for way, tally in first.tallies.items():
+        assert again.tallies[way].cases == tally.cases == first.counts()[way]
+        assert again.tallies[way].seen == tally.seen
+
+
+def test_the_page_tells_what_the_summary_counts() -> None:
+    run = summary.Run(linkages=10, files=10, seed=3, threads=1)
+    for way, count in run.counts().items():
+        tally = Tally(cases=count, seen=Counter({"type rigid": count, "refused ~ is text": 2}))
+        tally.add(Finding(way, 1, f"{way} went wrong 3 times", "", ""))
+        run.take(ways.Job(way, 3, 0, count), json.loads(json.dumps(tally.plain())), 5_000_000, 60.0)
+    told = page.written(run.plain())
+    assert f"{len(run.counts())} minutes" in told
+    for way, count in run.counts().items():
+        assert f"| {way} | {count} | 1 |" in told
+    assert "| screw | screw went wrong times | 1 |" in told
+    assert "5 MB" in told
+    assert set(page.TOLD) == set(ways.WAYS)
+
+
+def test_a_finding_is_kept_and_judged_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(summary, "FINDINGS", tmp_path)
+    for way, content in (("file", "bytes:\xff\xfe = \x00"), ("rssr", written(rssrs.description(np.ones(6))))):
+        kept = summary.keep(vars(Finding(way, 4, "what", "", content)), 9)
+        found = Finding(
+            **{key: value for key, value in json.loads(kept.read_text()).items() if key != "seed"}
+        )
+        assert found.content == content
+        assert ways.again(found).findings == []
+
+
+def test_batches_that_contradict_the_motion_are_found() -> None:
+    linkage = sb.load("seven_r")
+    motions = batches.of_loops([linkage])
+    batches.loop_crossed(linkage, motions, 0)
+    for changes in ({"circuits": motions.circuits + 1}, {"types": np.array(["rigid"], object)}):
+        with pytest.raises(checks.Broken):
+            batches.loop_crossed(linkage, dataclasses.replace(motions, **changes), 0)
+
+
+def test_mutations_reach_every_stage_of_the_loader() -> None:
+    seen: Counter[str] = Counter()
+    for index in range(1, 1500):
+        files.judge(files.drawn(4, index), index, seen)
+    total = seen.total()
+    broken_toml = sum(n for word, n in seen.items() if "TOML" in word or "expected" in word)
+    assert 0.03 < seen["loaded"] / total < 0.6
+    assert 0.1 < broken_toml / total < 0.7
+    assert len(seen) > 40
