@@ -14,7 +14,7 @@ from accuracy.circumstances import ROOT
 from sevenbar import gallery
 
 #: What the results keep in all digits.
-WHOLE = ("input", "ours", "steps")
+WHOLE = ("input", "ours", "steps", "distances")
 
 
 def shortened(value: Any, key: str = "") -> Any:
@@ -78,6 +78,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             results = json.loads(given.page.read_text(encoding="utf-8"))
         except (OSError, json.JSONDecodeError) as error:
             parser.error(f"--page: {given.page}: {error}; give a results.json of this command")
+        if not isinstance(results, dict) or not {"made", "settings", "rows"} <= set(results):
+            parser.error(f"--page: {given.page}: no results; give a results.json of this command")
     else:
         # a part of the gallery, or few rows, is not for the page
         if folder is None and (given.quick or given.only):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,9 @@ Results = Mapping[str, Any]
 #: Colours of position, velocity, acceleration and jerk.
 COLOURS = dict(zip(QUANTITIES, ("#000000", "#0072B2", "#009E73", "#D55E00"), strict=True))
 
+#: Corners of lines with more than two decimals of a pixel, which nobody sees.
+FINE = re.compile(r"([ML]) (-?\d+\.\d\d)\d* (-?\d+\.\d\d)\d*")
+
 #: What stands for an error of exactly zero on an axis of powers of ten.
 LEAST = 1e-18
 
@@ -28,8 +33,19 @@ def _styled(axes: Axes) -> None:
     axes.set_axisbelow(True)
     # a file of half the size
     axes.minorticks_off()
+    for axis in (axes.xaxis, axes.yaxis):
+        if axis.get_scale() == "log":
+            axis.set_major_formatter(lambda value, _: f"{value:.0e}")
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
+
+
+def _joined(axes: Axes, curves: Sequence[tuple[Sequence[float], Sequence[float]]], **style: Any) -> None:
+    """Many curves (x, y) of one style as a single line with gaps, which makes a small file."""
+    gap = [np.nan]
+    x = np.concatenate([np.append(xs, gap) for xs, _ in curves] or [gap])
+    y = np.concatenate([np.append(ys, gap) for _, ys in curves] or [gap])
+    axes.plot(x, y, **style)
 
 
 def quantiles(results: Results) -> Figure:
@@ -42,14 +58,18 @@ def quantiles(results: Results) -> Figure:
         ("joints", "a point of a link"),
         strict=True,
     ):
-        for line, found in enumerate(rows.values()):
-            for place, quantity in enumerate(QUANTITIES):
-                errors = found["random"][what][quantity]["errors"]
-                low, high = (max(errors[share], LEAST) for share in ("median", "greatest"))
-                height = line + 0.17 * (place - 1.5)
-                colour = COLOURS[quantity]
-                axes.plot([low, high], [height, height], color=colour, linewidth=1.6, solid_capstyle="butt")
-                axes.plot([high], [height], ".", color=colour, markersize=4)
+        for place, quantity in enumerate(QUANTITIES):
+            errors = [found["random"][what][quantity]["errors"] for found in rows.values()]
+            low, high = ([max(error[share], LEAST) for error in errors] for share in ("median", "greatest"))
+            heights = np.arange(len(rows)) + 0.17 * (place - 1.5)
+            _joined(
+                axes,
+                [([a, b], [y, y]) for a, b, y in zip(low, high, heights, strict=True)],
+                color=COLOURS[quantity],
+                linewidth=1.6,
+                solid_capstyle="butt",
+            )
+            axes.plot(high, heights, ".", color=COLOURS[quantity], markersize=4)
         axes.set_xscale("log")
         axes.axvline(ROUNDING, color="#888888", linewidth=0.8, linestyle="--")
         axes.set_title(title, fontsize=9)
@@ -70,17 +90,28 @@ def dead_centres(results: Results) -> Figure:
     """Errors of the joints' rates over how far the dead centre is, and over their bound."""
     figure = Figure(figsize=(9.0, 3.9), layout="constrained")
     left, right = figure.subplots(1, 2)
-    for found in results["dead_centres"].values():
-        for driven in found["driven"]:
-            steps = driven["steps"]
-            apart = [step["apart"] for step in steps]
-            for order, quantity in enumerate(QUANTITIES):
-                style = {"color": COLOURS[quantity], "linewidth": 0.8, "alpha": 0.75}
-                if found["closed form"]:
-                    style |= {"linewidth": 2.2, "alpha": 1.0}
-                left.plot(apart, [max(step["errors"][order], LEAST) for step in steps], **style)
-                if order:
-                    right.plot(apart, [max(step["bounds"][order], 1e-6) for step in steps], **style)
+    for closed_form, style in (
+        (False, {"linewidth": 0.8, "alpha": 0.75}),
+        (True, {"linewidth": 2.2}),
+    ):
+        driven = [
+            one["steps"]
+            for found in results["dead_centres"].values()
+            if found["closed form"] == closed_form
+            for one in found["driven"]
+        ]
+        for order, quantity in enumerate(QUANTITIES):
+            for axes, measure, least in ((left, "errors", LEAST), (right, "bounds", 1e-6)):
+                # a bound is told for rates
+                if axes is left or order:
+                    curves = [
+                        (
+                            [step["apart"] for step in steps],
+                            [max(step[measure][order], least) for step in steps],
+                        )
+                        for steps in driven
+                    ]
+                    _joined(axes, curves, color=COLOURS[quantity], **style)
     for axes, label in (
         (left, "greatest error, in parts of its scale"),
         (right, "the same in parts of the bound"),
@@ -181,6 +212,8 @@ def write(results: Results, folder: Path) -> list[Path]:
     for name, draw in FIGURES.items():
         path = folder / f"accuracy_{name}.svg"
         with rc_context(STYLE):
-            draw(results).savefig(path, format="svg", metadata={"Date": None})
+            drawn = StringIO()
+            draw(results).savefig(drawn, format="svg", metadata={"Date": None})
+        path.write_text(FINE.sub(r"\1 \2 \3", drawn.getvalue()), encoding="utf-8")
         paths.append(path)
     return paths

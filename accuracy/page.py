@@ -64,8 +64,8 @@ def _head(results: Results) -> Iterator[str]:
         "numbers. `make accuracy` measures all of it and writes this page, its figures and "
         "`accuracy/results.json`; no number here was typed by hand."
     )
-    if not settings["whole gallery"] or settings["random"] < 100:
-        yield "**A part only:** made with `--only` or `--quick`."
+    if not settings["whole"]:
+        yield "**A part only:** of fewer linkages or rows than `make accuracy` takes."
     yield (
         f"Made {made['date']} from commit {made['commit']} on {made['machine']}, with Python "
         f"{made['python']}, {versions}; {settings['seconds']} s of processor time. Rows and points are "
@@ -191,21 +191,22 @@ def _verdict(rows: Mapping[str, Any]) -> str:
 
 
 def _dead_centres(results: Results) -> Iterator[str]:
-    found = results["dead_centres"]
+    found, (far, near) = results["dead_centres"], results["settings"]["distances"]
     yield "## Towards dead centres"
     yield (
         "At an input dead centre the input stands still, and the rates of all other joints grow without "
         "bound: order k goes with the distance to the power 1/2 - k. One rounding of the closure moves "
-        "the dead centre by about eps, so no method in double precision can keep more of a rate than"
+        "the dead centre by about eps, and with it such a rate by"
     )
-    yield "    relative error of order k  ~  (k - 1/2) eps / distance"
+    yield "    relative change of order k  ~  (k - 1/2) eps / distance,"
     yield (
-        "The `condition` of a row tells that distance: the RSSR's closed form has condition ~ 1 / "
+        "whatever the method that computes it in double precision. The `condition` "
+        "of a row tells that distance: the RSSR's closed form has condition ~ 1 / "
         "distance, a general loop condition ~ 1 / distance^(1/2). The *bound* below is therefore eps x "
         "condition for the former, eps x condition^2 for the latter, with eps = 2^-53. Every linkage is "
         "driven by its input and by its output (so that crank-rockers have dead centres), at distances "
-        "from 0.03 down to 1e-9, on both passes. From a condition of 1e13 (closed form) on, rates are NaN "
-        "with the status `dead-centre`."
+        f"from {number(far)} down to {number(near)}, on both passes. From a condition of 1e13 (closed "
+        "form) on, rates are NaN with the status `dead-centre`."
     )
     yield "![Errors over the distance of the dead centre](images/accuracy_dead_centres.svg)"
     rows = []
@@ -223,9 +224,7 @@ def _dead_centres(results: Results) -> Iterator[str]:
                 ]
             )
     if rows:
-        yield (
-            "The joints at the nearest distance, 1e-9, and the greatest part of the bound over all distances:"
-        )
+        yield "The joints at the nearest distance, and the greatest part of the bound over all distances:"
         yield table(
             [
                 "linkage, driven by",

@@ -26,6 +26,7 @@ from accuracy import (
 from accuracy.forty_digits import joint_errors, reference
 from accuracy.quantiles import QUANTITIES, ROUNDING, Row, quantiles, summary
 from accuracy.series import Series, acos, asin, atan2, cos_sin, sqrt
+from sevenbar import gallery
 
 ROOT = Path(__file__).parent.parent
 
@@ -269,10 +270,32 @@ def test_figures_are_small_and_the_same_each_time(small: dict, tmp_path: Path) -
     assert all(b"<svg" in image and len(image) < 100_000 for image in first.values())
 
 
-def test_a_part_of_the_gallery_leaves_the_kept_page_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        command.main(["--only", "benett"])
-    assert "no linkage 'benett' in the gallery; give one of bennett, " in capsys.readouterr().err
-    with pytest.raises(SystemExit):
-        command.main(["--processes", "0"])
-    assert "give 1 or more" in capsys.readouterr().err
+def test_wrong_words_are_told_what_is_allowed(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    (tmp_path / "list.json").write_text("[]", encoding="utf-8")
+    for arguments, said in (
+        (["--only", "benett"], "no linkage 'benett' in the gallery; give one of bennett, "),
+        (["--processes", "0"], "--processes: 0 is no number of processes; give 1 or more"),
+        (["--page", str(tmp_path / "none.json")], "No such file or directory"),
+        (["--page", str(tmp_path / "list.json")], "no results; give a results.json of this command"),
+    ):
+        with pytest.raises(SystemExit):
+            command.main(arguments)
+        assert said in capsys.readouterr().err
+
+
+def test_the_page_of_kept_results_goes_where_it_is_asked_for(small: dict, tmp_path: Path) -> None:
+    kept = tmp_path / "kept.json"
+    kept.write_text(command.as_json(small), encoding="utf-8")
+    assert command.main(["--page", str(kept), "--out", str(tmp_path / "out")]) == 0
+    assert (tmp_path / "out" / "accuracy.md").read_text(encoding="utf-8") == page.text(small)
+    assert json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8")) == small
+
+
+def test_the_kept_page_is_the_one_that_the_kept_results_give() -> None:
+    kept = ROOT / "accuracy" / "results.json"
+    results = json.loads(kept.read_text(encoding="utf-8"))
+    assert kept.stat().st_size < 200_000
+    assert sorted(results["rows"]) == sorted(gallery.names())
+    assert (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8") == page.text(results)
+    for name in figures.FIGURES:
+        assert (ROOT / "docs" / "images" / f"accuracy_{name}.svg").stat().st_size < 100_000
