@@ -344,9 +344,9 @@ def _simulators(results: Results) -> Iterator[str]:
         if not runs:
             continue
         done = {name: run for name, run in runs.items() if "output" in run}
-        missing = {name: run["missing"] for name, run in runs.items() if "missing" in run}
-        for name, said in missing.items():
-            yield f"{engine}, {name}: {said}."
+        for said in dict.fromkeys(run["missing"] for run in runs.values() if "missing" in run):
+            names = ", ".join(name for name, run in runs.items() if run.get("missing") == said)
+            yield f"Without {engine} of {names}: {said}."
         if not done:
             continue
         first = next(iter(done.values()))

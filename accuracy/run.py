@@ -22,7 +22,7 @@ from accuracy.circumstances import circumstances
 from accuracy.dead_centres import DISTANCES
 from accuracy.gallery_rows import SEED, Amount
 from sevenbar import gallery
-from sevenbar.errors import MissingExtraError, SevenbarError
+from sevenbar.errors import SevenbarError
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Budget:
     extremes: int
 
 
-#: Some ten minutes of processor time, and some one.
+#: Some eight minutes of processor time, and one.
 FULL = Budget(Amount(random=200, worst=20, grid=360), 500, 3600, 4, DISTANCES, 100)
 QUICK = Budget(Amount(random=8, worst=2, grid=180), 30, 360, 1, DISTANCES[::5], 1)
 
@@ -69,7 +69,7 @@ def done(task: Task, budget: Budget) -> dict[str, object]:
     if task.section in simulators.ENGINES:
         try:
             return simulators.measured(name, task.section, budget.steps)
-        except (MissingExtraError, SevenbarError) as error:
+        except SevenbarError as error:
             return {"engine": task.section, "missing": str(error)}
     work: dict[str, Callable[[], dict[str, object]]] = {
         "rows": lambda: gallery_rows.measured(name, budget.rows),

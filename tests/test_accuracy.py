@@ -262,6 +262,13 @@ def test_the_page_says_what_misses_and_what_keeps_the_digits_asked_for(small: di
     assert "**Missed** by planar_4r (velocity of points: 2.0e-10)" in text
 
 
+def test_an_engine_that_is_missing_is_told_once(small: dict) -> None:
+    run_of_none = {"engine": "exudyn", "missing": "needs exudyn"}
+    text = page.text(small | {"exudyn": {"planar_4r": run_of_none, "rssr": run_of_none}})
+    assert text.count("needs exudyn") == 1
+    assert "Without exudyn of planar_4r, rssr: needs exudyn." in text
+
+
 def test_figures_are_small_and_the_same_each_time(small: dict, tmp_path: Path) -> None:
     first = {path.name: path.read_bytes() for path in figures.write(small, tmp_path / "one")}
     again = {path.name: path.read_bytes() for path in figures.write(small, tmp_path / "two")}
