@@ -101,10 +101,13 @@ bench: $(VENV)/.installed  ## Time the closed form, the general loop and their b
 	$(BIN)/python -m pip install --quiet "scipy>=1.13" "clarabel>=0.9"
 	$(BIN)/python benches/rssr_output.py
 	$(BIN)/python benches/seven_r.py
-	$(BIN)/python benches/finite_differences.py
 	$(BIN)/python benches/sweep.py
 	$(BIN)/python benches/sweep_loops.py
 	$(BIN)/python benches/least_acceleration.py
+
+.PHONY: accuracy
+accuracy: $(VENV)/.installed-dev  ## Measure how exact every linkage of the gallery is; writes docs/accuracy.md
+	$(BIN)/python -m accuracy
 
 .PHONY: docs
 docs: $(VENV)/.installed-docs  ## The documentation site, into build/site; a warning fails it
@@ -123,7 +126,7 @@ fuzz: $(VENV)/.installed-dev  ## Hard use: LINKAGES, FILES, THREADS, SEED; write
 clean:  ## Remove all that these commands made, the environment too
 	rm -rf $(VENV) target build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	rm -f python/sevenbar/_core*.so
-	find python tests benches examples -name __pycache__ -prune -exec rm -rf {} +
+	find python tests benches accuracy examples -name __pycache__ -prune -exec rm -rf {} +
 
 # The environment: each stamp stands for a step that is done and need not be done again.
 

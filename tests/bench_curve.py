@@ -1,6 +1,6 @@
 """The curve of examples/rssr_bench.csv: what a bench would measure on an RSSR whose dimensions are a little off.
 
-Source: the closure alone, by `reference_rssr`; noise of a known deviation from a fixed seed. `python tests/bench_curve.py`
+Source: the closure alone, by `reference_rssr`; noise of a known deviation from a fixed seed. `PYTHONPATH=. python tests/bench_curve.py`
 prints the file.
 """
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import sevenbar as sb
-from reference_rssr import Rssr, Side
+from accuracy.reference_rssr import Rssr, Side
 
 
 @dataclass(frozen=True)

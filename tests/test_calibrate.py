@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.stats import binom, t
 
-import reference_rssr
 import sevenbar as sb
+from accuracy import reference_rssr
+from accuracy.reference_loops import Loop
 from random_linkages import Dimensions
 from random_loops import general
-from reference_loops import Loop
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError
 from sevenbar.gallery import text
 from sevenbar.measuring.calibrate import calibrate

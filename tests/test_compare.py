@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-import reference_rssr
 import sevenbar as sb
+from accuracy import reference_rssr
 from random_linkages import Dimensions
 from sevenbar.errors import RequestError
 from sevenbar.measuring.compare import compare, ends_of

@@ -162,7 +162,7 @@ def test_the_tables_on_the_seven_r_are_those_of_today():
     page = (ROOT / "docs" / "seven_r.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     printed = ""
-    for command in (["-c", code], ["benches/finite_differences.py"]):
+    for command in (["-c", code], ["-m", "accuracy.finite_differences"]):
         run = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=True)
         printed += run.stdout
     rows = [line for line in printed.splitlines() if line.startswith("| ")]

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from accuracy.reference_loops import Loop
 from random_linkages import Dimensions, mixed
 from random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
-from reference_loops import Loop
 from sevenbar.errors import RequestError
 from sevenbar.gallery import names
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from accuracy.reference_loops import ISOLATED, Found, Loop, closed_poses, doubles, missed, nearest, searched
 from random_loops import (
     OVERCONSTRAINED,
     SPECIAL,
@@ -28,7 +29,6 @@ from random_loops import (
     screws,
     step,
 )
-from reference_loops import ISOLATED, Found, Loop, closed_poses, doubles, missed, nearest, searched
 
 REFERENCES = Path(__file__).parent / "references"
 

@@ -22,8 +22,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from accuracy.reference_rssr import DIGITS, PreciseRssr
 from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew
-from reference_rssr import DIGITS, PreciseRssr
 
 ROUNDING = 2.0**-53
 

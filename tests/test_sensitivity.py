@@ -7,13 +7,12 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-import precise_loops
-import reference_rssr
 import sevenbar as sb
-from precise_loops import PreciseLoop
+from accuracy import precise_loops, reference_rssr
+from accuracy.precise_loops import PreciseLoop
+from accuracy.reference_loops import Loop
 from random_linkages import Dimensions
 from random_loops import general, prismatic
-from reference_loops import Loop
 from sevenbar.errors import NotCoveredError
 from sevenbar.measuring.sensitivity import RowsClosure, closure_of, followed, response
 

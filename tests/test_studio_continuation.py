@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from reference_loops import Loop
+from accuracy.reference_loops import Loop
 from sevenbar.draft import Dimension, Draft
 from sevenbar.errors import SevenbarError
 from sevenbar.gallery import text

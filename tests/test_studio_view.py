@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from reference_loops import Loop
+from accuracy.reference_loops import Loop
 from sevenbar.errors import RequestError
 from sevenbar.gallery import names, text
 from sevenbar.skeleton import places_of

@@ -7,8 +7,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-import reference_rssr
 import sevenbar as sb
+from accuracy import reference_rssr
 from random_linkages import Dimensions
 from random_loops import general, prismatic
 from sevenbar.design.tolerance.numbers import Numbered

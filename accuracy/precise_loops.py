@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 import mpmath as mp
 import numpy as np
 
-from differences import central_differences
-from reference_loops import Loop
+from accuracy.differences import central_differences
+from accuracy.reference_loops import Loop
 
 #: Digits carried, and the step of the central differences.
 DIGITS = 60

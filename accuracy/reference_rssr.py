@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import mpmath as mp
 import numpy as np
 
-from differences import central_differences
+from accuracy.differences import central_differences
 
 #: Digits carried, and the step of the central differences.
 DIGITS = 80
