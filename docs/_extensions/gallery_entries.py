@@ -49,7 +49,9 @@ def _section(name: str, motion: sb.Motion, pages: Path) -> str:
     text = gallery.text(name)
     remarks = re.match(r"(?:#.*\n)*", text)[0]
     told = " ".join(line.lstrip("# ") for line in remarks.splitlines())
-    facts = [(fact, told) for fact, told in summary.facts_of(motion) if fact not in LEFT_OUT]
+    facts = [
+        (fact, told.replace("  ", ", ")) for fact, told in summary.facts_of(motion) if fact not in LEFT_OUT
+    ]
     rows = [*facts, ("mobility", str(motion.mobility)), ("modes", _modes(motion, drawn))]
     parts = (
         f"({name})=",
