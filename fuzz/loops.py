@@ -119,9 +119,9 @@ PATTERNS = ("RRRRRRR", "RCCC", "RSCR", "RSSP", "RRSRR", "RUURR", "PRRRRRR", "RRR
 
 
 def of_pattern(rng: np.random.Generator, kinds: str) -> Description:
-    """Joints of these kinds anywhere, one in four of them placed roundly."""
+    """Joints of these kinds anywhere, one in twenty placed roundly: these are dear."""
     joints = [random_loops.place(rng, kind) for kind in kinds]
-    if rng.random() < 0.25:
+    if rng.random() < 0.05:
         joints = [_tidied(rng, joint) for joint in joints]
     for joint in joints:
         joint |= {

@@ -33,15 +33,9 @@ START = 60.0
 #: What is at hand between two cases.
 NOTHING = -2.0
 
-#: Workers are niced by so much, so that a desk stays usable.
-NICE = 10
-
 
 def _work(jobs: Connection, slot: Any) -> None:
     """The life of a worker: jobs come, tallies go."""
-    import os
-
-    os.nice(NICE)
 
     def mark(index: int | None) -> None:
         # the case before the time: a case without its own time is an older one, and has a longer life

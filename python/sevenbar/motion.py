@@ -23,7 +23,7 @@ Integers = npt.NDArray[np.int64]
 Words = npt.NDArray[np.str_]
 
 #: What a row can hold, by the core's number: all; the pose but no rates (two reasons); nothing; all but the
-#: balls' turns.
+#: balls' turns, which a row with the pose but no rates may lack, too.
 STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
 
 #: The status of a row of a trace on the coupler where the spin's rule names no direction.
