@@ -71,15 +71,12 @@ format: $(VENV)/.installed-dev  ## Write the formatting and the safe repairs int
 wheel: $(VENV)/.maturin  ## Build dist/*.whl
 	$(BIN)/maturin build --release $(LOCKED) --out "$(DIST)"
 
+# the wheel in an environment of its own, so that no peer changes the one for work, and that sizes are those of an installation
 .PHONY: bench
-bench: $(VENV)/.installed  ## Time the closed form, the general loop and their batches against their peers
-	$(BIN)/python -m pip install --quiet "scipy>=1.13" "clarabel>=0.9"
-	$(BIN)/python benches/rssr_output.py
-	$(BIN)/python benches/seven_r.py
-	$(BIN)/python benches/finite_differences.py
-	$(BIN)/python benches/sweep.py
-	$(BIN)/python benches/sweep_loops.py
-	$(BIN)/python benches/least_acceleration.py
+bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmarks.md
+	$(PYTHON) -m venv --clear build/bench
+	build/bench/bin/pip install "$$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)[studio]"
+	build/bench/bin/python -m benches --install
 
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too
