@@ -96,18 +96,21 @@ oldest: wheel  ## The fast tests with the oldest versions of all dependencies th
 	  hypothesis mpmath playwright pytest pytest-xdist
 	$(VENV)-oldest/bin/pytest -n auto --dist worksteal -m "not slow and not proof" -o filterwarnings= \
 	  --deselect tests/test_layers.py
+
+# the wheel in an environment of its own, so that no peer changes the one for work, and that sizes are those of an installation
 .PHONY: bench
-bench: $(VENV)/.installed  ## Time the closed form, the general loop and their batches against their peers
-	$(BIN)/python -m pip install --quiet "scipy>=1.13" "clarabel>=0.9"
-	$(BIN)/python benches/rssr_output.py
-	$(BIN)/python benches/seven_r.py
-	$(BIN)/python benches/sweep.py
-	$(BIN)/python benches/sweep_loops.py
-	$(BIN)/python benches/least_acceleration.py
+bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmarks.md
+	$(PYTHON) -m venv --clear build/bench
+	build/bench/bin/pip install "$$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)[studio]"
+	build/bench/bin/python -m benches --install
 
 .PHONY: accuracy
 accuracy: $(VENV)/.installed-dev  ## Measure how exact every linkage of the gallery is; writes docs/accuracy.md
 	$(BIN)/python -m accuracy
+
+.PHONY: tutorial
+tutorial: $(VENV)/.installed-dev  ## Write the tutorial's outputs and pictures anew
+	$(BIN)/python tests/tutorial_pages.py
 
 .PHONY: docs
 docs: $(VENV)/.installed-docs  ## The documentation site, into build/site; a warning fails it
