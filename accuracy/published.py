@@ -114,7 +114,9 @@ def sixteen_modes() -> dict[str, object]:
     kept = _read("seven_r_sixteen_modes.json")
     loop, printed = kept["loop"], kept["modes_deg"]
     assert isinstance(loop, dict)
-    linkage = sb.from_dh("RRRRRRR", loop["length"], np.radians(loop["twist_deg"]), loop["offset"])
+    linkage = sb.from_dh(
+        "RRRRRRR", length=loop["length"], twist=np.radians(loop["twist_deg"]), offset=loop["offset"]
+    )
     modes = linkage.assembly_modes(math.radians(loop["theta1_deg"]))
     off = np.degrees(modes.q)[:, None, :] - np.array(printed)[None, :, :]
     apart = np.abs((off + 180) % 360 - 180).max(axis=2)

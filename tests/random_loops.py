@@ -38,7 +38,9 @@ class Rows:
 
     def linkage(self, **options: Any) -> sb.Linkage:
         angle = self.angle if "P" in self.kinds else None
-        return sb.from_dh(self.kinds, self.length, self.twist, self.offset, angle, **options)
+        return sb.from_dh(
+            self.kinds, length=self.length, twist=self.twist, offset=self.offset, angle=angle, **options
+        )
 
     def begun_at(self, joint: int) -> Rows:
         """The same loop with another first joint, counted from 0."""

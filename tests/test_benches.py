@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 import pytest
+
 from benches import page, peers
 from benches.cases import CASES, case
 from benches.cases.arm import Arm, normal_form

@@ -132,7 +132,7 @@ def seven_r(seed):
     }
     length, twist, offset = rows.length.copy(), rows.twist.copy(), rows.offset.copy()
     length[1], twist[3], offset[4] = truth.values()
-    real = Loop.of(sb.from_dh("RRRRRRR", length, twist, offset))
+    real = Loop.of(sb.from_dh("RRRRRRR", length=length, twist=twist, offset=offset))
     poses = real.polished(circuit.q[keep], 0, steps=12)
     assert real.errors(poses).max() < 1e-12
     return linkage, truth, poses[:, 0], poses[:, 6], circuit

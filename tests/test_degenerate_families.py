@@ -140,7 +140,7 @@ def bennett_off(what: str) -> Callable[[float], sb.Linkage]:
     def linkage(off: float) -> sb.Linkage:
         length, twist, offset = [1.0, 2.0, 1.0, 2.0], [*BENNETT, *BENNETT], [0.0] * 4
         {"length": length, "twist": twist, "offset": offset}[what][1] += off
-        return sb.from_dh("RRRR", length, twist, offset)
+        return sb.from_dh("RRRR", length=length, twist=twist, offset=offset)
 
     return linkage
 

@@ -76,7 +76,9 @@ def position(linkage, q, link, at):
 
 
 def from_reference(loop):
-    return sb.from_dh("RRRRRRR", loop["length"], np.radians(loop["twist_deg"]), loop["offset"])
+    return sb.from_dh(
+        "RRRRRRR", length=loop["length"], twist=np.radians(loop["twist_deg"]), offset=loop["offset"]
+    )
 
 
 def test_the_paper_s_loop_closes_at_each_of_its_modes():
@@ -162,7 +164,7 @@ def test_square_twists_are_square_to_the_last_digit():
     linkage = sb.loads("format = 1\n[[link]]\ntwist = 90\n[[link]]\ntwist = 180\n[[link]]\ntwist = -270\n")
     transforms = np.concatenate([linkage.links, [linkage.base]])
     assert set(np.unique(transforms)) <= {-1.0, 0.0, 1.0}
-    tiny = sb.from_dh("RR", [1, 1], [1e-20, 0], [0, 0])
+    tiny = sb.from_dh("RR", length=[1, 1], twist=[1e-20, 0], offset=[0, 0])
     assert tiny.links[0, 2, 1] == 1e-20
 
 
@@ -190,7 +192,13 @@ def test_a_file_in_radians_is_read_as_such():
 
 def test_rows_of_slides_and_screws_name_what_is_fixed():
     linkage = sb.from_dh(
-        "RPH", [1, 2, 3], [0, 1, 0], [4, 0, 5], [0, np.pi / 6, 0], [0, 0, 7], names=["a", "b", "c"]
+        "RPH",
+        length=[1, 2, 3],
+        twist=[0, 1, 0],
+        offset=[4, 0, 5],
+        angle=[0, np.pi / 6, 0],
+        pitch=[0, 0, 7],
+        names=["a", "b", "c"],
     )
     assert linkage.columns == ("a", "b", "c")
     assert linkage.joints[2].pitch == 7.0

@@ -159,7 +159,9 @@ def test_two_links_between_balls_spin_together_and_are_refused_by_name() -> None
 def test_the_sixteen_modes_of_liu_and_zhu_are_all_there() -> None:
     reference = json.loads((REFERENCES / "seven_r_sixteen_modes.json").read_text(encoding="utf-8"))
     loop = reference["loop"]
-    linkage = sb.from_dh("RRRRRRR", loop["length"], np.radians(loop["twist_deg"]), loop["offset"])
+    linkage = sb.from_dh(
+        "RRRRRRR", length=loop["length"], twist=np.radians(loop["twist_deg"]), offset=loop["offset"]
+    )
     modes = linkage.assembly_modes(np.radians(loop["theta1_deg"]))
     assert len(modes) == 16
     assert Loop.of(linkage).errors(modes.q).max() < 1e-12

@@ -74,7 +74,10 @@ def test_the_reference_agrees_with_derivatives_worked_out_elsewhere() -> None:
     path = Path(__file__).parent / "references" / "seven_r_modes.json"
     reference = json.loads(path.read_text(encoding="utf-8"))
     linkage = sb.from_dh(
-        "RRRRRRR", reference["length"], np.radians(reference["twist_deg"]), reference["offset"]
+        "RRRRRRR",
+        length=reference["length"],
+        twist=np.radians(reference["twist_deg"]),
+        offset=reference["offset"],
     )
     precise = PreciseLoop(Loop.of(linkage))
     point = precise.point(4, (-100.0, -90.0, -80.0))

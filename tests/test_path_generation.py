@@ -168,7 +168,7 @@ def test_a_straight_line_is_made_no_worse_than_hoeckens_linkage_makes_it():
     ends = curve[0][[0, -1]]
     wanted = np.column_stack([np.linspace(*ends, 15), np.full(15, line), np.zeros(15)])
     draft = Draft.of_linkage(
-        sb.from_dh("RRRR", [42.0, 96.0, 104.0, 83.0], [0.0] * 4, [0.0] * 4, length_unit="mm")
+        sb.from_dh("RRRR", length=[42.0, 96.0, 104.0, 83.0], twist=[0.0] * 4, offset=[0.0] * 4)
     )
     found = path_generation(
         draft, wanted, (2, (0.0, 97.0, 4.0)), vary=["length_*", "P.v", "P.w"], place=True, count=1, starts=0

@@ -133,7 +133,8 @@ def test_a_changed_dimension_is_followed_to_a_closed_pose():
     there = followed(closure, moved, x, u)
     rows = {d.name: v for d, v in zip(closure.dimensions, moved, strict=True)}
     other = sb.from_dh(
-        "RRRRRRR", *([rows[f"{word}_{i}"] for i in range(1, 8)] for word in ("length", "twist", "offset"))
+        "RRRRRRR",
+        **{word: [rows[f"{word}_{i}"] for i in range(1, 8)] for word in ("length", "twist", "offset")},
     )
     joints = np.column_stack([x, there])
     assert Loop.of(other).errors(joints).max() < 1e-12

@@ -29,7 +29,12 @@ RELATIVE = 1e-9
 
 @pytest.fixture(scope="module")
 def linkage() -> sb.Linkage:
-    return sb.from_dh("RRRRRRR", REFERENCE["length"], np.radians(REFERENCE["twist_deg"]), REFERENCE["offset"])
+    return sb.from_dh(
+        "RRRRRRR",
+        length=REFERENCE["length"],
+        twist=np.radians(REFERENCE["twist_deg"]),
+        offset=REFERENCE["offset"],
+    )
 
 
 @pytest.fixture(scope="module")

@@ -42,7 +42,9 @@ def sixteen() -> Problem:
     """The loop with sixteen real modes, all of them known: Liu and Zhu's arm closed by a seventh link."""
     raw = json.loads((ROOT / "tests/references/seven_r_sixteen_modes.json").read_text(encoding="utf-8"))
     loop = raw["loop"]
-    linkage = sb.from_dh("RRRRRRR", loop["length"], np.radians(loop["twist_deg"]), loop["offset"])
+    linkage = sb.from_dh(
+        "RRRRRRR", length=loop["length"], twist=np.radians(loop["twist_deg"]), offset=loop["offset"]
+    )
     return Problem(linkage, float(np.radians(loop["theta1_deg"])), np.radians(raw["modes_deg"]))
 
 

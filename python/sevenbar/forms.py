@@ -101,12 +101,12 @@ def from_axes(
 
 def from_dh(
     joints: str,
+    *,
     length: Sequence[float],
     twist: Sequence[float],
     offset: Sequence[float | None],
     angle: Sequence[float | None] | None = None,
     pitch: Sequence[float | None] | None = None,
-    *,
     names: Sequence[str] | None = None,
     name: str = "linkage",
     length_unit: str = "mm",
@@ -124,7 +124,8 @@ def from_dh(
     axis, u along that axis, v along the link, w = u x v. Raises `DescriptionError` with all that is wrong.
 
         >>> import sevenbar as sb
-        >>> bennett = sb.from_dh("RRRR", [1, 2, 1, 2], [0.3, 0.6320397, 0.3, 0.6320397], [0, 0, 0, 0])
+        >>> twists = [0.3, 0.6320397, 0.3, 0.6320397]
+        >>> bennett = sb.from_dh("RRRR", length=[1, 2, 1, 2], twist=twists, offset=[0, 0, 0, 0])
         >>> bennett.columns
         ('theta_1', 'theta_2', 'theta_3', 'theta_4')
 

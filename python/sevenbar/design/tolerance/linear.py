@@ -12,7 +12,7 @@ Source: docs/theory_design.md, (7).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -48,14 +48,14 @@ class Linear:
     and `deviation` (n,) in the output's unit. `status` (all rows,) says why others are left out.
     """
 
-    found: Sensitivities
-    tolerances: Tolerances
+    found: Sensitivities = field(repr=False)
+    tolerances: Tolerances = field(repr=False)
     distribution: str
     output: str
     quantity: str
-    status: Words
-    rows: Integers
-    slopes: Floats
+    status: Words = field(repr=False)
+    rows: Integers = field(repr=False)
+    slopes: Floats = field(repr=False)
 
     @property
     def unit(self) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,8 +22,8 @@ class WorstCase:
     """
 
     linear: Linear
-    high: Floats
-    low: Floats
+    high: Floats = field(repr=False)
+    low: Floats = field(repr=False)
 
     @property
     def at(self) -> int:
