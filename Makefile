@@ -71,12 +71,13 @@ format: $(VENV)/.installed-dev  ## Write the formatting and the safe repairs int
 wheel: $(VENV)/.maturin  ## Build dist/*.whl
 	$(BIN)/maturin build --release $(LOCKED) --out "$(DIST)"
 
-# the wheel in an environment of its own, so that no peer changes the one for work, and that sizes are those of an installation
+# the wheel in an environment of its own, so that no peer changes the one for work and sizes are an installation's;
+# a quick look: make bench BENCH=--quick
 .PHONY: bench
 bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmarks.md
 	$(PYTHON) -m venv --clear build/bench
 	build/bench/bin/pip install "$$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)[studio]"
-	build/bench/bin/python -m benches --install
+	build/bench/bin/python -m benches --install $(BENCH)
 
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too
