@@ -97,12 +97,13 @@ oldest: wheel  ## The fast tests with the oldest versions of all dependencies th
 	$(VENV)-oldest/bin/pytest -n auto --dist worksteal -m "not slow and not proof" -o filterwarnings= \
 	  --deselect tests/test_layers.py
 
-# the wheel in an environment of its own, so that no peer changes the one for work, and that sizes are those of an installation
+# the wheel in an environment of its own, so that no peer changes the one for work and sizes are an installation's;
+# a quick look: make bench BENCH=--quick
 .PHONY: bench
 bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmarks.md
 	$(PYTHON) -m venv --clear build/bench
 	build/bench/bin/pip install "$$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)[studio]"
-	build/bench/bin/python -m benches --install
+	build/bench/bin/python -m benches --install $(BENCH)
 
 .PHONY: accuracy
 accuracy: $(VENV)/.installed-dev  ## Measure how exact every linkage of the gallery is; writes docs/accuracy.md

@@ -24,8 +24,10 @@ from benches.setting import Setting
 
 RESULTS = ROOT / "benches" / "results.json"
 
-#: Libraries that would start threads of their own have one.
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+#: Libraries that would start threads of their own have one; nothing comes from what an earlier run derived.
+ALIKE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1") | {
+    "SSIK_DERIVATION_CACHE": "off"
+}
 
 #: Longest time [s] of one case; more, and it hangs.
 LONGEST_CASE = 900.0
@@ -87,7 +89,7 @@ def in_a_process(name: str, peers: list[Peer], *, quick: bool) -> Outcome:
                 stdout=subprocess.DEVNULL,
                 text=True,
                 cwd=ROOT,
-                env=os.environ | ONE_THREAD,
+                env=os.environ | ALIKE,
                 timeout=LONGEST_CASE,
             )
         except subprocess.TimeoutExpired:

@@ -55,7 +55,7 @@ def _made(made: dict[str, str]) -> Iterator[str]:
 
 def _peers(peers: list[dict[str, str]]) -> Iterator[str]:
     yield "## The peers\n"
-    yield "| package | version | |"
+    yield "| package | version | note |"
     yield "|---|---|---|"
     for peer in peers:
         yield f"| {peer['name']} | {peer['version'] or '–'} | {_plain(peer['reason'])} |"

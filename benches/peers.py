@@ -64,10 +64,6 @@ class Peers:
             raise AbsentError(peer.reason)
         return importlib.import_module(f"{peer.module}.{part}" if part else peer.module)
 
-    def has(self, name: str) -> bool:
-        """Whether a peer can be used."""
-        return not self.found[name].reason
-
 
 def requirements() -> dict[str, str]:
     """The extra `peers` of pyproject.toml: requirement by the name of its distribution."""

@@ -63,6 +63,7 @@ def types(dimensions: np.ndarray, setting: Setting) -> Table:
     absent = []
     try:
         compiled = setting.peers.module("numba").njit(fastmath=False)(looped_types)
+        compiled(np.ones((6, 1)))
         works.append(Work("numba", lambda: compiled(some), some.shape[1], f"{INPUTS} inputs", agrees))
     except AbsentError as error:
         absent = [("numba", str(error))]
