@@ -1,5 +1,6 @@
 """What the site's own extensions do with pages; `make docs` builds the site itself, warnings as errors."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -40,8 +41,6 @@ def test_links_that_a_reader_may_click_and_files_beside_the_page_are_no_requests
 
 
 def test_every_page_is_reached_from_the_first_one():
-    import re
-
     reached = set()
     for page in ("index", "api/index"):
         text = (DOCS / f"{page}.md").read_text(encoding="utf-8")
@@ -50,3 +49,39 @@ def test_every_page_is_reached_from_the_first_one():
             reached |= {(folder / line).as_posix() for line in block.split() if not line.startswith(":")}
     pages = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
     assert pages - {"index"} <= reached
+
+
+def test_links_out_of_the_pages_lead_to_what_the_site_has():
+    from beyond_docs import mended
+
+    for docname, link, led in (
+        ("rssr", "[a file](../examples/rssr.toml)", "[a file](../examples/rssr.toml)"),
+        ("rssr", "[the front](../README.md#two-commands)", "[the front](/index.md#two-commands)"),
+        ("rssr", "[a study](../examples/study.ipynb)", "{doc}`a study </examples/study>`"),
+        ("zh/index", "[a study](../../examples/study.ipynb)", "{doc}`a study </examples/study>`"),
+        ("rssr", "[the tests](../tests)", "the tests"),
+        ("rssr", "[a page](theory.md#rates)", "[a page](theory.md#rates)"),
+        ("zh/index", "[a page](../rssr.md#rates)", "[a page](../rssr.md#rates)"),
+        ("examples/study", "[a page](../docs/rssr.md#rates)", "[a page](/rssr.md#rates)"),
+    ):
+        assert mended(f"See {link}.", docname, DOCS.parent) == f"See {led}."
+
+
+def test_primes_stand_beside_their_letter_and_powers_above_it():
+    from primes import with_full_primes
+
+    prime = '<mo form="postfix" lspace="0" rspace="0">′</mo>'
+    for given, mended in (
+        ("<msup><mi>b</mi><mo>′</mo></msup>", f"<mrow><mi>b</mi>{prime}</mrow>"),
+        (
+            "<msup><mi>b</mi><mrow><mo>′</mo><mn>2</mn></mrow></msup>",
+            f"<msup><mrow><mi>b</mi>{prime}</mrow><mn>2</mn></msup>",
+        ),
+        (
+            "<msubsup><mi>b</mi><mi>i</mi><mo>′</mo></msubsup>",
+            f"<mrow><msub><mi>b</mi><mi>i</mi></msub>{prime}</mrow>",
+        ),
+        ("<msup><mi>b</mi><mn>2</mn></msup>", "<msup><mi>b</mi><mn>2</mn></msup>"),
+        ("<msup><mi>A</mi><mo>+</mo></msup>", "<msup><mi>A</mi><mo>+</mo></msup>"),
+    ):
+        assert with_full_primes(f"<math>{given}</math>") == f"<math>{mended}</math>"

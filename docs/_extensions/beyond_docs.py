@@ -1,32 +1,39 @@
 """Links out of docs/ that have a page on the site: pages are written so that they also work on a forge."""
 
 import re
+from pathlib import Path
 
 from sphinx.application import Sphinx
 
-#: What lies beside docs/ and the page that shows it.
-PAGES = {
-    "../README.md": "index.md",
-    "../CHANGELOG.md": "changelog.md",
-    "../CONTRIBUTING.md": "contributing.md",
-}
+#: Files at the root and the pages that show them.
+PAGES = {"README.md": "/index.md", "CHANGELOG.md": "/changelog.md", "CONTRIBUTING.md": "/contributing.md"}
 
-_LINK = re.compile(r"\]\((\.\./[^)#]+)(#[^)]*)?\)")
-
-#: Notebooks have their pages through the link docs/examples, which only a reference by name passes.
-_NOTEBOOK = re.compile(r"\[([^\]`]+)\]\(\.\./(examples/[^)#]+)\.ipynb\)")
+_LINK = re.compile(r"\[([^\]]+)\]\(((?:\.\./)+)([^)#]+)(#[^)]*)?\)")
 
 
-def mended(page: str) -> str:
-    """A page with its links led to the site's own pages."""
-    page = _NOTEBOOK.sub(r"{doc}`\1 </\2>`", page)
-    return _LINK.sub(lambda link: f"]({PAGES.get(link[1], link[1])}{link[2] or ''})", page)
+def mended(page: str, docname: str, root: Path) -> str:
+    """A page with its links led to the site's own pages; `root` is the folder that docs/ is in."""
+    if docname.startswith("examples/"):
+        # a notebook, which stands beside docs/ and is read through the link docs/examples
+        return page.replace("](../docs/", "](/")
+
+    def led(link: re.Match[str]) -> str:
+        text, way, target, anchor = link[1], link[2], link[3], link[4] or ""
+        if way.count("../") != docname.count("/") + 1:
+            return link[0]
+        if target.startswith("examples/") and target.endswith(".ipynb"):
+            # only a reference by name passes the link docs/examples
+            return f"{{doc}}`{text.replace('`', '')} </{target.removesuffix('.ipynb')}>`"
+        if (root / target).is_dir():
+            # a forge shows folders, a site has none
+            return text
+        return f"[{text}]({PAGES.get(target, way + target)}{anchor})"
+
+    return _LINK.sub(led, page)
 
 
-def _mend(_app: Sphinx, docname: str, content: list[str]) -> None:
-    if not docname.startswith("examples/"):
-        # from a folder of docs/ the way out is one longer
-        content[0] = mended(content[0].replace("](../../", "](../") if "/" in docname else content[0])
+def _mend(app: Sphinx, docname: str, content: list[str]) -> None:
+    content[0] = mended(content[0], docname, Path(app.srcdir).parent)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
