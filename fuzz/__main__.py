@@ -47,7 +47,11 @@ def _run(given: argparse.Namespace) -> int:
             sys.stdout.write(words + "\n")
             sys.stdout.flush()
 
-    run.go(tell)
+    try:
+        run.go(tell)
+    except KeyboardInterrupt:
+        tell("stopped; the same command goes on from here")
+        return 130
     plain = run.plain()
     for way, tally in plain["ways"].items():
         tell(

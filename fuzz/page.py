@@ -55,7 +55,7 @@ def written(plain: Mapping[str, Any]) -> str:
             ],
             right={1, 2, 3, 4},
         ),
-        "Calls are timed by the processor time of their process; the limits are wall time. "
+        "Calls are timed and limited by their processor time, and at ten times the limit by the clock. "
         f"The most memory that a worker held was {_megabytes(plain['memory']['peak'])} MB, "
         f"in its first jobs {_megabytes(plain['memory']['first'])} MB.",
         "## What must hold",

@@ -88,3 +88,13 @@ def test_limits_of_a_slide_are_told_apart_in_any_unit(size: float) -> None:
     limits = sb.from_axes(joints).motion(24).limits
     assert limits.size == 4
     np.testing.assert_allclose(sb.from_axes(scaled).motion(24).limits, size * limits, rtol=1e-9)
+
+
+def test_a_mode_whose_ball_has_no_turns_says_so() -> None:
+    # the coupler lies along the axis of the rocker, which names no direction for its spin
+    linkage = sb.rssr(M=1, N=-1e-100, L1=0.999999999999999, L2=1e12, L3=1e12, D=0)
+    modes = linkage.assembly_modes(-2.8120940746012515)
+    assert list(modes.status) == ["turns-undefined"] * 2
+    assert np.isfinite(modes.q[:, [0, -1]]).all()
+    assert np.isnan(modes.q).any(axis=1).all()
+    assert list(sb.load("rssr").assembly_modes(0.3).status) == ["ok"] * 2

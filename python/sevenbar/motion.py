@@ -80,13 +80,21 @@ class Output:
 
 @dataclass(frozen=True, eq=False)
 class Modes:
-    """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi]."""
+    """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi].
+
+    Turns of a ball that have no direction are NaN; `status` tells of such modes.
+    """
 
     q: Floats
     residual: Floats
     completeness: Literal["closed-form", "algebraic", "searched"]
     columns: tuple[str, ...]
     input: float
+
+    @property
+    def status(self) -> Words:
+        """The status of each mode, (m,): "ok", or "turns-undefined" where those of a ball are."""
+        return np.where(np.isnan(self.q).any(axis=1), "turns-undefined", "ok")
 
     def __len__(self) -> int:
         return len(self.q)

@@ -296,8 +296,8 @@ def modes_json(linkage: Linkage, modes: Modes, column: int) -> str:
             for name, kind in zip(linkage.columns, linkage.column_kinds, strict=True)
         ],
         "modes": [
-            {"q": q.tolist(), "residual": float(residual)}
-            for q, residual in zip(modes.q, modes.residual, strict=True)
+            {"q": q.tolist(), "residual": float(residual), "status": str(status)}
+            for q, residual, status in zip(modes.q, modes.residual, modes.status, strict=True)
         ],
     }
     return json_text(report)
