@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from reference_loops import Loop
 
 import sevenbar as sb
+from accuracy.reference_loops import Loop
 from sevenbar import report
 from sevenbar.measures import MEASURES, rows_of
 from sevenbar.summary import summary

@@ -98,3 +98,14 @@ def test_a_mode_whose_ball_has_no_turns_says_so() -> None:
     assert np.isfinite(modes.q[:, [0, -1]]).all()
     assert np.isnan(modes.q).any(axis=1).all()
     assert list(sb.load("rssr").assembly_modes(0.3).status) == ["ok"] * 2
+
+
+def test_names_in_a_list_of_what_there_is_have_no_characters_that_are_not_printed() -> None:
+    text = (Path(sb.__file__).parent / "gallery" / "screw_drill.toml").read_text(encoding="utf-8")
+    text = text.replace('name = "pin"', 'name = "p\ufeffin"').replace(
+        'output = "spindle"', 'output = "spinel"'
+    )
+    with pytest.raises(sb.errors.SevenbarError) as caught:
+        sb.loads(text)
+    assert all(line.isprintable() for line in str(caught.value).splitlines())
+    assert "\\ufeff" in str(caught.value)

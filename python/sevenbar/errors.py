@@ -73,14 +73,20 @@ def shown(value: object, longest: int = 60) -> str:
     return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
+def bare(word: str) -> str:
+    """A word as it stands in a message without quotes: cut short, characters that are not printed escaped."""
+    return word if word.isprintable() and len(word) <= 60 else shown(word)
+
+
 def suggestion(word: str, known: Iterable[str]) -> str:
     """`did you mean 'L1'? ` for a word near a known one, else nothing."""
     known = list(known)
     lowered = {k.lower(): k for k in known}
     near = get_close_matches(word[:100].lower(), lowered, n=1, cutoff=0.6)
-    return f"did you mean '{lowered[near[0]]}'? " if near else ""
+    return f"did you mean {shown(lowered[near[0]])}? " if near else ""
 
 
 def no_joint(name: object, names: Sequence[str]) -> str:
     """The message for a joint that does not exist."""
-    return f"no joint {shown(name)}; {suggestion(str(name), names)}this linkage has {', '.join(names)}"
+    known = ", ".join(map(bare, names))
+    return f"no joint {shown(name)}; {suggestion(str(name), names)}this linkage has {known}"

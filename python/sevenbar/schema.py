@@ -22,7 +22,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import ErrorDetails, core_schema
 
 from sevenbar.contradictions import contradictions, grounds
-from sevenbar.errors import DescriptionError, Problem, shown, suggestion
+from sevenbar.errors import DescriptionError, Problem, bare, shown, suggestion
 from sevenbar.units import ANGLES, LENGTHS
 from sevenbar.values import (
     EXAMPLE_OF_AXES,
@@ -290,13 +290,8 @@ def _problem(detail: ErrorDetails) -> Problem:
 def _path(location: Sequence[int | str]) -> str:
     path = ""
     for part in location:
-        path += f"[{part + 1}]" if isinstance(part, int) else f".{shown_key(part)}"
+        path += f"[{part + 1}]" if isinstance(part, int) else f".{bare(part)}"
     return path.lstrip(".")
-
-
-def shown_key(key: str) -> str:
-    """A key as it is quoted in a path: cut short, control characters escaped."""
-    return key if key.isprintable() and len(key) <= 60 else shown(key)
 
 
 def _missing(location: list[int | str], owner: type[_Form] | None) -> str:
