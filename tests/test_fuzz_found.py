@@ -109,3 +109,18 @@ def test_names_in_a_list_of_what_there_is_have_no_characters_that_are_not_printe
         sb.loads(text)
     assert all(line.isprintable() for line in str(caught.value).splitlines())
     assert "\\ufeff" in str(caught.value)
+
+
+def test_a_circuit_between_change_points_is_found_once() -> None:
+    # at a quarter turn a slide is where it may be anything: seeds there were followed as circuits of their own
+    linkage = sb.from_axes(
+        [
+            {"kind": "C", "at": [1, -1, 0.5], "axis": [1, 1, 0]},
+            {"kind": "C", "at": [0, 0.5, 1], "axis": [0, 0, -1]},
+            {"kind": "P", "at": [0, 0, 0.5], "axis": [3, 4, 0]},
+            {"kind": "U", "at": [0, 2, 10], "axes": [[1, 1, 0], [0, 1, 0]]},
+        ]
+    )
+    middles = np.array([circuit.q[len(circuit.q) // 2] for circuit in linkage.motion()])
+    gaps = np.linalg.norm(middles[:, None] - middles[None], axis=2)
+    assert (gaps[~np.eye(len(gaps), dtype=bool)] > 0.1).all()

@@ -485,10 +485,16 @@ impl Curves {
             let lost = curve.end == End::Singular && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
             if curve.nodes.len() < 3 || curve.end == End::Open || lost {
                 self.still += 1;
-            } else {
+            } else if !self.has_middle_of(chain, &curve) {
                 self.curves.push(curve);
             }
         }
+    }
+
+    /// Whether a curve between change points is known: beside one of them no step of a curve tells that a mode is on it.
+    fn has_middle_of(&self, chain: &Chain, curve: &Curve) -> bool {
+        let middle = &curve.nodes[curve.nodes.len() / 2].at;
+        curve.end == End::Singular && self.curves.iter().any(|c| lies_on(chain, c, middle))
     }
 }
 
