@@ -60,9 +60,9 @@ def compare(
 ) -> list[Timing]:
     """Each work once a round, each round begun by another one, so that no work always follows the same.
 
-    A call is repeated within a round until it lasts `shortest` [s]. A peer whose first call raises, or whose
-    answer its check refuses, is told by its failure and left out of the rounds: other work has no ratio. A
-    failure of the first work is raised.
+    A call is repeated within a round, so that it lasts `shortest` [s]. A peer whose first call raises, or
+    whose answer its check refuses, is told by its failure and left out of the rounds: other work has no
+    ratio. A failure of the first work is raised.
     """
     repeats, failures = {}, {}
     for place, work in enumerate(works):
@@ -74,11 +74,11 @@ def compare(
                 raise
             failures[place] = told(error)
             continue
+        repeats[place] = 1
         # a first call is often the slowest: only one that is very long tells enough
-        once = clock() - start
-        if once < FIRST * shortest:
-            once = seconds(work.call, 1, clock)
-        repeats[place] = 1 if once >= shortest else math.ceil(shortest / max(once, shortest / 10_000))
+        if clock() - start < FIRST * shortest:
+            while seconds(work.call, repeats[place], clock) < shortest:
+                repeats[place] *= 2
     places = list(repeats)
     spent: dict[int, list[float]] = {place: [] for place in places}
     for number in range(rounds):

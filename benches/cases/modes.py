@@ -119,7 +119,6 @@ def made(who: str, problem: Problem, peers: Peers) -> tuple[float, Solve]:
     """Seconds and the solver for a new linkage."""
     kept: list[Solve] = []
     arm = Arm(problem.linkage.transforms)
-    # of the process's clock only ticks are seen while a timer of `at_most` runs
     spent = seconds(lambda: kept.append(prepared(who, arm, peers)), 1, time.thread_time)
     return spent, kept[0]
 
@@ -133,8 +132,8 @@ def meant(solve: Solve, problem: Problem) -> np.ndarray:
 
 
 def lasting(call: object) -> float:
-    """Median time [s] of a call."""
-    return compare([Work("", call)], rounds=3)[0].median  # type: ignore[arg-type]
+    """Median time [s] of a call; of the process's clock only ticks are seen once a timer of `at_most` ran."""
+    return compare([Work("", call)], rounds=3, clock=time.thread_time)[0].median  # type: ignore[arg-type]
 
 
 def judged(problems: list[Problem], tallies: dict[str, Tally], starts: int) -> list[list[Cell]]:
