@@ -14,7 +14,7 @@ from importlib import metadata
 from pathlib import Path
 from types import ModuleType
 
-from benches.harness import told
+from benches.harness import OutOfTimeError, told
 
 ROOT = Path(__file__).parent.parent
 
@@ -138,4 +138,4 @@ def of_text(text: str) -> Peers:
 
 def reason_of(error: Exception) -> str:
     """What is told of a peer that is not here, or not as expected."""
-    return str(error) if isinstance(error, AbsentError) else told(error)
+    return str(error) if isinstance(error, (AbsentError, OutOfTimeError)) else told(error)
