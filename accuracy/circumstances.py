@@ -1,4 +1,4 @@
-"""When, from what and on what machine results were made."""
+"""When, from what and on what machine results were made, for all pages of evidence."""
 
 from __future__ import annotations
 
@@ -6,46 +6,73 @@ import importlib.metadata
 import os
 import platform
 import subprocess
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-
-#: The packages whose versions are named.
-PACKAGES = ("sevenbar", "numpy", "mpmath", "exudyn", "mujoco")
+from typing import Any
 
 ROOT = Path(__file__).parent.parent
 
+#: What results come from; pages and results of other runs may differ.
+SOURCES = ("crates", "python", "accuracy/*.py", "benches/*.py", "fuzz/*.py")
 
-def circumstances() -> dict[str, object]:
-    """Date, commit (with a note where files differ from it), machine and versions."""
+
+def circumstances(*packages: str) -> dict[str, Any]:
+    """Date, commit (with a note where sources differ from it), machine, versions of these packages, too."""
+    from sevenbar.many import simd_level
+
+    named = ("sevenbar", "numpy", *packages)
     return {
         "date": datetime.now(UTC).date().isoformat(),
         "commit": commit(),
-        "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
-        "python": platform.python_version(),
-        "versions": {name: version(name) for name in PACKAGES},
+        "machine": {
+            "processor": processor(),
+            "cores": cores(),
+            "system": f"{platform.system()} {platform.machine()}",
+            "vector unit": simd_level(),
+        },
+        "versions": {"Python": platform.python_version()} | {name: version(name) for name in named},
     }
+
+
+def in_words(made: Mapping[str, Any]) -> str:
+    """The same in words, as `2026-11-21, commit 0a1b2c3, on ..; Python 3.11.7, ..`."""
+    machine = made["machine"]
+    versions = ", ".join(f"{name} {version}" for name, version in made["versions"].items())
+    return (
+        f"{made['date']}, commit {made['commit']}, on {machine['processor']} ({machine['cores']} cores, "
+        f"{machine['system']}, {machine['vector unit']}); {versions}"
+    )
 
 
 def commit() -> str:
     """The commit of the source tree, "unknown" outside of one."""
     try:
-        found, changed = (
-            subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-            for words in (("rev-parse", "--short", "HEAD"), ("status", "--porcelain", "--untracked-files=no"))
-        )
+        name = _git("rev-parse", "--short=10", "HEAD")
+        changed = _git("status", "--porcelain", "--untracked-files=no", "--", *SOURCES)
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
-    return found.strip() + (" and changes" if changed.strip() else "")
+    return f"{name} and changes" if changed else name
+
+
+def _git(*words: str) -> str:
+    run = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True)
+    return run.stdout.strip()
 
 
 def processor() -> str:
     """The processor's name, as far as the system tells it."""
-    listed = Path("/proc/cpuinfo")
-    if listed.exists():
-        for line in listed.read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(names, "") or platform.processor() or platform.machine()
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def version(name: str) -> str:

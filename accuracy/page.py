@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from accuracy.circumstances import in_words
 from accuracy.quantiles import QUANTITIES, SHARES
 
 Results = Mapping[str, Any]
@@ -56,7 +57,6 @@ def _wrapped(part: str) -> str:
 
 def _head(results: Results) -> Iterator[str]:
     made, settings = results["made"], results["settings"]
-    versions = ", ".join(f"{name} {version}" for name, version in made["versions"].items())
     yield "# Accuracy"
     yield (
         "How far Sevenbar's numbers are from the truth, for every linkage of `sevenbar gallery`: beside "
@@ -67,9 +67,8 @@ def _head(results: Results) -> Iterator[str]:
     if not settings["whole"]:
         yield "**A part only:** of fewer linkages or rows than `make accuracy` takes."
     yield (
-        f"Made {made['date']} from commit {made['commit']} on {made['machine']}, with Python "
-        f"{made['python']}, {versions}; {settings['seconds']} s of processor time. Rows and points are "
-        f"drawn at random from the seed {settings['seed']}."
+        f"Made {in_words(made)}; {settings['seconds']} s of processor time. Rows and points are drawn at "
+        f"random from the seed {settings['seed']}."
     )
     yield "![Differences of velocities from each reference](images/accuracy_references.svg)"
 

@@ -111,7 +111,7 @@ def framed(
 ) -> dict[str, object]:
     """Results with the circumstances and settings that they were made in; `spent` [s] of processor time."""
     return {
-        "made": circumstances(),
+        "made": circumstances("mpmath", "exudyn", "mujoco"),
         "settings": {
             "seed": SEED,
             "random": budget.rows.random,

@@ -15,8 +15,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+from accuracy.circumstances import circumstances
 from benches.cases import CASES, case
-from benches.machine import described
 from benches.outcome import Outcome
 from benches.page import write
 from benches.peers import ROOT, Peer, installed, looked_at, of_text, requirements, to_text
@@ -43,7 +43,7 @@ def main() -> None:
     names = requirements()
     reasons = installed(names) if arguments.install else {}
     peers = [looked_at(name, reasons.get(name, "")) for name in names]
-    made = described() | {"kind": "quick" if arguments.quick else "full"}
+    made = circumstances() | {"kind": "quick" if arguments.quick else "full"}
     cases: dict[str, Any] = {}
     if arguments.only and arguments.results.exists():
         cases = json.loads(arguments.results.read_text(encoding="utf-8"))["cases"]

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from accuracy.circumstances import in_words
 from benches.figures import drawn
 from benches.outcome import Cell, Outcome, Table
 
@@ -44,13 +45,10 @@ def text(results: dict[str, Any], outcomes: dict[str, Outcome]) -> str:
     )
 
 
-def _made(made: dict[str, str]) -> Iterator[str]:
+def _made(made: dict[str, Any]) -> Iterator[str]:
     if made["kind"] == "quick":
         yield "**A quick look only** (`--quick`): fewer rounds and smaller work than the page's own.\n"
-    keys = [key for key in made if key != "kind"]
-    yield "| " + " | ".join(keys) + " |"
-    yield "|" + "---|" * len(keys)
-    yield "| " + " | ".join(made[key] for key in keys) + " |\n"
+    yield f"Made {in_words(made)}.\n"
 
 
 def _peers(peers: list[dict[str, str]]) -> Iterator[str]:

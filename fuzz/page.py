@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from accuracy.circumstances import in_words
 from fuzz import batches, checks, files
 
 #: Rows of a table at most; what is left is one row more.
@@ -83,14 +84,10 @@ def written(plain: Mapping[str, Any]) -> str:
 
 
 def _circumstances(plain: Mapping[str, Any]) -> str:
-    machine, versions = plain["machine"], plain["versions"]
-    told = ", ".join(f"{name} {version}" for name, version in versions.items())
     return (
-        f"{plain['date']}, commit {plain['commit']}, on {machine['processor']} ({machine['cores']} cores, "
-        f"{machine['system']}, "
-        f"{machine['vector unit']}); {told}. {plain['linkages']:,} linkages and {plain['files']:,} files "
-        f"from seed {plain['seed']} "
-        f"in {plain['minutes']:.0f} minutes on {plain['threads']} worker{'s' * (plain['threads'] != 1)}."
+        f"{in_words(plain)}. {plain['linkages']:,} linkages and {plain['files']:,} files "
+        f"from seed {plain['seed']} in {plain['minutes']:.0f} minutes "
+        f"on {plain['threads']} worker{'s' * (plain['threads'] != 1)}."
     )
 
 

@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
-import platform
-import subprocess
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import pydantic
-
-import sevenbar as sb
+from accuracy.circumstances import circumstances
 from fuzz import ROOT
 from fuzz.tally import Tally
 from fuzz.watch import Watch
 from fuzz.ways import WAYS, Job
-from sevenbar.many import simd_level
 
 #: Which share of the linkages goes which way: the dear ones are few.
 LINKAGES = {"rssr batch": 0.89, "loop batch": 0.06, "rssr": 0.03, "loop": 0.0195, "screw": 0.0005}
@@ -126,20 +118,7 @@ class Run:
     def plain(self) -> dict[str, Any]:
         """The summary as JSON holds it."""
         return {
-            "date": datetime.now(UTC).strftime("%Y-%m-%d"),
-            "commit": _commit(),
-            "machine": {
-                "processor": _processor(),
-                "cores": os.cpu_count(),
-                "system": platform.system(),
-                "vector unit": simd_level(),
-            },
-            "versions": {
-                "sevenbar": sb.__version__,
-                "python": platform.python_version(),
-                "numpy": np.__version__,
-                "pydantic": pydantic.VERSION,
-            },
+            **circumstances("pydantic"),
             "linkages": self.linkages,
             "files": self.files,
             "seed": self.seed,
@@ -165,22 +144,3 @@ def keep(finding: dict[str, Any], seed: int) -> Path:
     path = FINDINGS / f"{finding['way'].replace(' ', '-')}-{seed}-{finding['index']}.json"
     path.write_text(json.dumps(finding | {"seed": seed}, indent=1) + "\n", encoding="utf-8")
     return path
-
-
-def _commit() -> str:
-    command = ["git", "-C", str(ROOT), "describe", "--always", "--dirty", "--abbrev=10"]
-    try:
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
-    except (OSError, subprocess.CalledProcessError):
-        return "unknown"
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor()
-    return next(
-        (line.partition(":")[2].strip() for line in lines if line.startswith("model name")),
-        platform.machine(),
-    )

@@ -5,7 +5,6 @@ Source: the same calls one after the other.
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -137,7 +136,6 @@ sys.exit(after != [before] * 4)
 """
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 @pytest.mark.slow
 def test_processes_forked_after_threads_have_run_get_the_same_bits() -> None:
     # a newer Python warns of any fork beside threads

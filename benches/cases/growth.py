@@ -9,10 +9,10 @@ from collections import defaultdict
 import numpy as np
 
 import sevenbar as sb
+from accuracy.circumstances import cores
 from benches.cases import loops, rssr_formula, yardsticks
 from benches.cases.sweeps import Batch, batches
 from benches.harness import Work, compare
-from benches.machine import cores
 from benches.outcome import Cell, Outcome, Plot, Series, Table
 from benches.setting import Setting
 

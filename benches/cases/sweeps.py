@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from accuracy.circumstances import cores
 from benches.cases import yardsticks
 from benches.harness import Timing, Work, compare
-from benches.machine import cores
 from benches.outcome import Cell, Outcome, Table, timed
 from benches.peers import AbsentError
 from benches.setting import Setting
