@@ -5,6 +5,7 @@ Source: the same calls one after the other.
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -24,6 +25,10 @@ from sevenbar import _core
 from sevenbar.many import loop_motions
 
 TESTS = Path(__file__).parent
+#: Where a process of its own finds what the tests share.
+SHARED = os.environ | {
+    "PYTHONPATH": os.pathsep.join([str(TESTS), str(TESTS.parent), os.environ.get("PYTHONPATH", "")])
+}
 
 #: Threads that call at once, and how often each asks for everything.
 CALLERS, ROUNDS = 6, 3
@@ -140,7 +145,7 @@ sys.exit(after != [before] * 4)
 def test_processes_forked_after_threads_have_run_get_the_same_bits() -> None:
     # a newer Python warns of any fork beside threads
     command = [sys.executable, "-W", "ignore::DeprecationWarning", "-c", FORKED]
-    subprocess.run(command, cwd=TESTS, check=True, timeout=240)
+    subprocess.run(command, env=SHARED, check=True, timeout=240)
 
 
 INTERRUPTED = """
@@ -159,10 +164,10 @@ except KeyboardInterrupt:
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="interrupts are sent otherwise there")
 @pytest.mark.slow
 def test_an_interrupt_during_a_batch_is_raised_when_the_batch_is_done() -> None:
-    with subprocess.Popen([sys.executable, "-c", INTERRUPTED], cwd=TESTS, stdout=subprocess.PIPE) as child:
+    command = [sys.executable, "-c", INTERRUPTED]
+    with subprocess.Popen(command, env=SHARED, stdout=subprocess.PIPE) as child:
         assert child.stdout is not None
         assert child.stdout.readline() == b"begun\n"
         time.sleep(0.2)

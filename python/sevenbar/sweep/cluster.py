@@ -156,7 +156,7 @@ class Cluster:
         from distributed.scheduler import KilledWorker
 
         try:
-            content, by = future.result(timeout=ANSWER_TIME)
+            content, by = self._fetched(future)
         except SevenbarError:
             raise
         except KilledWorker:
@@ -165,7 +165,7 @@ class Cluster:
                 f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
                 "that took it; look for their memory and their logs, and go on with --resume"
             ) from None
-        except (CancelledError, OSError, TimeoutError) as error:
+        except (CancelledError, OSError) as error:
             self._lost(error)
         except Exception as error:
             told = f"{type(error).__name__}: {error}".splitlines()[0]
@@ -174,6 +174,14 @@ class Cluster:
                 "give workers the same modules and versions as here, and go on with --resume"
             ) from None
         return content, by
+
+    def _fetched(self, future: Any) -> Any:
+        """What a worker made; it is made again where its worker left before this was fetched."""
+        while True:
+            try:
+                return future.result(timeout=ANSWER_TIME)
+            except TimeoutError:
+                self._wait_for_workers()
 
     def _lost(self, error: BaseException) -> NoReturn:
         told = f"{type(error).__name__}: {error}".splitlines()[0]
