@@ -27,12 +27,12 @@ from sevenbar.gallery import names
 SHORT = {"rssr batch": 4096, "loop batch": 64, "rssr": 70, "loop": 57, "screw": 2, "file": 3000, "table": 400}
 LONG = {
     "rssr batch": 60_000,
-    "loop batch": 640,
-    "rssr": 1400,
-    "loop": 760,
-    "screw": 10,
-    "file": 40_000,
-    "table": 4000,
+    "loop batch": 320,
+    "rssr": 600,
+    "loop": 300,
+    "screw": 6,
+    "file": 20_000,
+    "table": 1000,
 }
 
 #: A seed of its own, so that CI meets other cases than `make fuzz`.

@@ -122,7 +122,7 @@ def restless(client, dice):
 @pytest.mark.parametrize("name", ["rssr", "seven_r"])
 @pytest.mark.parametrize(
     "seconds",
-    [20, pytest.param(600, marks=pytest.mark.proof)],
+    [10, pytest.param(600, marks=pytest.mark.proof)],
 )
 def test_random_dragging_never_fails_nor_grows_nor_shows_a_wrong_mode(name, seconds, capsys):
     dice = random.Random(seconds)
