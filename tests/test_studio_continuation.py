@@ -56,7 +56,7 @@ CASES: dict[str, tuple[str, tuple[str, str] | None]] = {
 
 
 @pytest.fixture(
-    params=[4, pytest.param(25, marks=pytest.mark.slow), pytest.param(400, marks=pytest.mark.proof)]
+    params=[4, pytest.param(40, marks=pytest.mark.slow), pytest.param(400, marks=pytest.mark.proof)]
 )
 def steps(request: pytest.FixtureRequest) -> int:
     return request.param
