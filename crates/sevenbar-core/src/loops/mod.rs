@@ -22,6 +22,7 @@ mod rows;
 mod starts;
 #[cfg(test)]
 mod tests;
+mod turnings;
 mod walk;
 
 pub use extremes::Ends;

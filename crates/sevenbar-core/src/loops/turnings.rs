@@ -1,0 +1,177 @@
+//! Where a column changes direction along a followed curve, and the curve with these places among its nodes.
+
+use super::chain::{COLUMNS, Chain, Columns};
+use super::curve::{Curve, End, Node, combined, dot, length, measure};
+
+/// A rate of a column below this part of the curve's is zero.
+const AT_REST: f64 = 1e-13;
+
+/// A column whose part of the unit tangent is below this stands still.
+pub(super) const STILL: f64 = 1e-9;
+
+/// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
+const SAME_PLACE: f64 = 1e-6;
+
+/// Places looked at within a step for a change of a column's direction.
+const LOOKS: usize = 6;
+
+/// A place where a column changes direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turning {
+    /// The node that it follows.
+    pub segment: usize,
+    pub node: Node,
+}
+
+impl Curve {
+    /// Where a column changes direction, in order.
+    pub fn turnings(&self, chain: &Chain, column: usize) -> Vec<Turning> {
+        let mut found = Vec::new();
+        let mut marks: Vec<(f64, f64)> = Vec::new();
+        for (segment, pair) in self.nodes.windows(2).enumerate() {
+            let (a, b) = (&pair[0], &pair[1]);
+            // a rate that is zero to the last digit at a node, as where another column turns back there, has no sign beside it
+            if turns_at(a, column) && a.rates[1][column] != 0.0 {
+                found.push(Turning { segment, node: *a });
+            }
+            // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
+            marks.clear();
+            for look in 0..=LOOKS {
+                let s = a.step * look as f64 / LOOKS as f64;
+                let rate = if 2 * look < LOOKS {
+                    a.rate(column, s)
+                } else {
+                    b.rate(column, s - a.step)
+                };
+                match marks.last_mut() {
+                    Some(last) if last.1 * rate >= 0.0 => {
+                        if rate.abs() > last.1.abs() {
+                            *last = (s, rate);
+                        }
+                    }
+                    _ => marks.push((s, rate)),
+                }
+            }
+            if marks.len() < 2 {
+                continue;
+            }
+            // both ends are known, and the places between are looked at
+            let count = marks.len();
+            for (k, mark) in marks.iter_mut().enumerate() {
+                *mark = if k == 0 {
+                    (0.0, a.rates[0][column])
+                } else if k + 1 == count {
+                    (a.step, b.rates[0][column])
+                } else {
+                    let rate = chain.ahead(a, mark.0).map_or(mark.1, |n| n.rates[0][column]);
+                    (mark.0, rate)
+                };
+            }
+            for ends in marks.windows(2) {
+                if ends[0].1 * ends[1].1 < 0.0
+                    && let Some(node) = turning_between(chain, a, column, ends[0], ends[1])
+                {
+                    found.push(Turning { segment, node });
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The place in a step where a column's rate is zero, between two where its sign differs.
+fn turning_between(
+    chain: &Chain,
+    a: &Node,
+    column: usize,
+    mut low: (f64, f64),
+    mut high: (f64, f64),
+) -> Option<Node> {
+    let mut best: Option<Node> = None;
+    let mut s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+    for _ in 0..60 {
+        let node = chain.ahead(a, s)?;
+        let rate = node.rates[0][column];
+        if best
+            .as_ref()
+            .is_none_or(|b| rate.abs() < b.rates[0][column].abs())
+        {
+            best = Some(node);
+        }
+        if rate.abs() < AT_REST || (high.0 - low.0).abs() < 1e-15 {
+            break;
+        }
+        if rate * low.1 > 0.0 {
+            low = (s, rate);
+        } else {
+            high = (s, rate);
+        }
+        // Newton's step by the second derivative, if it stays between
+        let next = s - rate / node.rates[1][column] * dot(&node.rates[0], &a.rates[0]);
+        s = if next > low.0 && next < high.0 {
+            next
+        } else {
+            0.5 * (low.0 + high.0)
+        };
+    }
+    best
+}
+
+/// Makes each turning a node. The column's rate there is zero by its meaning: where the curve bends sharply, as beside a change point,
+/// the rate that is worked out is zero only to what rounding of the place leaves of it.
+pub(super) fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], column: usize) {
+    let last = curve.nodes.len() - 1;
+    // a curve that was begun at a dead centre has that node already
+    let known = |t: &Turning| {
+        (t.segment..=t.segment + 1).find(|&k| {
+            let n = &curve.nodes[k];
+            n.rates[0][column].abs() < STILL && length(&chain.difference(&n.at, &t.node.at)) < SAME_PLACE
+        })
+    };
+    let places: Vec<Option<usize>> = turnings.iter().map(known).collect();
+    for &k in places.iter().flatten() {
+        curve.nodes[k].rates[0][column] = 0.0;
+        if curve.end == End::Closed && (k == 0 || k == last) {
+            curve.nodes[last - k].rates[0][column] = 0.0;
+        }
+    }
+    let mut nodes = Vec::with_capacity(curve.nodes.len() + turnings.len());
+    let mut rest = turnings
+        .iter()
+        .zip(&places)
+        .filter(|(_, place)| place.is_none())
+        .map(|(t, _)| t)
+        .peekable();
+    for (k, node) in curve.nodes.iter().enumerate() {
+        nodes.push(*node);
+        while let Some(t) = rest.next_if(|t| t.segment == k) {
+            let mut node = t.node;
+            node.rates[0][column] = 0.0;
+            nodes.push(node);
+        }
+    }
+    measure(chain, &mut nodes);
+    curve.nodes = nodes;
+}
+
+/// Whether a column changes direction at a node, once `insert` has seen the curve.
+pub(super) fn turns_at(node: &Node, column: usize) -> bool {
+    node.rates[0][column] == 0.0
+}
+
+/// A closed curve begun at another of its nodes, turns counted on.
+pub(super) fn begun_at(chain: &Chain, curve: &Curve, start: usize) -> Curve {
+    let last = curve.nodes.len() - 1;
+    let (first, end) = (curve.nodes[0].at.values, curve.nodes[last].at.values);
+    let gained: Columns = combined(&end, 1.0, &first, -1.0);
+    let mut nodes: Vec<Node> = curve.nodes[start..last].to_vec();
+    nodes.extend(curve.nodes[..=start].iter().map(|n| {
+        let mut n = *n;
+        for c in 0..COLUMNS {
+            n.at.values[c] += gained[c];
+        }
+        n
+    }));
+    measure(chain, &mut nodes);
+    Curve { nodes, end: curve.end }
+}
