@@ -80,6 +80,29 @@ def test_an_extreme_beside_the_first_row_of_a_circuit_is_found() -> None:
         assert coarse.jerk.highest == pytest.approx(jerk.max(), rel=1e-5)
 
 
+def test_rates_that_peak_where_no_digit_of_them_is_left_have_no_extremes() -> None:
+    # the branches pass each other 1e-6 rad apart: -0.19 was told where rows have -0.21, and the peak is a million
+    near = {
+        "M": -0.6996653530221741,
+        "N": -0.22343997509953906,
+        "L1": 0.12538361869805814,
+        "L2": 0.8598965151848134,
+        "L3": 0.30326643962482946,
+        "D": -0.4806146874610435,
+    }
+    for circuit in sb.rssr(**near).motion(36):
+        assert circuit.input_range is None
+        assert (circuit.velocity, circuit.acceleration, circuit.jerk) == (None, None, None)
+    # a little farther apart the peak is found; it is that of rows close around it
+    apart = sb.rssr(**(near | {"L2": near["L2"] + 1e-9}))
+    circuit = apart.motion(36, speed=1.0).circuits[0]
+    assert circuit.acceleration is not None
+    around = circuit.acceleration.lowest_at + np.linspace(-1e-4, 1e-4, 2001)
+    rows = apart.output(around, order=2, speed=1.0).acceleration
+    assert rows is not None
+    assert circuit.acceleration.lowest == pytest.approx(rows[circuit.branch[0]].min(), rel=1e-9)
+
+
 @pytest.mark.parametrize("size", [1e-9, 1e-3, 1e6])
 def test_limits_of_a_slide_are_told_apart_in_any_unit(size: float) -> None:
     joints = joints_of(194)

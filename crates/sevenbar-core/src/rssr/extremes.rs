@@ -27,13 +27,19 @@ pub struct Extreme {
 type Derivatives = [f64; 6];
 
 /// Lowest and highest first derivative, then second, then third, on a branch without dead centres.
-pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 3] {
-    let at = |input: f64| -> Derivatives {
-        pair.follower_taylor(Taylor::<6>::variable(input), branch)
-            .map_or([f64::NAN; 6], |x| std::array::from_fn(|k| x.derivative(k)))
+///
+/// None where the other branch comes so near that no digit of the rates is left: they peak just there.
+pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> Option<[[Extreme; 2]; 3]> {
+    let derivatives = |input: f64| -> Option<Derivatives> {
+        let series = pair.follower_taylor(Taylor::<6>::variable(input), branch)?;
+        Some(std::array::from_fn(|k| series.derivative(k)))
     };
-    let nodes: Vec<(f64, Derivatives)> = nodes(pair).into_iter().map(|input| (input, at(input))).collect();
-    [1, 2, 3].map(|order| {
+    let nodes = nodes(pair)
+        .into_iter()
+        .map(|input| Some((input, derivatives(input)?)))
+        .collect::<Option<Vec<(f64, Derivatives)>>>()?;
+    let at = |input: f64| derivatives(input).unwrap_or([f64::NAN; 6]);
+    Some([1, 2, 3].map(|order| {
         let mut candidates = vec![(nodes[0].0, nodes[0].1[order])];
         for cell in nodes.windows(2) {
             for input in stationary(&at, cell[0], cell[1], order) {
@@ -48,7 +54,7 @@ pub(super) fn rate_extremes(pair: &Pair, branch: usize) -> [[Extreme; 2]; 3] {
             extreme(candidates.iter().min_by(|a, b| a.1.total_cmp(&b.1))),
             extreme(candidates.iter().max_by(|a, b| a.1.total_cmp(&b.1))),
         ]
-    })
+    }))
 }
 
 /// The ends of the cells: evenly spread, and ever closer towards each place where the two branches come nearest.

@@ -214,7 +214,7 @@ fn circuit(forward: &Pair, outputs: &Domain, mut circuit: Circuit) -> Circuit {
         }
     } else if circuit.motion_type != MotionType::ChangePoint {
         [circuit.velocity, circuit.acceleration, circuit.jerk] =
-            rate_extremes(forward, circuit.first_branch).map(Some);
+            rate_extremes(forward, circuit.first_branch).map_or([None; 3], |rates| rates.map(Some));
     }
     circuit
 }
