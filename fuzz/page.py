@@ -57,8 +57,8 @@ def written(plain: Mapping[str, Any]) -> str:
             right={1, 2, 3, 4},
         ),
         "Calls are timed and limited by their processor time, and at ten times the limit by the clock. "
-        f"The most memory that a worker held was {_megabytes(plain['memory']['peak'])} MB, "
-        f"in its first jobs {_megabytes(plain['memory']['first'])} MB.",
+        f"The most memory that a worker held was {_megabytes(plain['memory']['peak'])} MB, since a job of "
+        f"`{plain['memory']['way']}` at {plain['memory']['after']:.0%} of the run.",
         "## What must hold",
         _checked(),
         "## What was found",

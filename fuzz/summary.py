@@ -35,9 +35,10 @@ class Run:
     seed: int
     threads: int
     tallies: dict[str, Tally] = field(default_factory=dict)
-    #: Most memory of a worker [bytes], after its first jobs and at the end of all.
-    first_memory: int = 0
+    #: Most memory of a worker [bytes], the way of the job that took it, and how many were done then.
     peak_memory: int = 0
+    peak_way: str = ""
+    peak_after: int = 0
     seconds: float = 0.0
     _jobs_done: int = 0
 
@@ -74,9 +75,8 @@ class Run:
         """Adds what a job came to."""
         self.tallies.setdefault(job.way, Tally()).merge(plain)
         self._jobs_done += 1
-        if self._jobs_done <= EARLY:
-            self.first_memory = max(self.first_memory, peak)
-        self.peak_memory = max(self.peak_memory, peak)
+        if peak > self.peak_memory:
+            self.peak_memory, self.peak_way, self.peak_after = peak, job.way, self._jobs_done
         self.seconds += seconds
 
     def go(self, tell: Any) -> None:
@@ -124,7 +124,11 @@ class Run:
             "seed": self.seed,
             "threads": self.threads,
             "minutes": self.seconds / 60,
-            "memory": {"first": self.first_memory, "peak": self.peak_memory},
+            "memory": {
+                "peak": self.peak_memory,
+                "way": self.peak_way,
+                "after": self.peak_after / max(1, self._jobs_done),
+            },
             "limits": {way: WAYS[way].limit for way in self.counts()},
             "ways": {
                 way: self.tallies[way].plain() | {"findings": []}
@@ -132,10 +136,6 @@ class Run:
                 if way in self.tallies
             },
         }
-
-
-#: Jobs after which the memory of the workers is noted, to tell growth from size.
-EARLY = 40
 
 
 def keep(finding: dict[str, Any], seed: int) -> Path:

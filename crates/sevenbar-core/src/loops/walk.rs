@@ -8,8 +8,8 @@ use crate::vectors::{self, LANES, LaneKernel, Vector};
 /// Shorter steps mean a place where the curve is not smooth: a change point.
 const SHORTEST: f64 = 1e-10;
 
-/// Most nodes of a curve; an ordinary circuit has some hundreds.
-const MOST_NODES: usize = 400_000;
+/// Most nodes of a curve, 43 MB; an ordinary circuit has some hundreds, three screws over 50 rad 70,000.
+const MOST_NODES: usize = 100_000;
 
 /// Slides [parts of the size] and screws [rad] are not followed farther than this.
 const FARTHEST: f64 = 50.0;
