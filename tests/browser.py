@@ -23,7 +23,7 @@ FLAGS = (
     "--disable-background-networking",
     "--no-first-run",
 )
-SIZE = {"width": 1400, "height": 860}
+SIZE = {"width": 1000, "height": 640}
 #: How long anything on a page may take [s].
 PATIENCE = 60.0
 #: Where pictures of pages are kept; ignored by git, removed by `make clean`.

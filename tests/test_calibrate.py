@@ -200,7 +200,8 @@ def as_often_as_claimed(calibrations, truth):
 
 
 @pytest.mark.slow
-def test_intervals_of_an_rssr_hold_the_truth_as_often_as_they_claim():
+@pytest.mark.parametrize("count", [100, pytest.param(300, marks=pytest.mark.proof)])
+def test_intervals_of_an_rssr_hold_the_truth_as_often_as_they_claim(count):
     truth = replace(SKEW, N=652.0, L1=251.5, L3=548.0, D=148.0, L2=982.0)
     inputs, angle = measured_rssr(truth, phase=0.01, offset=0.005)
     rng = np.random.default_rng(20)
@@ -211,7 +212,7 @@ def test_intervals_of_an_rssr_hold_the_truth_as_often_as_they_claim():
             hold=["M"],
             offsets=["input", "output"],
         )
-        for _ in range(300)
+        for _ in range(count)
     ]
     known = {name: getattr(truth, name) for name in ("N", "L1", "L2", "L3", "D")}
     as_often_as_claimed(found, known | {"input_offset": 0.01, "output_offset": 0.005})
@@ -220,19 +221,21 @@ def test_intervals_of_an_rssr_hold_the_truth_as_often_as_they_claim():
 
 
 @pytest.mark.slow
-def test_intervals_hold_where_what_is_untold_was_found_out_on_the_way():
+@pytest.mark.parametrize("count", [100, pytest.param(400, marks=pytest.mark.proof)])
+def test_intervals_hold_where_what_is_untold_was_found_out_on_the_way(count):
     truth = replace(PAPER, L1=251.5, L3=548.0, D=2.0, L2=999.0)
     inputs, angle = measured_rssr(truth)
     rng = np.random.default_rng(21)
     found = [
         calibrate(sb.load("rssr"), table(input=inputs, angle=angle + 1e-3 * rng.normal(size=len(angle))))
-        for _ in range(400)
+        for _ in range(count)
     ]
     as_often_as_claimed(found, {name: getattr(truth, name) for name in ("L1", "L2", "L3", "D")})
 
 
 @pytest.mark.slow
-def test_intervals_hold_where_quantities_of_unlike_noise_are_measured_together():
+@pytest.mark.parametrize("count", [100, pytest.param(300, marks=pytest.mark.proof)])
+def test_intervals_hold_where_quantities_of_unlike_noise_are_measured_together(count):
     truth = replace(PAPER, L1=251.5, L3=548.0, L2=999.0)
     reference = truth.reference()
     times = np.linspace(0.0, 0.62, 60)
@@ -243,7 +246,7 @@ def test_intervals_hold_where_quantities_of_unlike_noise_are_measured_together()
         )
     rng = np.random.default_rng(22)
     found = []
-    for _ in range(300):
+    for _ in range(count):
         measured = table(
             time=times,
             angle=angle + 2e-3 * rng.normal(size=60),
@@ -257,14 +260,15 @@ def test_intervals_hold_where_quantities_of_unlike_noise_are_measured_together()
 
 
 @pytest.mark.slow
-def test_intervals_of_a_7r_hold_the_truth_as_often_as_they_claim():
+@pytest.mark.parametrize("count", [60, pytest.param(150, marks=pytest.mark.proof)])
+def test_intervals_of_a_7r_hold_the_truth_as_often_as_they_claim(count):
     linkage, truth, inputs, angle, _ = seven_r(4)
     rng = np.random.default_rng(23)
     found = [
         calibrate(
             linkage, table(input=inputs, angle=angle + 1e-4 * rng.normal(size=len(angle))), free=list(truth)
         )
-        for _ in range(150)
+        for _ in range(count)
     ]
     as_often_as_claimed(found, truth)
 

@@ -56,8 +56,9 @@ def test_a_notebook_begins_with_what_it_is_asserts_truths_and_ends_with_exercise
     assert imported <= IMPORTED
 
 
+# `make docs` runs them too, and an error or a false assertion fails it
 @each
-@pytest.mark.slow
+@pytest.mark.proof
 def test_a_notebook_runs_without_error_and_what_it_asserts_is_true(path):
     # here, since they are slow to import
     from nbclient import NotebookClient

@@ -238,7 +238,8 @@ def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) ->
 
 
 @pytest.mark.slow
-def test_a_sweep_killed_at_twenty_random_moments_loses_no_finished_part(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kills", [6, pytest.param(20, marks=pytest.mark.proof)])
+def test_a_sweep_killed_at_random_moments_loses_no_finished_part(kills: int, tmp_path: Path) -> None:
     sweep = [
         sys.executable, "-m", "sevenbar.cli", "sweep", "seven_r", "--over", "twist_1=30..90", "--over",
         "length_2=80..120", "--count", "400", "--seed", "3", "--measure", "motion_type,circuits,swing",
@@ -247,7 +248,7 @@ def test_a_sweep_killed_at_twenty_random_moments_loses_no_finished_part(tmp_path
     chance = random.Random(20)
     folder = tmp_path / "killed"
     kept: dict[str, tuple[str, int]] = {}
-    for _ in range(20):
+    for _ in range(kills):
         process = subprocess.Popen(
             [*sweep, "--out", folder, "--resume"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
