@@ -219,8 +219,10 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
     turns = [
         i
         for i, (o, k) in enumerate(zip(owners, linkage.column_kinds, strict=True))
-        if o != "S" and k == "turn"
+        if o not in "SH" and k == "turn"
     ]
+    # a whole turn takes a screw to another place
+    screws = [i for i, o in enumerate(owners) if o == "H"]
     slides = [
         i
         for i, (o, k) in enumerate(zip(owners, linkage.column_kinds, strict=True))
@@ -230,7 +232,7 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
     for circuit in motion:
         good = (circuit.status == "ok") & (circuit.condition < WELL)
         q = circuit.q[good]
-        parts = [np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, slides] / circuit.size]
+        parts = [np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, screws], q[:, slides] / circuit.size]
         places.append(np.concatenate(parts, axis=1))
     for i, one in enumerate(places):
         for j in range(i):
