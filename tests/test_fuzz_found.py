@@ -143,3 +143,21 @@ def test_a_screw_turned_once_more_is_another_pose_however_small_its_pitch_beside
     middles = np.array([circuit.q[len(circuit.q) // 2] for circuit in motion])
     gaps = np.linalg.norm(middles[:, None] - middles[None], axis=2)
     assert (gaps[~np.eye(len(gaps), dtype=bool)] > 1.0).all()
+
+
+@pytest.mark.slow
+def test_a_circuit_that_comes_back_to_its_start_a_rounding_after_a_node_has_its_rows() -> None:
+    # the last step was shorter than nothing by 1e-12, which ended the program
+    linkage = sb.from_axes(
+        [
+            {"kind": "H", "at": [-1, 10, 1], "axis": [0, 0, -1], "pitch": 1},
+            {"kind": "R", "at": [-1, -1, 1], "axis": [3, 4, 0]},
+            {"kind": "P", "at": [1, 0, 0.5], "axis": [3, 4, 0]},
+            {"kind": "S", "at": [0.5, 10, 0.5]},
+            {"kind": "P", "at": [-1, 0, 0], "axis": [3, 4, 0]},
+        ]
+    )
+    motion = linkage.motion(24)
+    assert motion.circuits
+    for circuit in motion:
+        assert circuit.residual[circuit.status == "ok"].max() < 1e-10 * circuit.size

@@ -262,12 +262,13 @@ impl<'a> Passes<'a> {
         let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
         let middle = a.at.values[input] + a.gone(input, 0.5 * a.step);
         let (start, end) = (a.at.values[input], b.at.values[input]);
-        // by the nearer end, so that the series is short
+        // by the nearer end, so that the series is short; the last node may fall on the one before it, but for rounding
         let first = (value < middle) == (start < end);
+        let reach = 0.6 * a.step.max(0.0);
         let (node, low, high) = if first {
-            (segment, 0.0, 0.6 * a.step)
+            (segment, 0.0, reach)
         } else {
-            (segment + 1, -0.6 * a.step, 0.0)
+            (segment + 1, -reach, 0.0)
         };
         let n = &self.curve.nodes[node];
         let target = value - n.at.values[input];
