@@ -46,6 +46,9 @@ SAMPLES = 24
 #: Statuses of rows that have a pose, and of those whose rates are there.
 POSED, RATED = ("ok", "dead-centre", "change-point"), ("ok",)
 
+#: Where redundant constraints keep a pose open, a motion says so.
+MISSES = "redundant constraints, which miss by"
+
 #: Words of motion types that come with circuits and without them.
 WITHOUT = {"rigid", "two-inputs", "cannot-assemble"}
 SINGLE = {"crank", "rocker", "slider"}
@@ -87,6 +90,7 @@ def judged(linkage: sb.Linkage, rng: np.random.Generator, seen: Counter[str]) ->
         solid = [j for j, o in enumerate(_owners(linkage)) if o != "S"]
         hold(np.isfinite(modes.q[:, solid]).all(), "a mode without a number")
         hold(np.isfinite(modes.q[modes.status == "ok"]).all(), "a mode without a number and its status ok")
+        circuits_have_modes(motion, modes, at)
         seen["modes"] += len(modes)
     return motion.motion_type
 
@@ -219,8 +223,10 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
     turns = [
         i
         for i, (o, k) in enumerate(zip(owners, linkage.column_kinds, strict=True))
-        if o != "S" and k == "turn"
+        if o not in "SH" and k == "turn"
     ]
+    # a whole turn takes a screw to another place
+    screws = [i for i, o in enumerate(owners) if o == "H"]
     slides = [
         i
         for i, (o, k) in enumerate(zip(owners, linkage.column_kinds, strict=True))
@@ -230,7 +236,7 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
     for circuit in motion:
         good = (circuit.status == "ok") & (circuit.condition < WELL)
         q = circuit.q[good]
-        parts = [np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, slides] / circuit.size]
+        parts = [np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, screws], q[:, slides] / circuit.size]
         places.append(np.concatenate(parts, axis=1))
     for i, one in enumerate(places):
         for j in range(i):
@@ -238,6 +244,15 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
             if len(one) and len(other):
                 apart = np.abs(one[:, None] - other[None]).max(axis=2).min()
                 hold(apart > SAME, f"circuits {j} and {i} have a pose in common")
+
+
+def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:
+    """Each well-conditioned circuit whose input turns fully has its modes at an input."""
+    if motion.completeness == "searched" or MISSES in motion.established:
+        return
+    turning = [c for c in motion if c.closed and c.input_range is None and np.nanmax(c.condition) < WELL]
+    least = sum(circuit.turns for circuit in turning)
+    hold(len(modes) >= least, f"{len(modes)} modes at {at} where {least} circuits pass")
 
 
 def written_down(motion: sb.Motion) -> None:

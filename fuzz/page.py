@@ -100,6 +100,7 @@ def _checked() -> str:
         "No number is missing or infinite in a row whose status promises it: joint values, rates to the "
         "jerk, points, links.",
         "Limits rise and lie within a turn; the motion type fits the limits, the ranges and the circuits.",
+        "A circuit whose input turns fully has its modes at any input.",
         "No well-conditioned row lies on two circuits; no row exceeds the extremes of velocity and "
         "acceleration.",
         "The report's JSON has no NaN, its text no `nan`; measures are finite or absent.",

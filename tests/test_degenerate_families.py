@@ -6,6 +6,7 @@ continuity: what is `off` by so much lies within what `off` allows of the degene
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable
 
@@ -20,11 +21,15 @@ from test_sweep_rssr_core import critical
 #: How far from degenerate, in parts of the size or radians.
 OFF = [10.0**-k for k in range(1, 13)]
 
+#: Inputs [rad] at which modes are counted.
+AT = [0.0, 0.4, 2.0, -1.1]
+
 #: No motion of these may take longer [s of processor time]: an ordinary one takes a hundredth.
 BOUND = 5.0
 
-#: Redundant constraints agree, or do not: between these either may be told.
-AGREE, DISAGREE = 1e-12, 1e-7
+#: Up to the first redundant constraints agree, from the second on they do not: between these it is told which do not. Misfits
+#: up to the third [rad, or parts of the size] are told.
+AGREE, DISAGREE, TOLD = 1e-10, 1e-7, 1e-6
 
 
 def told(linkage: sb.Linkage, **options: object) -> sb.Motion:
@@ -163,17 +168,44 @@ def test_an_overconstrained_loop_moves_until_its_condition_is_broken_and_then_do
 ) -> None:
     whole = told(family(0.0))
     assert len(whole.circuits) >= 1
+    modes = [len(family(0.0).assembly_modes(at)) for at in AT]
     for off in [*OFF, *(-off for off in OFF)]:
-        motion = told(family(off))
+        linkage = family(off)
+        motion = told(linkage)
+        misses = "redundant constraints, which miss by" in motion.established
         if abs(off) >= DISAGREE:
             assert motion.motion_type in {"rigid", "cannot-assemble"}, off
             assert not motion.circuits
-        elif abs(off) < AGREE:
-            assert motion.motion_type == whole.motion_type, off
-        else:
-            # between, what moves moves as the whole one does
-            assert motion.motion_type in {"rigid", "cannot-assemble", whole.motion_type}, off
-            assert len(motion.circuits) <= len(whole.circuits)
+            assert misses or abs(off) > TOLD, off
+            continue
+        if abs(off) <= AGREE:
+            assert [len(linkage.assembly_modes(at)) for at in AT] == modes, off
+            assert not misses
+        # between, no circuit is lost without a word
+        assert misses or len(motion.circuits) == len(whole.circuits), off
+        if motion.circuits:
+            assert motion.motion_type == whole.motion_type
+        for circuit in motion:
+            apart = [np.abs(wrapped(circuit.output - exact.output)).max() for exact in whole]
+            assert min(apart) < 100 * abs(off) + 1e-12, off
+
+
+def test_a_leaning_four_bar_that_agrees_in_one_circuit_only_says_by_how_much_the_other_misses() -> None:
+    motion = told(opened_four_bar(1e-9))
+    assert len(motion.circuits) == 1
+    low, high = map(float, re.findall(r"miss by (\S+) to (\S+) \(", motion.established)[0])
+    # crossed over, coupler and rocker lean to different sides: by twice the angle at most, and the gap comes to it
+    assert 1e-9 < low < high < np.hypot(2e-9, 2e-9)
+
+
+@pytest.mark.parametrize("beyond", [1e-4, 1e-6, 1e-8, 1e-9])
+def test_a_planar_four_bar_has_no_mode_beyond_a_dead_centre_by_however_little(beyond: float) -> None:
+    # by the law of cosines: coupler and rocker are stretched between crank and ground
+    limit = np.arccos((1 + 3.5**2 - 16) / (2 * 3.5))
+    linkage = four_bar(3.5, 1, 2, 2, angle=0.5)
+    drawn = 0.5
+    assert len(linkage.assembly_modes(limit - beyond - drawn)) == 2
+    assert len(linkage.assembly_modes(limit + beyond - drawn)) == 0
 
 
 # Special geometry of loops that move with and without it

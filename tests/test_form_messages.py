@@ -356,3 +356,55 @@ def test_mutated_files_of_every_form_load_or_say_why():
         except DescriptionError as error:
             assert str(error)
     assert 100 < loaded < 2900
+
+
+def drawn_far(place="[0, 0, 0]", pitch=3):
+    """Joints some units apart, one of them at a place of its own."""
+    return f"""format = 1
+length_unit = "in"
+joint = [
+  {{kind = "C", at = [0, 0, 0], axis = [0, 0, 1]}},
+  {{kind = "U", at = {place}, axes = [[1, 0, 0], [0, 1, 0]]}},
+  {{kind = "H", at = [0, 2, 0], axis = [0, 1, 0], pitch = {pitch}}},
+  {{kind = "P", at = [0, 2, 5], axis = [1, 1, 0]}},
+  {{kind = "R", at = [1, 2, 3], axis = [1, 1, 2]}},
+]
+"""
+
+
+LOST = "is lost in rounding beside that; give lengths of which the greatest is at most 1e+11 times the others"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            drawn_far("[9007199254740993, 0, 0]"),
+            "joint[2].at: [9007199254740992.0, 0.0, 0.0] is 9.01e+15 in from most of the others, and 5 in "
+            + LOST,
+        ),
+        (drawn_far(pitch=-4e12), "joint[3].pitch: 4e+12 in is too long, and 3.74 in " + LOST),
+        (
+            rows(*["length = 1\ntwist = 40"] * 4, "length = 2e13", "offset = -3", "twist = 40"),
+            "link[5].length: 2e+13 mm is too long, and 3 mm " + LOST,
+        ),
+    ],
+)
+def test_a_length_beside_which_the_others_are_lost_is_refused_by_name(text, message):
+    assert complaints(text) == [message]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        drawn_far("[1e10, 0, 0]"),
+        # zeros as programs compute them, and a few lengths that are nearly nothing
+        drawn_far("[1, 6.1e-17, 0]"),
+        rows(*["length = 1.2e-16\noffset = 6.1e-17"] * 6, "length = 1"),
+        rows(*["length = 1e12"] * 6, "length = 1"),
+        # all of one size, whatever that is
+        rows(*["length = 1e-14\noffset = 3e-15"] * 7),
+    ],
+)
+def test_lengths_that_can_be_seen_beside_each_other_are_taken(text):
+    assert sb.loads(text, "f.toml")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from fuzz.checks import circuits_are_distinct
 from random_linkages import random_rotation
 from sevenbar.errors import MOST_TOLD, DescriptionError, TableError
 from sevenbar.measuring.measured import Ends, read_measured
@@ -147,3 +148,39 @@ def test_a_circuit_between_change_points_is_found_once() -> None:
     middles = np.array([circuit.q[len(circuit.q) // 2] for circuit in linkage.motion()])
     gaps = np.linalg.norm(middles[:, None] - middles[None], axis=2)
     assert (gaps[~np.eye(len(gaps), dtype=bool)] > 0.1).all()
+
+
+def test_a_screw_turned_once_more_is_another_pose_however_small_its_pitch_beside_the_loop() -> None:
+    linkage = sb.from_axes(
+        [
+            {"kind": "C", "at": [0, 0, 0], "axis": [0, 0, 1]},
+            {"kind": "U", "at": [1e8, 0, 0], "axes": [[1, 0, 0], [0, 1, 0]]},
+            {"kind": "H", "at": [0, 2, 0], "axis": [0, 1, 0], "pitch": 3},
+            {"kind": "P", "at": [0, 2, 5], "axis": [1, 1, 0]},
+            {"kind": "R", "at": [1, 2, 3], "axis": [1, 1, 2]},
+        ]
+    )
+    motion = linkage.motion(24)
+    circuits_are_distinct(motion)
+    # the slide makes up for the pitch: no two circuits are one
+    middles = np.array([circuit.q[len(circuit.q) // 2] for circuit in motion])
+    gaps = np.linalg.norm(middles[:, None] - middles[None], axis=2)
+    assert (gaps[~np.eye(len(gaps), dtype=bool)] > 1.0).all()
+
+
+@pytest.mark.slow
+def test_a_circuit_that_comes_back_to_its_start_a_rounding_after_a_node_has_its_rows() -> None:
+    # the last step was shorter than nothing by 1e-12, which ended the program
+    linkage = sb.from_axes(
+        [
+            {"kind": "H", "at": [-1, 10, 1], "axis": [0, 0, -1], "pitch": 1},
+            {"kind": "R", "at": [-1, -1, 1], "axis": [3, 4, 0]},
+            {"kind": "P", "at": [1, 0, 0.5], "axis": [3, 4, 0]},
+            {"kind": "S", "at": [0.5, 10, 0.5]},
+            {"kind": "P", "at": [-1, 0, 0], "axis": [3, 4, 0]},
+        ]
+    )
+    motion = linkage.motion(24)
+    assert motion.circuits
+    for circuit in motion:
+        assert circuit.residual[circuit.status == "ok"].max() < 1e-10 * circuit.size

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.linkage import Drive, Joint, Linkage, Point, inverse, pose
 from sevenbar.motion import Floats
+from sevenbar.proportions import disproportions
 
 if TYPE_CHECKING:
     from sevenbar.schema import JointForm, LinkageForm, LinkForm, RssrForm
@@ -194,6 +195,8 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     from sevenbar import schema
 
     form = schema.check(raw, source=source)
+    if problems := disproportions(form):
+        raise DescriptionError(problems, source)
     if form.rssr is not None:
         linkage = _from_dimensions(form.rssr)
     elif form.joint is not None:

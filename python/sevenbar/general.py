@@ -311,10 +311,17 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
     joints = " and of ".join(columns[c] for c in raw["seed_columns"]) or "a turn of a ball"
     text = f"{how} at {raw['seeds']} values of {joints}; "
     if raw.get("rank") is None:
-        return text + "there are none"
-    text += "each lies on a circuit"
+        text += "there are none"
+    else:
+        text += "each lies on a circuit"
     if raw["still"]:
         text += f", but {raw['still']} from which no motion could be followed"
+    if misfits := raw["misfits"]:
+        text += (
+            f"; {len(misfits)} more pose{'s close' if len(misfits) > 1 else ' closes'} but for redundant "
+            f"constraints, which miss by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad, or parts of the size) "
+            f"and are taken to agree up to {raw['agree']:.0e}"
+        )
     return text
 
 

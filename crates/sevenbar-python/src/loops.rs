@@ -157,6 +157,8 @@ impl Loop {
         result.set_item("seed_columns", motion.seed_columns.clone())?;
         result.set_item("seeds", motion.seeds)?;
         result.set_item("still", motion.still)?;
+        result.set_item("misfits", motion.misfits.clone())?;
+        result.set_item("agree", loops::AGREE)?;
         result.set_item("input_rests", motion.input_rests)?;
         let circuits = motion
             .circuits

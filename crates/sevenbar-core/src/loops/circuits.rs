@@ -4,6 +4,7 @@ use super::chain::{COLUMNS, Chain, Columns, Configuration, Placed, squared_up};
 use super::curve::{Curve, End, Node, bordered_inverse, combined, dot, length};
 use super::dense::Inverse;
 use super::many;
+use super::polish::AGREE;
 use super::rates::{ORDERS, Rates};
 use super::turnings::{STILL, begun_at, insert, turns_at};
 use crate::outcome::RowStatus;
@@ -227,7 +228,13 @@ impl<'a> Passes<'a> {
         let off = self.chain.difference(&node.at, &solved.at);
         let along = dot(&off, &node.rates[0]);
         let aside = length(&combined(&off, 1.0, &self.chain.predicted(node, along), -1.0));
-        (aside <= rough.tube && solved.residual < ROW_CLOSED).then_some(Row {
+        // a curve of fewer than seven columns has redundant constraints, and their misfit changes between its nodes
+        let closed = if self.chain.columns < COLUMNS {
+            2.0 * AGREE
+        } else {
+            ROW_CLOSED
+        };
+        (aside <= rough.tube && solved.residual < closed).then_some(Row {
             at: solved.at,
             rates: solved.rates,
             status: RowStatus::Ok,
@@ -255,12 +262,13 @@ impl<'a> Passes<'a> {
         let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
         let middle = a.at.values[input] + a.gone(input, 0.5 * a.step);
         let (start, end) = (a.at.values[input], b.at.values[input]);
-        // by the nearer end, so that the series is short
+        // by the nearer end, so that the series is short; the last node may fall on the one before it, but for rounding
         let first = (value < middle) == (start < end);
+        let reach = 0.6 * a.step.max(0.0);
         let (node, low, high) = if first {
-            (segment, 0.0, 0.6 * a.step)
+            (segment, 0.0, reach)
         } else {
-            (segment + 1, -0.6 * a.step, 0.0)
+            (segment + 1, -reach, 0.0)
         };
         let n = &self.curve.nodes[node];
         let target = value - n.at.values[input];

@@ -16,6 +16,7 @@ mod modes;
 mod motion;
 mod paths;
 mod pieces;
+mod polish;
 mod rates;
 mod reduce;
 mod rows;
@@ -29,6 +30,7 @@ pub use extremes::Ends;
 pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
 pub use motion::{Circuit, Found, Motion, Through};
+pub use polish::AGREE;
 pub use reduce::{Idle, Kind};
 pub use rows::Rows;
 

@@ -6,11 +6,9 @@
 //! about axes in general position are added, and the solutions kept in which these stay at zero.
 
 use super::around::Around;
-use super::chain::{
-    BALLS, COLUMNS, Chain, Columns, Configuration, Joint, Rotation, product, short_way, squared_up,
-};
-use super::dense::{Factored, ROWS};
+use super::chain::{BALLS, Chain, Configuration, Joint, Rotation, product, short_way, squared_up};
 use super::paths::{BRISK, CAREFUL, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::polish::{Settled, polish};
 use super::reduce::Z_TO_X;
 use super::starts::{Frame, Random, SAME_GENERAL, STARTS, distinct, general_count, start};
 use crate::rigid::Pose;
@@ -41,9 +39,6 @@ const REAL: f64 = 1e-5;
 
 /// A real solution may move by this much [rad, or parts of the size] when it is polished on the chain itself.
 const POLISHED_MOVE: f64 = 1e-3;
-
-/// The closure error [rad, or parts of the size] that a mode may keep.
-pub(super) const CLOSED: f64 = 1e-11;
 
 /// Modes nearer than this in every joint [rad, or parts of the size] are one.
 pub(super) const SAME_MODE: f64 = 1e-7;
@@ -221,7 +216,7 @@ impl<'a> ModeFinder<'a> {
     /// All modes at the one value that is asked for [rad, or parts of the size].
     pub fn once(&self, value: f64) -> Vec<Configuration> {
         if !self.algebraic {
-            return self.search(value);
+            return self.polished(&self.search(value));
         }
         // straight there: where as many arrive as there can be, none is missing
         let (to, shift) = self.parameters(self.input_at(value));
@@ -238,7 +233,7 @@ impl<'a> ModeFinder<'a> {
     /// All modes with the input at this value [rad, or parts of the size].
     pub fn at(&self, value: f64) -> Vec<Configuration> {
         if !self.algebraic {
-            return self.search(value);
+            return self.polished(&self.search(value));
         }
         let generic = self.generic();
         let input = self.input_at(value);
@@ -313,15 +308,29 @@ impl<'a> ModeFinder<'a> {
 
     /// Rough modes closed to rounding, each once, in order; without those that do not close near by.
     pub fn polished(&self, rough: &[Configuration]) -> Vec<Configuration> {
-        let mut modes: Vec<Configuration> = Vec::new();
+        let settled = self.settled(rough);
+        let closed = settled.into_iter().filter(|s| s.agrees());
+        self.in_order(closed.map(|s| s.at).collect())
+    }
+
+    /// By how much [rad, or parts of the size] redundant constraints keep rough modes open, each once.
+    pub fn misfits(&self, rough: &[Configuration]) -> Vec<f64> {
+        let settled = self.settled(rough);
+        let open = settled.iter().filter(|s| !s.agrees() && self.chain.counts(&s.at));
+        open.map(|s| s.misfit).collect()
+    }
+
+    /// Where rough modes come to close as well as they can, each once.
+    fn settled(&self, rough: &[Configuration]) -> Vec<Settled> {
+        let mut out: Vec<Settled> = Vec::new();
         for rough in rough {
-            if let Some(mode) = polish(self.chain, self.input, rough, POLISHED_MOVE)
-                && modes.iter().all(|m| !same(self.chain, m, &mode))
+            if let Some(settled) = polish(self.chain, self.input, rough, POLISHED_MOVE)
+                && out.iter().all(|s| !same(self.chain, &s.at, &settled.at))
             {
-                modes.push(mode);
+                out.push(settled);
             }
         }
-        self.in_order(modes)
+        out
     }
 
     fn input_at(&self, value: f64) -> Input {
@@ -393,7 +402,7 @@ impl<'a> ModeFinder<'a> {
         Some(out)
     }
 
-    /// Newton from many places; screws within [`SCREW_TURNS`].
+    /// Newton from many places; screws within [`SCREW_TURNS`]. Redundant constraints may keep some of them open.
     fn search(&self, value: f64) -> Vec<Configuration> {
         let chain = self.chain;
         let mut random = Random(0x5ea4c4);
@@ -423,14 +432,14 @@ impl<'a> ModeFinder<'a> {
                         || m.values[c].abs() <= SCREW_TURNS * std::f64::consts::TAU
                 })
             };
-            if let Some(mode) = polish(chain, self.input, &rough, f64::INFINITY)
+            if let Some(Settled { at: mode, .. }) = polish(chain, self.input, &rough, f64::INFINITY)
                 && in_range(&mode)
                 && modes.iter().all(|m| !same(chain, m, &mode))
             {
                 modes.push(mode);
             }
         }
-        self.in_order(modes)
+        modes
     }
 }
 
@@ -452,53 +461,4 @@ pub(super) fn ball_rotation(t: &[f64; 3]) -> [[f64; 3]; 3] {
 
 pub(super) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool {
     chain.difference(a, b).iter().all(|d| d.abs() < SAME_MODE)
-}
-
-/// Newton's method with the input held; `None` where it does not close, or goes farther than `reach`.
-pub(super) fn polish(
-    chain: &Chain,
-    input: usize,
-    rough: &Configuration,
-    reach: f64,
-) -> Option<Configuration> {
-    let mut at = *rough;
-    let mut best = f64::INFINITY;
-    for step in 0..60 {
-        let placed = chain.place(&at);
-        let residual = chain.residual(&placed);
-        if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
-            break;
-        }
-        best = best.min(residual);
-        let mut columns = [[0.0; ROWS]; COLUMNS];
-        for (c, column) in columns.iter_mut().enumerate().take(chain.columns) {
-            if c == input {
-                // held, also where redundant constraints would rather have it move
-                column[6] = 1.0;
-            } else {
-                column[..6].copy_from_slice(&placed.screws[c]);
-            }
-        }
-        let mut right = [0.0; ROWS];
-        for (r, e) in right.iter_mut().zip(&placed.error) {
-            *r = -e;
-        }
-        let by = Factored::new(columns, chain.columns).solve(right);
-        let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
-        if !longest.is_finite() || (step > 25 && residual > 1e-3) {
-            return None;
-        }
-        // a full step near the answer, a bounded one far from it
-        let factor = if longest > 1.0 { 1.0 / longest } else { 1.0 };
-        let by: Columns = by.map(|b| b * factor);
-        at = chain.moved(&at, &by);
-        for ball in &mut at.balls {
-            *ball = squared_up(ball);
-        }
-    }
-    let gone = chain
-        .difference(rough, &at)
-        .iter()
-        .fold(0.0, |m: f64, d| m.max(d.abs()));
-    (chain.residual(&chain.place(&at)) < CLOSED && gone <= reach).then_some(at)
 }

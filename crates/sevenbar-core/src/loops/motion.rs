@@ -6,7 +6,8 @@ use super::circuits::{Passes, Row};
 use super::curve::{Curve, End, Node, combined, dot};
 use super::dense::singular_values;
 use super::extremes::{Ends, output_extremes};
-use super::modes::{CLOSED, Completeness, ModeFinder, polish};
+use super::modes::{Completeness, ModeFinder};
+use super::polish::{CLOSED, NO_RANK, Settled, polish, rank, unyielding};
 use super::rates::ORDERS;
 use super::rows::Rows;
 use super::walk::Start;
@@ -24,9 +25,6 @@ const AHEAD: usize = 4;
 
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
-
-/// Singular values below this part of the greatest are zero.
-const NO_RANK: f64 = 1e-8;
 
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
@@ -79,6 +77,8 @@ pub struct Motion {
     pub seeds: usize,
     /// Modes at the seeds that run into a place where the motion is not smooth, or do not move.
     pub still: usize,
+    /// By how much redundant constraints keep other poses at the seeds open, least first [rad, or parts of the size].
+    pub misfits: Vec<f64>,
     /// Modes at the input's value zero; `None` where that is no seed.
     pub modes_at_zero: Option<usize>,
     /// The circuits.
@@ -108,6 +108,7 @@ struct Curves {
     seed_columns: Vec<usize>,
     seeds: usize,
     still: usize,
+    misfits: Vec<f64>,
     /// Modes at the zero of the first of the wished joints.
     modes_at_zero: Option<usize>,
     /// Curves through some of the modes to come.
@@ -133,6 +134,7 @@ impl Loop {
                 seed_columns: Vec::new(),
                 seeds: 0,
                 still: 0,
+                misfits: Vec::new(),
                 modes_at_zero: None,
                 circuits: Vec::new(),
                 input_rests: false,
@@ -161,6 +163,7 @@ impl Loop {
                 .collect(),
             seeds: curves.seeds,
             still: curves.still,
+            misfits: curves.misfits,
             modes_at_zero: curves.modes_at_zero,
             circuits,
             input_rests,
@@ -182,7 +185,8 @@ impl Loop {
         let chain = self.reduced.chain.as_ref()?;
         let (a, b) = (self.chain_column(input)?, self.chain_column(output)?);
         let rough = self.configuration(values);
-        let Some(pose) = polish(chain, a, &rough, PUT_RIGHT) else {
+        let Some(Settled { at: pose, .. }) = polish(chain, a, &rough, PUT_RIGHT).filter(Settled::agrees)
+        else {
             return Some(Through::Apart(chain.residual(&chain.place(&rough))));
         };
         let mut curves = Curves::new();
@@ -380,9 +384,15 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
             .collect();
         out.ahead = chain.closed_curves(&places);
         for modes in &rough {
-            out.take(chain, &finder.polished(&out.unknown(chain, modes)), wished[0]);
+            let unknown = out.unknown(chain, modes);
+            let closed = finder.polished(&unknown);
+            if closed.len() < unknown.len() {
+                out.misfits.extend(finder.misfits(&unknown));
+            }
+            out.take(chain, &closed, wished[0]);
         }
     }
+    out.misfits.sort_by(f64::total_cmp);
     if out.seed_columns.is_empty() {
         out.completeness = Completeness::Searched;
     }
@@ -404,6 +414,7 @@ impl Curves {
             seed_columns: Vec::new(),
             seeds: 0,
             still: 0,
+            misfits: Vec::new(),
             modes_at_zero: None,
             ahead: Vec::new(),
         }
@@ -442,11 +453,7 @@ impl Curves {
             }
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
-            let rank = values
-                .iter()
-                .take(6)
-                .filter(|&&v| v > NO_RANK * values[0])
-                .count();
+            let rank = rank(&values, NO_RANK);
             if self.found.as_ref().is_none_or(|f| rank > f.rank) {
                 self.found = Some(Found {
                     rank,
@@ -500,15 +507,7 @@ impl Curves {
 
 /// A basis of the wrenches that no joint yields to: force and moment with zero power on every screw.
 fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
-    let rows: Vec<Vec<f64>> = (0..6)
-        .map(|r| {
-            let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
-            row.resize(row.len().max(6), 0.0);
-            row
-        })
-        .collect();
-    let (_, vectors) = singular_values(&rows);
-    vectors[rank.min(6)..]
+    unyielding(columns, rank)
         .iter()
         // the power of force f and moment m on (w, v) is m w + f v
         .map(|v| [v[3], v[4], v[5], v[0], v[1], v[2]])

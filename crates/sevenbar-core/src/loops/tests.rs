@@ -80,6 +80,35 @@ fn general_loops_have_sixteen_solutions_and_an_even_number_of_real_ones() {
 }
 
 #[test]
+fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misfits_after() {
+    let modes_and_misfits = |lean: f64| {
+        let chain = loop_of(
+            &[1.0, 2.0, 2.0, 3.5],
+            &[0.0; 4],
+            &[lean.to_degrees(), 0.0, 0.0, 0.0],
+        );
+        let finder = ModeFinder::new(&chain, 0);
+        // half a turn on: the crank lies along the ground
+        let rough = finder.around(4).swap_remove(2);
+        (finder.polished(&rough).len(), finder.misfits(&rough))
+    };
+    for lean in [0.0, 1e-13, 1e-11, 1e-10, -5e-10] {
+        assert_eq!(modes_and_misfits(lean), (2, vec![]));
+    }
+    for lean in [2e-9, 1e-7, -1e-6_f64] {
+        let (modes, misfits) = modes_and_misfits(lean);
+        assert_eq!((modes, misfits.len()), (0, 2));
+        // the axes fail to close by the angle itself, and nothing can make up for it
+        assert!(
+            misfits
+                .iter()
+                .all(|m| (0.999 * lean.abs()..2.0 * lean.abs()).contains(m)),
+            "{misfits:?}"
+        );
+    }
+}
+
+#[test]
 fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
     let chain = seven_r();
     for mode in ModeFinder::new(&chain, 0).at(0.3) {

@@ -2,6 +2,7 @@
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint};
 use super::curve::{Curve, End, Node, Stand, dot};
+use super::polish::AGREE;
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};
 
@@ -13,9 +14,6 @@ const MOST_NODES: usize = 100_000;
 
 /// Slides [parts of the size] and screws [rad] are not followed farther than this.
 const FARTHEST: f64 = 50.0;
-
-/// The closure error of a node above which redundant constraints have stopped to agree.
-const OPEN: f64 = 1e-9;
 
 /// A closed configuration and the direction in which to leave it.
 pub(super) type Start = (Configuration, Columns);
@@ -293,7 +291,7 @@ impl Walk<'_> {
         let chain = self.chain;
         let curve = &mut self.curves[walker];
         let last = curve.nodes.len() - 1;
-        if next.open > OPEN {
+        if next.open > AGREE {
             return Some(End::Open);
         }
         curve.nodes[last].step = step;

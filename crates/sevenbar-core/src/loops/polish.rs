@@ -1,0 +1,135 @@
+//! Newton's method with the input held, and when that to which it comes counts as closed.
+//!
+//! A loop with redundant constraints closes by its exact dimensions alone: numbers that are rounded leave it open everywhere, though by
+//! next to nothing. Newton's method, by least squares, then settles where what is left is borne by wrenches to which no joint yields.
+//! Such a pose counts as closed while its misfit is below [`AGREE`], and so does a node of a circuit. What joints could close must
+//! be closed to rounding, in every loop.
+
+use super::chain::{COLUMNS, Chain, Columns, Configuration, squared_up};
+use super::dense::{Factored, ROWS, singular_values};
+
+/// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
+pub(super) const CLOSED: f64 = 1e-11;
+
+/// The closure error [rad, or parts of the size] up to which redundant constraints agree: a nanometre in a metre, far below what can be
+/// made or measured, and far above rounding.
+pub const AGREE: f64 = 1e-9;
+
+/// The misfit [rad, or parts of the size] up to which it is told that redundant constraints alone keep a pose open: what a path to a
+/// real solution may leave of joints that are not there.
+const NEARLY: f64 = 1e-5;
+
+/// Singular values below this part of the greatest are zero: those that a misfit within [`AGREE`] may bring.
+pub(super) const NO_RANK: f64 = 10.0 * AGREE;
+
+/// A move [rad, or parts of the size] after which the next would be rounding.
+const SETTLED: f64 = 1e-12;
+
+/// A pose that closes as well as it can with the input held.
+pub(super) struct Settled {
+    pub at: Configuration,
+    /// The closure error that is left in redundant constraints [rad, or parts of the size].
+    pub misfit: f64,
+}
+
+impl Settled {
+    /// Whether its redundant constraints agree, so that it is a mode.
+    pub fn agrees(&self) -> bool {
+        self.misfit < AGREE
+    }
+}
+
+/// The rank of columns with these singular values, falling, where those below a part of the greatest are zero.
+pub(super) fn rank(values: &[f64], zero: f64) -> usize {
+    values.iter().take(6).filter(|&&v| v > zero * values[0]).count()
+}
+
+/// A basis, of unit length and square, of the rows of power zero on every screw: moment, then force.
+pub(super) fn unyielding(columns: &[Vec<f64>], rank: usize) -> Vec<Vec<f64>> {
+    let rows: Vec<Vec<f64>> = (0..6)
+        .map(|r| {
+            let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
+            row.resize(row.len().max(6), 0.0);
+            row
+        })
+        .collect();
+    singular_values(&rows).1.split_off(rank.min(6))
+}
+
+/// Newton's method with the input held; `None` where it does not close but for redundant constraints, or goes farther than `reach`.
+pub(super) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: f64) -> Option<Settled> {
+    let mut at = *rough;
+    let mut best = f64::INFINITY;
+    for step in 0..60 {
+        let placed = chain.place(&at);
+        let residual = chain.residual(&placed);
+        if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
+            break;
+        }
+        best = best.min(residual);
+        let mut columns = [[0.0; ROWS]; COLUMNS];
+        for (c, column) in columns.iter_mut().enumerate().take(chain.columns) {
+            if c == input {
+                // held, also where redundant constraints would rather have it move
+                column[6] = 1.0;
+            } else {
+                column[..6].copy_from_slice(&placed.screws[c]);
+            }
+        }
+        let mut right = [0.0; ROWS];
+        for (r, e) in right.iter_mut().zip(&placed.error) {
+            *r = -e;
+        }
+        let by = Factored::new(columns, chain.columns).solve(right);
+        let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
+        if !longest.is_finite() || (step > 25 && residual > 1e-3) {
+            return None;
+        }
+        if longest < SETTLED && residual >= CLOSED {
+            break;
+        }
+        // a full step near the answer, a bounded one far from it
+        let factor = if longest > 1.0 { 1.0 / longest } else { 1.0 };
+        let by: Columns = by.map(|b| b * factor);
+        at = chain.moved(&at, &by);
+        for ball in &mut at.balls {
+            *ball = squared_up(ball);
+        }
+    }
+    let gone = chain
+        .difference(rough, &at)
+        .iter()
+        .fold(0.0, |m: f64, d| m.max(d.abs()));
+    let misfit = misfit(chain, &at)?;
+    (gone <= reach).then_some(Settled { at, misfit })
+}
+
+/// The closure error that is left in redundant constraints; `None` for a pose that is open in others too.
+fn misfit(chain: &Chain, at: &Configuration) -> Option<f64> {
+    let placed = chain.place(at);
+    let residual = chain.residual(&placed);
+    if residual < CLOSED {
+        return Some(residual);
+    }
+    let error = &placed.error;
+    let left = error.iter().map(|e| e * e).sum::<f64>().sqrt();
+    // seven columns with rank six have no redundant constraints; turned right round, the error tells nothing
+    if chain.columns == COLUMNS || left.is_nan() || residual > NEARLY {
+        return None;
+    }
+    let columns = chain.screws(at);
+    let rank = rank(&singular_values(&columns).0, NO_RANK.max(10.0 * left));
+    if chain.columns - rank != 1 {
+        return None;
+    }
+    let mut rest = *error;
+    for row in unyielding(&columns, rank) {
+        let borne: f64 = row.iter().zip(error).map(|(w, e)| w * e).sum();
+        for k in 0..6 {
+            rest[k] -= borne * row[k];
+        }
+    }
+    // to first order: what a joint could close, and has not
+    let rest = rest.iter().map(|e| e * e).sum::<f64>().sqrt();
+    (rest < CLOSED.max(10.0 * left * left)).then_some(left)
+}
