@@ -6,11 +6,10 @@ import time
 import msgspec
 import numpy as np
 import viser
-import zstandard
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from benches.cases.studio import CAMERA
+from benches.cases.studio_client import CAMERA, unpacked
 
 
 class TabClient:
@@ -41,15 +40,9 @@ class TabClient:
             pass
 
     def _take(self, frame):
-        packed = int.from_bytes(frame[8:16], "little")
-        content = msgspec.msgpack.decode(zstandard.decompress(frame[16 : 16 + packed]))
-        buffers, place = [], 16 + packed
-        for length in content["binaryBufferLengths"]:
-            place += -place % 8
-            buffers.append(frame[place : place + length])
-            place += length
+        messages, buffers = unpacked(frame)
         with self._lock:
-            for message in content["messages"]:
+            for message in messages:
                 self._apply({key: _whole(value, buffers) for key, value in message.items()})
 
     def _apply(self, message):

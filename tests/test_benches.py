@@ -3,10 +3,12 @@
 import math
 import re
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+import sevenbar as sb
 from accuracy.circumstances import circumstances
 from benches import page, peers
 from benches.cases import CASES, case
@@ -286,3 +288,56 @@ def test_a_quick_look_at_an_array_of_rssrs_agrees_with_numpy_and_tells_of_numba(
         assert [row[0] for row in table.rows] == ["Sevenbar", "NumPy", "numba"]
         assert table.rows[1][4] > 0
         assert table.rows[2][-1] == "not installed"
+
+
+@pytest.mark.slow
+def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
+    """Also where its last message comes so late that the page seemed to be at rest before."""
+    from benches.cases import studio
+    from benches.cases.studio_client import updates
+    from sevenbar.files import text_of
+    from sevenbar.studio import tab as tab_module
+    from sevenbar.studio.server import StudioServer
+
+    late, verdict, works = 0.06, tab_module.verdict, []
+
+    def late_verdict(session):
+        time.sleep(late)
+        return verdict(session)
+
+    server = StudioServer(text_of("rssr"), "rssr", "127.0.0.1", 0)
+    try:
+        listener, tab = studio.connected(server)
+        change, begun = tab.session.change, len(listener.frames)
+
+        def timed_change(place, value):
+            start = time.perf_counter()
+            change(place, value)
+            works.append(1e3 * (time.perf_counter() - start))
+
+        monkeypatch.setattr(tab.session, "change", timed_change)
+        monkeypatch.setattr(tab_module, "verdict", late_verdict)
+        drawn, all_sent = studio.changed(tab, listener, 8)
+        sent = [update for _, frame in listener.frames[begun:] for update in updates(frame)]
+    finally:
+        server.stop()
+    # every change is done, none overtaken by the next
+    assert len(works) == len(drawn) == len(all_sent) == 8
+    assert all(time > work for time, work in zip(drawn, works, strict=True))
+    # the curves themselves are on their way for a while
+    assert all(end - time > 500 * late for time, end in zip(drawn, all_sent, strict=True))
+    first = sb.load("rssr").dimensions["L1"]
+    boxes = [f"{first * (1 + 0.0005 * (k + 1) * (-1) ** k):.12g}" for k in range(8)]
+    assert [update["value"] for update in sent if update.get("value") in boxes] == boxes
+
+
+def test_a_dimension_at_which_nothing_moves_is_no_timing():
+    from benches.cases import studio
+
+    dimension = SimpleNamespace(label="L1", value=250.0, place=("rssr", "L1"), key="rssr.L1")
+    session = SimpleNamespace(
+        draft=SimpleNamespace(dimensions=[dimension]), problem="it does not close", change=lambda *_: None
+    )
+    tab = SimpleNamespace(session=session, worker=SimpleNamespace(ask=lambda _, action: action()))
+    with pytest.raises(ValueError, match=r"rssr\.L1 = 250\.125: it does not close"):
+        studio.changed(tab, SimpleNamespace(frames=[]), 1)

@@ -166,6 +166,38 @@ def test_animation_goes_where_it_is_told(tmp_path):
     assert (tmp_path / "again.gif").exists()
 
 
+@pytest.mark.slow
+def test_an_animation_goes_into_the_folder_that_is_made_for_the_report(tmp_path):
+    asked = ["analyze", "rssr", "--samples", 36, "--figures", "svg", "--out", "new/report"]
+    run = sevenbar(*asked, "--animate", "new/../new/report/move.gif", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    folder = tmp_path / "new" / "report"
+    made = {"report.md", "report.json", "motion.csv", "configuration.svg", "motion.svg", "move.gif"}
+    assert {path.name for path in folder.iterdir()} == made
+    assert (folder / "move.gif").read_bytes()[:6] == b"GIF89a"
+    assert "new/report/move.gif" in run.stdout
+    assert "move.gif" not in (folder / "report.md").read_text(encoding="utf-8")
+    for name in made:
+        (folder / name).write_text("mine")
+    assert "exists already" in mistake(*asked, "--animate", "new/report/move.gif", cwd=tmp_path)
+    assert {(folder / name).read_text() for name in made} == {"mine"}
+    run = sevenbar(*asked, "--animate", "new/report/move.gif", "--force", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert all((folder / name).read_bytes() != b"mine" for name in made)
+    assert {path.name for path in folder.iterdir()} == made
+
+
+def test_an_animation_that_fails_leaves_no_report_in_its_folder(tmp_path):
+    broken = (
+        "import sevenbar.animate as a\n"
+        "def fails(*_):\n    yield from ()\n    raise a.OutputError('no picture')\n"
+        "a._pictures = fails"
+    )
+    asked = ["analyze", "rssr", "--samples", 36, "--out", "new/report", "--animate", "new/report/move.gif"]
+    assert mistake(*asked, cwd=tmp_path, before=broken) == "no picture"
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_gallery_lists_its_linkages_with_their_titles_in_line():
     lines = sevenbar("gallery").stdout.splitlines()
     assert [line.split()[0] for line in lines] == list(names())

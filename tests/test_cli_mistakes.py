@@ -50,6 +50,18 @@ def folder(tmp_path):
             "speed: '0 rpm' moves nothing; give a finite speed other than 0, as in '10 rad/s'",
         ),
         (
+            ["rssr", "--speed", "0"],
+            "speed: '0' moves nothing; give a finite speed other than 0, as in '10 rad/s'",
+        ),
+        (
+            ["rssr", "--speed", "1e99 rpm"],
+            "speed: '1e99 rpm' is out of range; give a speed of 1e-50 to 1e+50 in size, as in '10 rad/s'",
+        ),
+        (
+            ["rssr", "--out", "out", "--figures", ""],
+            "--figures: none given; give some of png, svg, pdf, or leave it out",
+        ),
+        (
             ["rssr", "--out", "out", "--figures", "svg,bmp"],
             "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf",
         ),
@@ -150,12 +162,39 @@ def test_a_name_nested_a_thousand_times_is_one_short_message(folder):
                 "link[2].joint: 'prismatic' is not a joint kind; did you mean 'P'? allowed: R, P, H",
             ],
         ),
+        (
+            'format = 1\n[drive]\njoint = "b"\n' + "[[link]]\nname = 'a'\n" * 3 + "[[link]]\nname = 'c'\n",
+            [
+                "link[2].name: 'a' is taken already; give each joint its own name",
+                "link[3].name: 'a' is taken already; give each joint its own name",
+                "drive.joint: no joint 'b'; this linkage has a, c",
+            ],
+        ),
+        (
+            'format = 1\n[drive]\njoint = "a"\noutput = "a"\n'
+            + "".join(f"[[link]]\nname = '{name}'\n" for name in "abbc"),
+            [
+                "link[3].name: 'b' is taken already; give each joint its own name",
+                "drive.output: joint 'a' is the input; give another: b, c",
+            ],
+        ),
     ],
 )
 def test_a_slip_in_a_file_is_told_with_what_to_write_instead(tmp_path, content, messages):
     (tmp_path / "f.toml").write_text(content)
     told = mistake("analyze", "f.toml", cwd=tmp_path).replace("sevenbar: ", "").splitlines()
     assert told == [f"f.toml: {message}" for message in messages]
+
+
+def test_nothing_where_a_choice_should_stand_is_no_choice(tmp_path):
+    for arguments, told in (
+        (["plot", "rssr", "--out", "p", "--kind", ""], "--kind: none given; give some of curves, joints, "),
+        (["sweep", "rssr", "--over", "L1=1,2", "--resume"], "--resume: of no folder; give --out too"),
+        (["sweep", "rssr", "--over", "L1=1,2", "--mixed"], "--mixed: of no folder; give --out too"),
+        (["gallery", ""], "'': no such linkage; 'sevenbar gallery' lists all"),
+    ):
+        assert mistake(*arguments, cwd=tmp_path).startswith(told)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_linkage_in_the_place_of_a_command_is_told_what_is_missing(tmp_path):
@@ -182,7 +221,7 @@ def test_words_that_the_command_line_does_not_know_end_with_exit_2():
 
 def test_a_figure_in_a_place_that_cannot_be_written_leaves_nothing(folder):
     before = sorted(p.name for p in folder.iterdir())
-    for place in ("taken/move.gif", "nowhere/move.gif", "move.avi"):
+    for place in ("taken/move.gif", "nowhere/move.gif", "out/below/move.gif", "move.avi", "out/move.avi"):
         message = mistake("analyze", "rssr", "--out", "out", "--animate", place, cwd=folder)
         assert place in message or "avi" in message
     assert sorted(p.name for p in folder.iterdir()) == before

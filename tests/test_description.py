@@ -1,5 +1,6 @@
 """What a linkage file may hold, and what is said of one that may not: place, value, what is allowed."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -266,6 +267,20 @@ def test_a_sliding_speed_is_in_length_units_a_second(text, unit, speed):
             "'mm' is not a unit known here; did you mean 'mm/s'? allowed: um/s, mm/s, cm/s, m/s, in/s, ft/s",
         ),
         (0, "0 moves nothing; give a finite speed other than 0, as in '10 mm/s'"),
+        ("0", "'0' moves nothing; give a finite speed other than 0, as in '10 mm/s'"),
+        ("-.0e3", "'-.0e3' moves nothing; give a finite speed other than 0, as in '10 mm/s'"),
+        ("0 mm/s", "'0 mm/s' moves nothing; give a finite speed other than 0, as in '10 mm/s'"),
+        (
+            "0 mm",
+            "'mm' is not a unit known here; did you mean 'mm/s'? allowed: um/s, mm/s, cm/s, m/s, in/s, ft/s",
+        ),
+        (math.inf, "inf is out of range; give a speed of 1e-50 to 1e+50 in size, as in '10 mm/s'"),
+        (math.nan, "nan is out of range; give a speed of 1e-50 to 1e+50 in size, as in '10 mm/s'"),
+        (
+            "-1e99 m/s",
+            "'-1e99 m/s' is out of range; give a speed of 1e-50 to 1e+50 in size, as in '10 mm/s'",
+        ),
+        ("1e-60 m/s", "'1e-60 m/s' is out of range; give a speed of 1e-50 to 1e+50 in size, as in '10 mm/s'"),
         (True, "True is not a speed; give a number and a unit, as in '10 mm/s'"),
     ],
 )

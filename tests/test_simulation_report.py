@@ -120,7 +120,7 @@ def test_the_rest_works_without_any_engine():
         ),
         (
             ["rssr", "--speed", "0"],
-            "speed: '0' has no unit; give a number and a unit, as in '10 rad/s' or '60 rpm'",
+            "speed: '0' moves nothing; give a finite speed other than 0, as in '10 rad/s'",
         ),
         (
             ["no.toml"],

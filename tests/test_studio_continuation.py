@@ -63,11 +63,16 @@ def steps(request: pytest.FixtureRequest) -> int:
 
 
 def begun(case: str) -> Session:
-    content, ends = CASES[case]
-    session = Session(content, case)
+    session = Session(CASES[case][0], case)
+    drive(session, case)
+    return session
+
+
+def drive(session: Session, case: str) -> None:
+    """Drives the case's own input; a reset goes back to the file's."""
+    _, ends = CASES[case]
     if ends:
         session.drive(*ends)
-    return session
 
 
 def stiffness(linkage: sb.Linkage, q: np.ndarray, column: int) -> float:
@@ -235,6 +240,14 @@ def test_a_pose_goes_on_while_a_slider_is_dragged(case: str, steps: int) -> None
     assert followed_all
 
 
+@pytest.mark.parametrize(
+    "steps",
+    [
+        4,
+        *(pytest.param(count, marks=pytest.mark.slow) for count in (25, 40)),
+        pytest.param(400, marks=pytest.mark.proof),
+    ],
+)
 @pytest.mark.parametrize("case", CASES)
 def test_after_a_great_change_a_true_mode_is_shown_and_told(case: str, steps: int) -> None:
     walked = Walked(begun(case), np.random.default_rng(steps))
@@ -243,7 +256,35 @@ def test_after_a_great_change_a_true_mode_is_shown_and_told(case: str, steps: in
         walked.change(float(walked.rng.uniform(0.05, 0.6)))
         if walked.rng.random() < 0.5:
             walked.session.reset()
+            drive(walked.session, case)
     assert not walked.wrong, "\n".join(walked.wrong)
+
+
+def test_a_pose_where_its_circuit_begins_goes_on_there() -> None:
+    """The last rows of a circuit that turns lie beside its first ones, and may be more like the pose before."""
+    session = Session(text("five_bar"), "five_bar")
+    session.change(("joint", 2, "at", 2), 31.3)
+    draft = session.draft
+    dimension = draft.dimension("joint[3].at[1]")
+    checked = 0
+    for value in (-11.9, 11.9):
+        for circuit in range(4):
+            for row in (0.0, 0.5, 359.5, 360.0):
+                session.choose(circuit)
+                session.seek(row)
+                before = session.view
+                assert before is not None
+                column = before.circuit.input_column
+                pose = closed(draft.linkage, before.joints(row), column)
+                assert pose is not None
+                session.change(dimension.place, value)
+                gone = followed(draft, dimension, value, pose, session.motion, column)
+                if gone is not None:
+                    shown = closed(session.draft.linkage, session.view.joints(session.row), column)
+                    assert distance(session.motion, gone, shown) < 1e-6, (value, circuit, row)
+                    checked += 1
+                session.undo()
+    assert checked >= 16
 
 
 def test_where_a_mode_is_gone_the_pose_stays_at_the_limit_of_its_circuit() -> None:

@@ -5,83 +5,75 @@ from __future__ import annotations
 import statistics
 import threading
 import time
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
+from benches.cases.studio_client import LONGEST_WAIT, Listener, updates
 from benches.harness import told
 from benches.outcome import Cell, Outcome, Table
 from benches.setting import Setting
 
+if TYPE_CHECKING:
+    from sevenbar.draft import Place
+
 TITLE = "The studio: from a slider to new curves"
 ABOUT = """\
-A client without a browser is connected, so that packing and sending count; it throws away what it gets.
+A client without a browser is connected, so that packing and sending count; it draws nothing.
 The first time ends when curves and scene have come, which are one message, the second when the last of
-all has: the verdict and the boxes. The first length of each linkage is changed to and fro, all circuits
-at 360 samples. Wall time; no peer does this."""
+all has: the verdict and the boxes. What has come is known by its content, the new curves and the new
+value, and the next change begins after it. The first length of each linkage is changed to and fro,
+all circuits at 360 samples. Wall time; no peer does this."""
 
 #: The asked medians [ms].
 ASKED = {"rssr": 20.0, "seven_r": 50.0}
 
-CAMERA = {
-    "type": "ViewerCameraMessage",
-    "wxyz": (1.0, 0.0, 0.0, 0.0),
-    "position": (3.0, -3.0, 2.0),
-    "fov": 0.9,
-    "near": 0.01,
-    "far": 1000.0,
-    "image_height": 900,
-    "image_width": 1000,
-    "look_at": (0.0, 0.0, 0.0),
-    "up_direction": (0.0, 0.0, 1.0),
-}
 
-
-class Listener:
-    """A client that only notes when bytes came, and how many: `frames` of (time [s], bytes)."""
-
-    def __init__(self, address: str) -> None:
-        import msgspec
-        import viser
-        from websockets.sync.client import connect
-
-        protocol: Any = f"viser-v{viser.__version__}"
-        self.frames = [(time.perf_counter(), 0)]
-        self.socket = connect(
-            address.replace("http://", "ws://"), subprotocols=[protocol], max_size=None, compression=None
-        )
-        self.socket.send(msgspec.msgpack.encode(CAMERA))
-        threading.Thread(target=self._listen, daemon=True).start()
-
-    def _listen(self) -> None:
-        from websockets.exceptions import ConnectionClosed
-
-        try:
-            for frame in self.socket:
-                self.frames.append((time.perf_counter(), len(frame)))
-        except ConnectionClosed:
-            pass
-
-    def at_rest(self, quiet: float) -> None:
-        """Waits until nothing has come for a while [s]."""
-        while time.perf_counter() - self.frames[-1][0] < quiet:
-            time.sleep(0.005)
+def connected(server: Any) -> tuple[Listener, Any]:
+    """A client at a server, once all of its page has come, and its tab."""
+    listener = Listener(server.address)
+    listener.first(1, _has_curves)
+    listener.at_rest(2.0)
+    (tab,) = server.tabs
+    return listener, tab
 
 
 def changed(tab: Any, listener: Listener, changes: int) -> tuple[list[float], list[float]]:
-    """Times [ms] to curves and scene, and to the end, of changes of the first length to and fro."""
+    """Times [ms] to curves and scene, and to the end, of changes of the first length to and fro.
+
+    Each begins when all of the one before has come, and ends with frames that are its own: the first with
+    curves, and that with the new value in its box. Raises `ValueError` for a length at which nothing moves.
+    """
+    from sevenbar.studio.dimension_rows import number_text
+
     dimension = next(d for d in tab.session.draft.dimensions if d.label in ("L1", "length"))
     drawn, all_sent = [], []
     for number in range(changes):
         value = dimension.value * (1 + 0.0005 * (number + 1) * (-1) ** number)
-        sent = len(listener.frames)
+        begun, shown = len(listener.frames), threading.Event()
         start = time.perf_counter()
-        tab.worker.ask(dimension.place, lambda value=value: tab.session.change(dimension.place, value))
-        while len(listener.frames) == sent:
-            time.sleep(0.001)
-        listener.at_rest(0.02)
-        fresh = listener.frames[sent:]
-        drawn.append(1e3 * (max(fresh, key=lambda frame: frame[1])[0] - start))
-        all_sent.append(1e3 * (fresh[-1][0] - start))
-    return sorted(drawn), sorted(all_sent)
+        tab.worker.ask(dimension.place, partial(_change, tab, dimension.place, value, shown))
+        if not shown.wait(LONGEST_WAIT):
+            raise TimeoutError(f"{dimension.key} = {value}: not done after {LONGEST_WAIT:g} s")
+        if tab.session.problem:
+            raise ValueError(f"{dimension.key} = {value}: {tab.session.problem}")
+        # unpacked only now, when the studio has no more to do
+        drawn.append(1e3 * (listener.first(begun, _has_curves) - start))
+        all_sent.append(1e3 * (listener.first(begun, partial(_tells, number_text(value))) - start))
+    return drawn, all_sent
+
+
+def _change(tab: Any, place: Place, value: float, shown: threading.Event) -> None:
+    """Changes a dimension within a round of the tab's worker; the next round begins when it is shown."""
+    tab.session.change(place, value)
+    tab.worker.ask(shown, shown.set)
+
+
+def _has_curves(frame: bytes) -> bool:
+    return any("<svg" in update.get("content", "") for update in updates(frame))
+
+
+def _tells(value: str, frame: bytes) -> bool:
+    return any(update.get("value") == value for update in updates(frame))
 
 
 def run(setting: Setting) -> Outcome:
@@ -112,13 +104,12 @@ def measured(name: str, changes: int, asked: float) -> list[Cell]:
     from sevenbar.studio.server import StudioServer
 
     server = StudioServer(text_of(name), name, "127.0.0.1", 0)
-    listener = Listener(server.address)
-    listener.at_rest(2.0)
-    (tab,) = server.tabs
+    listener, tab = connected(server)
     before = len(listener.frames)
     drawn, all_sent = changed(tab, listener, changes)
+    drawn.sort()
     circuits = len(tab.session.motion.circuits) if tab.session.motion else 0
-    kilobytes = sum(size for _, size in listener.frames[before:]) / changes / 1e3
+    kilobytes = sum(len(frame) for _, frame in listener.frames[before:]) / changes / 1e3
     server.stop()
     return [
         statistics.median(drawn),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import sys
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -124,25 +125,44 @@ def analyze(
     check_targets(report.certain_targets(out) if out is not None else [], force=force)
     read = None if law is None else sb.load_law(law, loaded, input=input_joint)
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
-    if animate is not None:
-        from sevenbar.animate import animate as write_animation
-        from sevenbar.animate import check_target
-        from sevenbar.motion import chosen_circuit
-
-        # before anything is written
-        check_target(animate)
-        check_targets([animate], force=force)
-        drawn = chosen_circuit(motion, report.posed_circuit(motion) or 0).index
-    written = report.write(motion, out, endings, force=force) if out is not None else []
-    if animate is not None:
-        with progress_bar(f"drawing {animate.name}") as progress:
-            write_animation(motion, animate, circuit=drawn, progress=progress)
+    film = None if animate is None else _film(motion, animate, out, force=force)
+    # a film that goes into the report's folder is of the files that appear together
+    inside = film if animate is not None and out is not None and _same_folder(animate.parent, out) else None
+    written = [] if out is None else report.write(motion, out, endings, also=inside, force=force)
+    if animate is not None and film is not None and inside is None:
+        film(animate.parent)
         written.append(animate)
     if json:
         typer.echo(report.as_json(motion))
         return
     report.print_text(motion)
     tell_written(written)
+
+
+def _film(motion: sb.Motion, file: Path, out: Path | None, *, force: bool) -> Callable[[Path], None]:
+    """What draws the animation into a folder; raises where it cannot be, before anything is written."""
+    from sevenbar import report
+    from sevenbar.animate import animate, check_ending, check_target
+    from sevenbar.motion import chosen_circuit
+
+    if out is not None and _same_folder(file.parent, out):
+        # a folder that may still have to be made
+        check_ending(file)
+    else:
+        check_target(file)
+    check_targets([file], force=force)
+    drawn = chosen_circuit(motion, report.posed_circuit(motion) or 0).index
+
+    def draw(folder: Path) -> None:
+        with progress_bar(f"drawing {file.name}") as progress:
+            animate(motion, folder / file.name, circuit=drawn, progress=progress)
+
+    return draw
+
+
+def _same_folder(folder: Path, other: Path) -> bool:
+    """Whether two paths are one folder, which may be there or not."""
+    return folder.resolve() == other.resolve()
 
 
 @app.command()
@@ -223,6 +243,8 @@ def plot_(
 
 def _kinds(given: list[str] | None) -> list[str]:
     kinds = words(given or ["all"])
+    if not kinds:
+        raise RequestError(f"--kind: none given; give some of {', '.join(KINDS)}, all")
     for word in kinds:
         if word not in (*KINDS, "all"):
             raise RequestError(f"--kind: {shown(word)} is not a figure; allowed: {', '.join(KINDS)}, all")
@@ -267,7 +289,7 @@ def gallery(
     if name is not None and name not in known:
         near = " or ".join(f"'{word}'" for word in nearest(name))
         offer = f"did you mean {near}? " if near else ""
-        raise RequestError(f"{name}: no such linkage; {offer}'sevenbar gallery' lists all")
+        raise RequestError(f"{name or shown(name)}: no such linkage; {offer}'sevenbar gallery' lists all")
     if name is not None:
         typer.echo(text(name), nl=False)
         return

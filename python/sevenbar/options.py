@@ -40,6 +40,8 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     from sevenbar.figure import FORMATS
 
     endings = tuple(word.lower().removeprefix(".") for word in words(given))
+    if not endings:
+        raise RequestError(f"--figures: none given; give some of {', '.join(FORMATS)}, or leave it out")
     for ending in endings:
         if ending not in FORMATS:
             raise RequestError(

@@ -9,7 +9,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -220,14 +220,15 @@ def write(
     folder: str | os.PathLike[str],
     figures: Sequence[str] = ("png",),
     *,
+    also: Callable[[Path], object] | None = None,
     force: bool = False,
 ) -> list[Path]:
     """Writes report.md, report.json, motion.csv and the figures into a folder; returns their paths.
 
     The folder is made if need be. The figures are configuration and motion; but for an RSSR, whose curves
-    tell all, also joints, and path_<name> for each named point. All files are finished in a folder beside it
-    before the first is put in place. Raises `OutputError` where that cannot be done, and where one of them
-    exists and `force` is not given.
+    tell all, also joints, and path_<name> for each named point. `also` writes more into the folder that it
+    is given. All files are finished in a folder beside it before the first is put in place. Raises
+    `OutputError` where that cannot be done, and where one of them exists and `force` is not given.
 
         >>> import tempfile
         >>> import sevenbar as sb
@@ -255,6 +256,8 @@ def write(
         stems = {name.rpartition(".")[0]: name for name in reversed(shown_here)}
         pictures = [stems[stem] for stem in sorted(stems)]
         (staging / "report.md").write_text(markdown(motion, pictures), encoding="utf-8")
+        if also is not None:
+            also(staging)
 
     return fill_folder(Path(folder), fill, force=force)
 

@@ -18,6 +18,10 @@ ANGLES = {"rad": 1.0, "deg": math.pi / 180}
 #: Units of turning speed and their size in rad/s.
 TURNING_SPEEDS = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.tau / 60, "rev/s": math.tau}
 
+#: The least and the greatest speed [rad/s, or length/s]; the cubes of others, which jerks have as a factor,
+#: come near the ends of what a float holds.
+SLOWEST, FASTEST = 1e-50, 1e50
+
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
 
 
@@ -87,17 +91,23 @@ def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str)
         if match is None:
             raise RequestError(f"{shown(value)} is not a speed; {hint}")
         number, unit = match.groups()
-        if unit not in sizes:
+        # zero is zero in any unit
+        if unit not in sizes and (unit or float(number) != 0):
             raise RequestError(_no_such_speed(value, unit, sizes, motion, hint))
-        speed = float(number) * sizes[unit]
+        speed = float(number) * sizes.get(unit, 1.0)
     else:
         try:
             speed = float(value)
         except OverflowError:
             speed = math.inf
-    if not 1e-50 <= abs(speed) <= 1e50:
-        first = example.split(" or ")[0]
+    first = example.split(" or ")[0]
+    if speed == 0:
         raise RequestError(f"{shown(value)} moves nothing; give a finite speed other than 0, as in {first}")
+    if not SLOWEST <= abs(speed) <= FASTEST:
+        raise RequestError(
+            f"{shown(value)} is out of range; give a speed of {SLOWEST:g} to {FASTEST:g} in size, "
+            f"as in {first}"
+        )
     return speed
 
 

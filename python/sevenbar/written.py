@@ -110,7 +110,11 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         message = f"a loop {loop} has {count} outside its balls; an input and an output need two"
         known_kinds = all(joint.kind for joint in joints)
         return "", "", [Problem("joint", message)] if known_kinds else []
-    known = [name for j in joints for name in (j.columns if j.kind in ("C", "U") else [j.name])]
+    # two joints of one name are told of elsewhere; to choose from they are one
+    choices = list(dict.fromkeys(free))
+    known = list(
+        dict.fromkeys(name for j in joints for name in (j.columns if j.kind in ("C", "U") else [j.name]))
+    )
     problems = []
     chosen: dict[str, str] = {}
     for key in ("joint", "output"):
@@ -122,12 +126,12 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         if owner is None:
             problems.append(Problem(f"drive.{key}", no_joint(name, known)))
         elif owner.kind == "S":
-            ball = f"joint {shown(owner.name)} is a ball; give a joint with one freedom: {', '.join(free)}"
+            ball = f"joint {shown(owner.name)} is a ball; give a joint with one freedom: {', '.join(choices)}"
             problems.append(Problem(f"drive.{key}", ball))
         else:
             chosen[key] = next(iter(owner.columns)) if name == owner.name else name
     first = chosen.get("joint", firsts[0])
-    others = [column for column in free if column != first]
+    others = [column for column in choices if column != first]
     # `first` where one name stands for every joint, which is told of elsewhere
     last = chosen.get(
         "output", next((c for c in [*reversed(firsts), *reversed(others)] if c != first), first)

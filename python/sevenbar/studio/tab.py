@@ -81,13 +81,15 @@ class Tab:
             self._curves.show()
         # at once, without waiting for the end of viser's own interval
         self._client.flush()
+        # nothing is sent while messages are grouped, so the longest work is done before that
+        told = (self.session.motion, self.session.view, self.session.problem)
+        content = self._verdict.content if told == self._told else verdict(self.session)
         with self._client.atomic():
             self._shape.show()
             self._points.show()
-            told = (self.session.motion, self.session.view, self.session.problem)
             if told != self._told:
                 self._told = told
-                self._verdict.content = verdict(self.session)
+                self._verdict.content = content
 
     def _fault(self) -> None:
         """Tells of a fault of the studio's own, after which the tab goes on."""

@@ -179,6 +179,26 @@ class View:
         """The pass that holds a row of the path, and goes on from it."""
         return next((part for part in self.passes if part.start <= row < part.last), self.passes[-1])
 
+    def input_between(self, row: float, other: float) -> float:
+        """How far the input runs [rad, or length] from row to row of one pass; infinite between two passes.
+
+        The first and the last row of a closed circuit are one place, over which a pass goes on unless a dead
+        centre stands there. Of two ways it is the shorter one.
+        """
+        low, high = sorted((row, other))
+        ways = [
+            abs(self.input_at(high) - self.input_at(low))
+            for part in self.passes
+            if part.start <= low and high <= part.last
+        ]
+        first, last = self.passes[0], self.passes[-1]
+        ends_there = low == first.start or high == last.last
+        goes_on = self.circuit.closed and (ends_there or not first.stands_first)
+        if goes_on and low <= first.last and last.start <= high:
+            to_the_end = abs(self.path.input[-1] - self.input_at(high))
+            ways.append(float(to_the_end + abs(self.input_at(low) - self.path.input[0])))
+        return min(ways, default=math.inf)
+
     def along(self, values: Floats, row: float) -> Floats:
         """Values (n, ..) of the path's rows at a row, on the straight line between two."""
         low = min(int(row), len(values) - 1)
@@ -304,13 +324,8 @@ class _Measure:
 
     def adjoins(self, view: View, row: int, at: float, gap: float) -> bool:
         """Whether a pass leads from a row of a view to another whose input is no more than a gap away."""
-        last = len(view.path.rows) - 1
-        ends = {row, last} if row == 0 and view.circuit.closed else {row}
-        one_pass = any(
-            p.start <= min(at, end) and max(at, end) <= p.last for p in view.passes for end in ends
-        )
         unit = self._size if view.linkage.column_kinds[self.input] == "slide" else 1.0
-        return one_pass and abs(view.input_at(at) - view.path.input[row]) <= (gap + SAME_INPUT) * unit
+        return view.input_between(row, at) <= (gap + SAME_INPUT) * unit
 
     def course(self, view: View, row: float) -> Floats:
         """The direction (kept columns,) in which the joints of a view go at a row, where the input rises."""

@@ -73,6 +73,9 @@ def sweep(
     for name, _ in pairs:
         if [other for other, _ in pairs].count(name) > 1:
             raise RequestError(f"over: dimension '{name}' is given twice; leave one out")
+    for option, given in (("--resume", resume), ("--mixed", mixed)):
+        if given and out is None:
+            raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")
     draft = Draft.of(text_of(linkage), linkage)
     plan = Plan.of(
         draft, axes, words(measure or list(USUAL)), method=method, count=count, seed=seed,

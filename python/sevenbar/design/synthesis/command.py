@@ -147,8 +147,8 @@ def _after(found: Synthesis, out: Path | None, endings: tuple[str, ...], *, forc
 def _limits(transmission: str, size: str | None, motion_type: str | None) -> Limits:
     from sevenbar.design.synthesis.limits import Limits
 
-    lengths = None if size is None else _pair("--size", size, length_sizes("mm"), "mm", "50:1000 or 5cm:1m")
-    return Limits(angle("--transmission", transmission), lengths, motion_type)
+    ends = None if size is None else lengths("--size", size, "mm")
+    return Limits(angle("--transmission", transmission), ends, motion_type)
 
 
 def seed_of(seed: int) -> int:
@@ -169,6 +169,11 @@ def angle(option: str, text: str) -> float:
 def angles(option: str, text: str) -> tuple[float, float]:
     """The two angles [rad] of a range like 0:90deg, whose unit may stand at the end only."""
     return _pair(option, text, ANGLES, "deg", "0:90deg or 30deg:-60deg")
+
+
+def lengths(option: str, text: str, unit: str) -> tuple[float, float]:
+    """The two lengths [unit] of a range like 50:1000 or 5cm:1m, whose unit may stand at the end only."""
+    return _pair(option, text, length_sizes(unit), unit, "50:1000 or 5cm:1m")
 
 
 def numbers(option: str, text: str) -> tuple[float, float]:

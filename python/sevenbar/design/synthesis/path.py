@@ -32,7 +32,7 @@ def path_generation(
     point: Where,
     *,
     vary: Sequence[str] | None = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, tuple[float | str, float | str]] | None = None,
     timing: npt.ArrayLike | None = None,
     phase: bool = False,
     place: bool = False,

@@ -40,7 +40,7 @@ def path(
     ] = None,
     bound: Annotated[
         list[str] | None,
-        typer.Option(help="Bounds of a dimension, as in L1=100:400; may be repeated."),
+        typer.Option(help="Bounds of a dimension, as in L1=100:400 or L1=10cm:40cm; may be repeated."),
     ] = None,
     place: Annotated[bool, typer.Option("--place", help="The linkage may stand anywhere in space.")] = False,
     timing: Annotated[
@@ -53,7 +53,7 @@ def path(
         str | None, typer.Option(help="Least transmission angle of an RSSR, as in '40deg'.")
     ] = None,
     size: Annotated[
-        str | None, typer.Option(help="Shortest link and longest dimension, as in 50:1000.")
+        str | None, typer.Option(help="Shortest link and longest dimension, as in 50:1000 or 5cm:1m.")
     ] = None,
     motion_type: Annotated[str | None, typer.Option(help="Motion type, as in crank-rocker.")] = None,
     designs: Annotated[int, typer.Option(help="How many designs that differ.")] = 5,
@@ -91,7 +91,7 @@ def path(
         timing=inputs,
         phase=phase,
         place=place,
-        limits=_limits(transmission, size, motion_type),
+        limits=_limits(transmission, size, motion_type, draft.linkage.length_unit),
     )
     check_counts(designs, starts, seed)
     with progress_bar("designing") as progress:
@@ -141,32 +141,20 @@ def _where(name: str | None, link: int | None, at: str | None) -> Where:
     return link, place_of(at)
 
 
-def _bound(word: str) -> tuple[str, tuple[float, float]]:
-    """Name and bounds of words like "L1=100:400"."""
-    name, _, ends = word.partition("=")
-    low, _, high = ends.partition(":")
-    return name.strip(), _range(low, high, f"--bound: {shown(word)}", "L1=100:400")
+def _bound(word: str) -> tuple[str, tuple[str, str]]:
+    """Name and bounds of words like "L1=100:400" and "L1=10cm:40cm"."""
+    name, _, text = word.partition("=")
+    ends = [end.strip() for end in text.split(":")]
+    if len(ends) != 2 or not all(ends):
+        example = "L1=100:400 or L1=10cm:40cm"
+        raise RequestError(f"--bound: {shown(word)} is not understood; give the two ends, as in {example}")
+    return name.strip(), (ends[0], ends[1])
 
 
-def _range(low: str, high: str, where: str, example: str) -> tuple[float, float]:
-    try:
-        return float(low), float(high)
-    except ValueError:
-        raise RequestError(f"{where} is not understood; give the two ends, as in {example}") from None
-
-
-def _limits(transmission: str | None, size: str | None, motion_type: str | None) -> Limits:
+def _limits(transmission: str | None, size: str | None, motion_type: str | None, unit: str) -> Limits:
+    """What a design must keep; a size without a unit is in the file's."""
+    from sevenbar.design.synthesis.command import angle, lengths
     from sevenbar.design.synthesis.limits import Limits
-    from sevenbar.units import ANGLES, amount
 
-    angle = 0.0
-    if transmission is not None:
-        value = amount(transmission, ANGLES, "deg")
-        if value is None:
-            raise RequestError(f"--transmission: {shown(transmission)} is no angle; give one, as in 40deg")
-        angle = value
-    ends = None
-    if size is not None:
-        low, _, high = size.partition(":")
-        ends = _range(low, high, f"--size: {shown(size)}", "50:1000")
-    return Limits(angle, ends, motion_type)
+    least = 0.0 if transmission is None else angle("--transmission", transmission)
+    return Limits(least, None if size is None else lengths("--size", size, unit), motion_type)

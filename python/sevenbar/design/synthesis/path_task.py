@@ -111,7 +111,7 @@ def path_task(
     point: Where,
     *,
     vary: Sequence[str] | None = None,
-    bounds: Mapping[str, tuple[float, float]] | None = None,
+    bounds: Mapping[str, tuple[float | str, float | str]] | None = None,
     timing: npt.ArrayLike | None = None,
     phase: bool = False,
     place: bool = False,
@@ -120,8 +120,8 @@ def path_task(
     """The task as it was asked for, looked at; raises `RequestError` for what does not fit.
 
     `points` (n, 3) [length]; one that ends where it began is closed. `vary` holds names of dimensions or
-    patterns, `bounds` (low, high) by name or pattern in the file's units; where none are given all that can
-    change without opening the loop varies, within bounds of its own.
+    patterns, `bounds` (low, high) by name or pattern, numbers in the file's units or texts as "25 cm"; where
+    none are given all that can change without opening the loop varies, within bounds of its own.
     """
     draft = linkage if isinstance(linkage, Draft) else Draft.of_linkage(linkage)
     draft, own = _with_point(draft, point)
@@ -297,7 +297,7 @@ def _opening(task: PathTask) -> tuple[int, ...]:
     )
 
 
-def _bounds(task: PathTask, given: Mapping[str, tuple[float, float]]) -> tuple[Floats, Floats]:
+def _bounds(task: PathTask, given: Mapping[str, tuple[float | str, float | str]]) -> tuple[Floats, Floats]:
     """Bounds of what varies (k,) each, those of the size held too."""
     dimensions = task.dimensions
     lengths = [abs(d.value) for d in task.closure.dimensions if d.kind == "length"]
@@ -323,13 +323,20 @@ def _bounds(task: PathTask, given: Mapping[str, tuple[float, float]]) -> tuple[F
                 f"bounds: {shown(pattern)} is not a dimension that varies; {suggestion(pattern, names)}"
                 f"these vary: {', '.join(names)}"
             )
+        # a pattern of lengths and angles takes numbers alone
+        alike = len({dimensions[i].unit for i in found}) == 1
         try:
-            least, most = (float(value) for value in pair)
+            least, most = (
+                dimensions[found[0]].read(value) if alike and isinstance(value, str) else float(value)
+                for value in pair
+            )
         except (TypeError, ValueError):
             least = most = math.nan
         if not (math.isfinite(least) and math.isfinite(most) and least < most):
+            written = isinstance(pair, tuple) and any(isinstance(end, str) for end in pair)
+            told = ":".join(map(str, pair)) if written else pair
             raise RequestError(
-                f"bounds: {shown(pair)} of {pattern} are no bounds; give the least and the greatest value, "
+                f"bounds: {shown(told)} of {pattern} are no bounds; give the least and the greatest value, "
                 "as in 100:400"
             )
         for i in found:
