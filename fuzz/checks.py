@@ -34,8 +34,9 @@ CLOSED_CHANGING = 1e-3
 #: Condition up to which poses are compared, and how near [rad, parts of the size] two of them are one.
 WELL, SAME = 1e4, 1e-7
 
-#: Share of their spread by which a row may lie beyond the extremes of a rate.
-BEYOND = 1e-6
+#: Share of their spread by which a row may lie beyond the extremes of a rate; and rates that are rounding alone,
+#: where an output rests, in parts of the greatest rate of the joints.
+BEYOND, RESTING = 1e-6, 1e-14
 
 #: How far rows may lie outside the range of their circuit, in parts of it: limits may be roots of roundings.
 WITHIN = 1e-6
@@ -180,6 +181,7 @@ def of_circuit(motion: sb.Motion, circuit: sb.Circuit) -> None:
         hold(all(map(math.isfinite, vars(extremes).values())), f"{name}: {extremes}")
         values = column[rated, circuit.output_column]
         slack = BEYOND * (extremes.highest - extremes.lowest) + BEYOND * np.abs(values).max(initial=0.0)
+        slack += RESTING * np.abs(column[rated]).max(initial=0.0)
         if values.size and name != "jerk":
             hold(
                 values.max() <= extremes.highest + slack,
