@@ -30,6 +30,9 @@ LIMITS = {
     "change-point": {0, 1, 2, 3, 4},
 }
 
+#: Least transmission angle [deg] from which on the rates of an input that turns have extremes.
+PASSING = 0.01
+
 
 def of_rssrs(dimensions: Floats, side: str) -> list[str]:
     """The motion types of RSSRs (6, n) driven at one side, classified and measured."""
@@ -46,10 +49,12 @@ def of_rssrs(dimensions: Floats, side: str) -> list[str]:
     kept = motions.clear[motions.linkage]
     _measured(motions, kept)
     turns = np.isin(motions.types[motions.linkage].astype(str), ("crank-rocker", "double-crank"))
+    # branches that pass each other within rounding have rates without a digit
+    passing = motions.columns["transmission_lowest"] < PASSING
     for name in ("velocity_lowest", "velocity_highest", "acceleration_lowest", "jerk_highest"):
         finite = np.isfinite(motions.columns[name])
         hold(
-            (finite[kept] == turns[kept]).all(),
+            ((finite == turns) | (turns & passing))[kept].all(),
             f"{name} is there where the input rocks, or not where it turns",
         )
     least, greatest = (

@@ -34,9 +34,11 @@ CLOSED_CHANGING = 1e-3
 #: Condition up to which poses are compared, and how near [rad, parts of the size] two of them are one.
 WELL, SAME = 1e4, 1e-7
 
-#: Share of their spread by which a row may lie beyond the extremes of a rate; and rates that are rounding alone,
-#: where an output rests, in parts of the greatest rate of the joints.
-BEYOND, RESTING = 1e-6, 1e-14
+#: Share of their spread by which a row may lie beyond the extremes of a rate.
+BEYOND = 1e-6
+
+#: Rates of an output at rest are rounding, in parts of the greatest rate of the joints.
+RESTING = 1e-14
 
 #: How far rows may lie outside the range of their circuit, in parts of it: limits may be roots of roundings.
 WITHIN = 1e-6

@@ -166,6 +166,7 @@ def test_an_error_in_a_row_is_seen() -> None:
     assert spoilt[0] == clean["joints"][0]
 
 
+@pytest.mark.slow
 def test_rows_beside_a_dead_centre_are_counted_apart() -> None:
     linkage = sb.load("rscr")
     rows = [row for _, row in gallery_rows.compared(linkage, "rscr", gallery_rows.Amount(8, 2, 720))]
@@ -219,6 +220,7 @@ def small() -> dict[str, object]:
     return json.loads(command.as_json(whole))
 
 
+@pytest.mark.slow
 def test_one_linkage_goes_through_the_whole(small: dict) -> None:
     rows = small["rows"]["planar_4r"]
     assert rows["circuits"] == 2
@@ -269,6 +271,7 @@ def test_an_engine_that_is_missing_is_told_once(small: dict) -> None:
     assert "Without exudyn of planar_4r, rssr: needs exudyn." in text
 
 
+@pytest.mark.slow
 def test_figures_are_small_and_the_same_each_time(small: dict, tmp_path: Path) -> None:
     first = {path.name: path.read_bytes() for path in figures.write(small, tmp_path / "one")}
     again = {path.name: path.read_bytes() for path in figures.write(small, tmp_path / "two")}

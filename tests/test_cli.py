@@ -78,6 +78,7 @@ def test_a_value_without_bound_is_null_beside_its_status():
     assert report["circuits"][0]["extremes"]["angle"]["status"] == "turns-fully"
 
 
+@pytest.mark.slow
 def test_the_folder_holds_report_rows_and_figures(tmp_path):
     out = tmp_path / "new" / "folder"
     run = sevenbar("analyze", "rssr", "--samples", 36, "--out", out, "--figures", "png", "--figures", "svg")
@@ -105,6 +106,7 @@ def test_the_folder_holds_report_rows_and_figures(tmp_path):
     assert json.loads((out / "report.json").read_text())["motion_type"] == "crank-rocker"
 
 
+@pytest.mark.slow
 def test_a_row_without_value_is_an_empty_cell_beside_its_status(tmp_path):
     assert (
         sevenbar("analyze", "rssr", "--input", "rocker", "--samples", 36, "--out", tmp_path).returncode == 0
@@ -117,6 +119,7 @@ def test_a_row_without_value_is_an_empty_cell_beside_its_status(tmp_path):
     assert "nan" not in (tmp_path / "motion.csv").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "taken"),
     [
@@ -138,6 +141,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, arguments, taken):
     assert (tmp_path / taken).read_bytes() != b"mine"
 
 
+@pytest.mark.slow
 def test_a_written_file_replaces_the_old_one_and_leaves_others_alone(tmp_path):
     (tmp_path / "report.json").write_text("old")
     (tmp_path / "mine.txt").write_text("keep")
@@ -187,6 +191,7 @@ def test_an_animation_goes_into_the_folder_that_is_made_for_the_report(tmp_path)
     assert {path.name for path in folder.iterdir()} == made
 
 
+@pytest.mark.slow
 def test_an_animation_that_fails_leaves_no_report_in_its_folder(tmp_path):
     broken = (
         "import sevenbar.animate as a\n"
@@ -314,6 +319,7 @@ def test_the_modes_are_drawn(tmp_path):
     assert "</svg>" in (tmp_path / "modes.svg").read_text()
 
 
+@pytest.mark.slow
 def test_each_kind_of_figure_is_written(tmp_path):
     run = sevenbar("plot", "rssp", "--samples", 24, "--out", tmp_path)
     assert run.returncode == 0, run.stderr
@@ -324,6 +330,7 @@ def test_each_kind_of_figure_is_written(tmp_path):
     assert {p.name for p in tmp_path.iterdir()} == {*kinds, "path_link_2_50_0_1.svg"}
 
 
+@pytest.mark.slow
 def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
     assert sevenbar("analyze", "rssp", "--samples", 24, "--out", tmp_path).returncode == 0
     figures = {"configuration.png", "motion.png", "joints.png", "path_B.png"}
@@ -454,6 +461,7 @@ def test_circuits_of_two_kinds_tell_their_kind_and_narrow_consoles_fold_at_the_p
     assert all(cell in narrow for cell in ("-0.18743 ", "@ 306.021°", "118.968°", "@ 47.539°"))
 
 
+@pytest.mark.slow
 def test_the_page_for_people_shows_the_figures_beside_it(tmp_path):
     assert sevenbar("analyze", "rssp", "--samples", 24, "--out", tmp_path).returncode == 0
     page = (tmp_path / "report.md").read_text(encoding="utf-8")

@@ -71,6 +71,7 @@ def test_the_report_in_the_readme_is_the_report_of_today():
     assert all(f"    {line}\n" in shown for line in lines if line)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "count"),
     [("analyze", 4), ("measured", 4), pytest.param("tolerance", 3, marks=pytest.mark.slow)],
@@ -118,6 +119,7 @@ def test_the_example_of_a_page_prints_what_its_comments_say(name, monkeypatch):
     assert list(dict.fromkeys(printed.getvalue().splitlines())) == promised
 
 
+@pytest.mark.slow
 def test_the_example_of_the_page_on_tolerances_prints_what_its_comments_say():
     page = (ROOT / "docs" / "tolerance.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
@@ -175,6 +177,7 @@ def test_links_of_the_documentation_lead_somewhere():
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
+@pytest.mark.slow
 def test_the_tables_on_the_seven_r_are_those_of_today():
     page = (ROOT / "docs" / "seven_r.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)

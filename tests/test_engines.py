@@ -86,6 +86,7 @@ def test_the_paper_s_seven_r_in_exudyn_is_sevenbar_s_on_all_joints():
     assert run.difference("P position").greatest < 1e-9 * run.course.circuit.size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in names() if name not in ("rssr", "screw_drill")])
 def test_gallery_linkages_move_in_exudyn_as_sevenbar_says(name):
     run = simulate(sb.load(name), "exudyn", steps=FEW)

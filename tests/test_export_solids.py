@@ -133,6 +133,7 @@ def loaded_glb(path):
     return scene, found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[] if n in QUICK else [pytest.mark.slow]) for n in names()]
 )

@@ -39,6 +39,7 @@ LONG = {
 SEED = 20
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("amount", [SHORT, pytest.param(LONG, marks=pytest.mark.slow)], ids=["short", "long"])
 @pytest.mark.parametrize("way", list(ways.WAYS))
 def test_nothing_is_found(way: str, amount: dict[str, int]) -> None:
@@ -151,6 +152,7 @@ def test_messages_of_one_kind_are_one_family() -> None:
 # The watch
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_or_hangs_costs_its_case_only(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(ways.WAYS, "file", dataclasses.replace(ways.WAYS["file"], limit=1.5))
     heard: list[tuple[ways.Job, Tally]] = []
@@ -198,6 +200,7 @@ def test_a_batch_that_takes_the_process_with_it_is_halved_until_one_case_is_left
 # A run and its page
 
 
+@pytest.mark.slow
 def test_a_run_that_was_stopped_goes_on_and_comes_to_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

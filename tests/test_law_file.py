@@ -66,6 +66,7 @@ def test_a_law_with_all_rates_gives_those_of_the_closed_formula(tmp_path):
         assert rows[:, -1] == pytest.approx(wanted[:, order], rel=1e-11, abs=1e-11 * 20**order)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("heads", "count"),
     [
@@ -330,6 +331,7 @@ def test_without_scipy_only_what_needs_a_spline_is_refused(tmp_path, monkeypatch
     )
 
 
+@pytest.mark.slow
 def test_the_command_line_takes_a_law_and_writes_its_rows(tmp_path):
     times = np.linspace(0, 1, 21)
     write(tmp_path / "law.csv", HEAD, [times, 100 * times + 20 * np.sin(4 * times)])

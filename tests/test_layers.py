@@ -65,6 +65,7 @@ def imported_from_core(python: str) -> set[str]:
     return names
 
 
+@pytest.mark.slow
 def test_the_core_is_imported_by_the_two_solvers_and_the_batches_only():
     taken = {
         file.relative_to(PACKAGE).with_suffix("").as_posix(): imported_from_core(

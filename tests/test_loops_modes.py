@@ -109,6 +109,7 @@ def check(cases: list[Case], *, starts: int, even: bool = False) -> None:
     assert sum(bool(found.isolated.any()) for found in every) > len(cases) / 2
 
 
+@pytest.mark.slow
 def test_general_loops_close_in_even_numbers_of_modes_and_none_is_missing(amount: str) -> None:
     check(drawn_by(general, GENERAL_LOOPS[amount]), starts=STARTS, even=True)
 
@@ -259,6 +260,7 @@ def test_a_mode_is_one_at_the_value_of_any_of_its_joints() -> None:
                 assert nearest(loop, loop.poses(q), other.q, still) < 1e-8
 
 
+@pytest.mark.slow
 def test_modes_with_another_joint_as_input_are_all_there() -> None:
     rng = np.random.default_rng(5)
     for case in drawn_by(general, 20) + drawn_by(SPECIAL["two slides"], 20):

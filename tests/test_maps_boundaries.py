@@ -81,6 +81,7 @@ def apart(of: Map, place: np.ndarray) -> float:
     return float(nearest)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", cases())
 def test_ten_thousand_points_have_the_motion_type_of_the_region_they_are_drawn_in(name):
     of = made(name)
@@ -187,6 +188,7 @@ def test_regions_do_not_depend_on_the_grid():
     assert 1e-3 < coarse.areas[Kind("double-rocker", 2)] < 2e-3
 
 
+@pytest.mark.slow
 def test_critical_distances_are_those_that_a_search_from_many_starts_finds():
     rng = np.random.default_rng(5)
     found = 0
@@ -235,6 +237,7 @@ def test_where_no_critical_distance_is_near_the_coupler_the_type_is_one_all_over
     assert certain > 300
 
 
+@pytest.mark.slow
 def test_the_design_stands_on_the_map_with_its_distances_to_the_next_types():
     of = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": "30 cm : 80 cm"})
     design = of.design
@@ -252,6 +255,7 @@ def test_the_design_stands_on_the_map_with_its_distances_to_the_next_types():
     assert (off.inside, off.steps, off.kind) == (False, (), design.kind)
 
 
+@pytest.mark.slow
 def test_all_four_sides_of_a_design_are_told_the_type_beyond():
     of = motion_map(sb.load("rssr"), {"M": (-1000, 1400), "D": (-1000, 1500)}, grid=11)
     assert [step.kind for step in of.design.steps] == [Kind("double-rocker", 1)] * 4

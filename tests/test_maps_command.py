@@ -44,6 +44,7 @@ def table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_the_folder_holds_the_map_for_people_and_for_programs(tmp_path):
     out = tmp_path / "atlas"
     run = sevenbar(
@@ -78,6 +79,7 @@ def test_the_folder_holds_the_map_for_people_and_for_programs(tmp_path):
     assert levels
 
 
+@pytest.mark.slow
 def test_nothing_is_replaced_without_force(tmp_path):
     (tmp_path / "map.json").write_text("mine")
     message = mistake("map", "rssr", *OVER, "--out", tmp_path)
@@ -85,6 +87,7 @@ def test_nothing_is_replaced_without_force(tmp_path):
     assert sevenbar("map", "rssr", *OVER, "--out", tmp_path, "--force").returncode == 0
 
 
+@pytest.mark.slow
 def test_json_is_printed_alone():
     run = sevenbar("map", "rssr", *OVER, "--json")
     assert json.loads(run.stdout)["format"] == 1
@@ -239,6 +242,7 @@ def lightness(colour) -> float:
     return 116 * y ** (1 / 3) - 16
 
 
+@pytest.mark.slow
 def test_the_motion_types_can_be_told_apart_in_grey():
     names = ["double-crank", "rocker-crank", "crank-rocker", "double-rocker", "cannot-assemble"]
     light = sorted(lightness(LOOKS[name][0]) for name in names)

@@ -36,6 +36,7 @@ RSSR = Draft.of_linkage(sb.load("rssr")).with_values({"L2": 1000.0}).with_point(
 OF_RSSR = ("M", "N", "L1", "L2", "L3", "Q.x", "Q.y", "Q.z")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
 def test_the_path_of_an_rssr_gives_its_dimensions_back_from_a_start_that_is_off(share):
     path = RSSR.linkage.motion(15).circuits[0].point(2, (300.0, 120.0, -80.0)).position
@@ -46,6 +47,7 @@ def test_the_path_of_an_rssr_gives_its_dimensions_back_from_a_start_that_is_off(
     assert found.motion_type == RSSR.linkage.motion().motion_type
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", [False, True])
 def test_timed_points_come_at_their_inputs(place):
     circuit = RSSR.linkage.motion(24).circuits[0]
@@ -76,6 +78,7 @@ def test_the_path_of_the_papers_7r_point_is_made_again_from_a_start_that_is_off(
         assert found.draft.dimension(name).value == pytest.approx(draft.dimension(name).value, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_drawn_linkage_that_may_stand_anywhere_is_written_where_its_path_is_wanted():
     draft = Draft.of_linkage(sb.load("rsur")).with_point("Q", 2, (300.0, 120.0, 80.0))
     circuit = draft.linkage.motion(16).circuits[0]

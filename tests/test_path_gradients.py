@@ -62,6 +62,7 @@ def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
         assert reached.by_input * speed == pytest.approx(velocity, abs=1e-8 * np.abs(velocity).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "link"),
     [("rssr", 2), ("seven_r", 4), ("planar_4r", 2), ("rsur", 2), ("rssp", 2), ("six_bar", 3)],

@@ -76,6 +76,7 @@ def lines(figure: Figure, panel: int, label: str) -> list[Any]:
 # --- figures as files
 
 
+@pytest.mark.slow
 def test_each_ending_gives_a_file_of_its_kind(figure: Figure, tmp_path: Path) -> None:
     png, svg, pdf = (plot.save(figure, tmp_path / f"curves.{ending}") for ending in plot.FORMATS)
     assert png.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
@@ -370,6 +371,7 @@ def test_wrong_requests_say_what_is_allowed(crank_rocker: sb.Motion, tmp_path: P
 # --- animations
 
 
+@pytest.mark.slow
 def test_a_gif_has_its_pictures_its_pace_and_no_end(crank_rocker: sb.Motion, tmp_path: Path) -> None:
     seen: list[tuple[int, int]] = []
     path = animate(
@@ -418,6 +420,7 @@ def test_a_rocking_input_goes_forth_and_back(name: str) -> None:
     assert np.ptp(inputs) == pytest.approx(np.ptp(motion.circuits[0].input), rel=0.03)
 
 
+@pytest.mark.slow
 def test_an_mp4_holds_every_picture(tmp_path: Path) -> None:
     path = animate(MOTIONS["double-rocker"](), tmp_path / "a.mp4", frames=20, fps=25)
     assert imageio_ffmpeg.count_frames_and_secs(str(path)) == (20, pytest.approx(0.8))

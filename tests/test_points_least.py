@@ -116,6 +116,7 @@ def test_the_bound_follows_from_the_inputs_and_weights_that_are_told(seven_r):
     assert bound == pytest.approx(found.value, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_the_greatest_is_sought_between_the_rows(seven_r):
     found = least_acceleration_point(seven_r, 4, CUBE)
     fine = seven_r.linkage.motion(36_000).circuits[0]
@@ -189,6 +190,7 @@ def test_the_least_root_mean_square_is_the_zero_of_its_gradient_by_differences(s
     assert min(np.sqrt(square(at)) for at in random.uniform(-50, 50, (200, 3))) >= bounded.bound
 
 
+@pytest.mark.slow
 def test_the_idle_spin_of_a_coupler_makes_no_difference_to_points_on_its_line():
     motion = sb.load("rssr").motion()
     on_line = [(0, 600), (0, 0), (0, 0)]

@@ -62,6 +62,7 @@ def test_with_inputs_no_point_of_the_box_is_nearer_than_the_bound(seven_r, odd_r
             assert other >= found.bound * (1 - 1e-12)
 
 
+@pytest.mark.slow
 def test_without_inputs_small_moves_of_the_point_bring_its_path_no_nearer(seven_r, odd_rows):
     _, places = odd_rows
     random = np.random.default_rng(4)
@@ -80,6 +81,7 @@ def test_without_inputs_small_moves_of_the_point_bring_its_path_no_nearer(seven_
         assert value(found.at + step) > found.rms
 
 
+@pytest.mark.slow
 def test_a_box_in_the_way_is_kept(seven_r, odd_rows):
     inputs, places = odd_rows
     box = [(-80.0, 200.0), (-200.0, 200.0), (-200.0, 200.0)]

@@ -53,6 +53,7 @@ def check_poses(linkage: sb.Linkage, reference: Rssr, inputs: np.ndarray, driver
     return found
 
 
+@pytest.mark.slow
 @DRIVERS
 def test_a_million_poses_close_and_a_missing_one_cannot_be_reached(driver: str) -> None:
     rng = np.random.default_rng(2024 if driver == "crank" else 2025)

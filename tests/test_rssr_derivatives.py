@@ -227,6 +227,7 @@ def test_the_reference_agrees_with_the_derivatives_of_eq_8() -> None:
         assert all(abs(g - w) < mp.mpf(10) ** -18 for g, w in zip(got, want, strict=True))
 
 
+@pytest.mark.slow
 def test_rates_of_the_output_hold_12_11_and_10_digits_away_from_dead_centres(
     of_output: list[Error], form: str
 ) -> None:

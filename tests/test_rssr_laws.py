@@ -47,6 +47,7 @@ def loop_errors(linkage: sb.Linkage, q: np.ndarray, size: float) -> np.ndarray:
     return errors.max(axis=(1, 2))
 
 
+@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_the_product_round_the_loop_is_the_identity_on_every_row(
@@ -90,6 +91,7 @@ def test_a_loop_whose_balls_nearly_touch_closes_too() -> None:
 # Continuity
 
 
+@pytest.mark.slow
 @laws
 @given(linkages, drivers, st.sampled_from([1.0, -1.0]))
 def test_a_coarse_walk_finds_the_same_unwrapped_output_as_a_fine_one(
@@ -110,6 +112,7 @@ def test_a_coarse_walk_finds_the_same_unwrapped_output_as_a_fine_one(
             np.testing.assert_allclose(coarse.output[rows], fine.output[same], rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 @laws
 @given(linkages, drivers, st.sampled_from([1.0, -1.0]))
 def test_columns_are_continuous_and_come_back_to_the_first_row(

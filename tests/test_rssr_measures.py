@@ -135,6 +135,7 @@ BESIDE_CHANGE_POINTS = (
 )
 
 
+@pytest.mark.slow
 @laws
 @given(linkages, drivers)
 def test_the_time_ratio_is_that_of_the_two_strokes(description: Dimensions | Drawing, driver: str) -> None:

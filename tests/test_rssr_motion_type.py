@@ -200,6 +200,7 @@ def test_limits_are_exact_to_1e_12_times_their_condition() -> None:
     assert compared > 40
 
 
+@pytest.mark.slow
 def test_square_axes_give_no_strict_double_crank() -> None:
     """A fact measured beforehand (design.md): none in 10^6; a single one here would be news, or a defect."""
     rng = np.random.default_rng(12)
@@ -305,6 +306,7 @@ def motion_with_coupler(dims: Dimensions, coupler: float, driver: str) -> sb.Mot
     return replace(dims, L2=float(coupler)).linkage().motion(samples=36, input=driver)
 
 
+@pytest.mark.slow
 def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(
     tuned: list[tuple[Dimensions, str, Meeting]],
 ) -> None:

@@ -70,6 +70,7 @@ def precise_rows(loop, values):
     return precise
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["seven_r", "random"])
 def test_a_7r_s_derivatives_by_its_dimensions_are_those_in_60_digits(name):
     linkage = sb.load("seven_r") if name == "seven_r" else general(np.random.default_rng(4)).linkage()
@@ -108,6 +109,7 @@ def test_rates_by_the_input_are_the_next_rates_of_the_motion(name, input, output
         )
 
 
+@pytest.mark.slow
 def test_slides_and_screws_have_derivatives_too():
     for linkage in (prismatic(2)(np.random.default_rng(3)).linkage(), sb.load("rccc")):
         first, last = linkage.drive.joint, linkage.drive.output

@@ -162,6 +162,7 @@ def test_a_linkage_that_cannot_be_simulated_says_why():
         simulate(sb.rssr(M=700, N=700, L1=250, L3=550, L2=2, name="short"), "mujoco")
 
 
+@pytest.mark.slow
 def test_the_folder_holds_report_rows_model_and_figures(rssr, tmp_path):
     written = simulation_report.write(rssr, tmp_path / "new", ("png", "svg"))
     kinds = [
@@ -198,6 +199,7 @@ def test_the_rows_are_written_with_both_sides_and_their_units(rssr, rccc, tmp_pa
     assert "slide_2_exudyn_in" in simulation_report.columns(rccc)
 
 
+@pytest.mark.slow
 def test_nothing_is_written_over_without_being_told_to(rssr, tmp_path):
     (tmp_path / "mujoco.csv").write_text("mine")
     with pytest.raises(

@@ -505,6 +505,7 @@ def test_closing_the_terminal_ends_it(studio, pages, how):
     assert code == (0 if how == signal.SIGINT else -signal.SIGHUP)
 
 
+@pytest.mark.slow
 def test_another_address_is_told_for_what_it_is(studio):
     one = studio("rssr", "--host", "0.0.0.0")
     assert "whoever reaches 0.0.0.0 over the network can see and change what is open here" in one.stderr

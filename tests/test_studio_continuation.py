@@ -260,6 +260,7 @@ def test_after_a_great_change_a_true_mode_is_shown_and_told(case: str, steps: in
     assert not walked.wrong, "\n".join(walked.wrong)
 
 
+@pytest.mark.slow
 def test_a_pose_where_its_circuit_begins_goes_on_there() -> None:
     """The last rows of a circuit that turns lie beside its first ones, and may be more like the pose before."""
     session = Session(text("five_bar"), "five_bar")

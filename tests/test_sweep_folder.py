@@ -204,6 +204,7 @@ main()
 """
 
 
+@pytest.mark.slow
 def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) -> None:
     # couplers that reach nothing come first: their parts are small
     sweep = [

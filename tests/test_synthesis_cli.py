@@ -129,6 +129,7 @@ def test_a_wrong_table_is_told_with_its_place(text, message, tmp_path):
     assert message in mistake("design", "function", "--table", table)
 
 
+@pytest.mark.slow
 def test_without_scipy_the_extra_is_named():
     hide = "import sys; sys.modules['scipy.optimize'] = None"
     told = mistake("design", "function", "--y", "x^2", before=hide)

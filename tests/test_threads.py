@@ -95,6 +95,7 @@ def long_calls() -> dict[str, Callable[[int], object]]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(long_calls()))
 def test_a_long_call_leaves_the_interpreter_to_other_threads(name: str) -> None:
     call = long_calls()[name]

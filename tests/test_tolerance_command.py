@@ -38,6 +38,7 @@ def extremes(**changes):
     return np.array([value for e in pairs for value in (e.lowest, e.highest)])
 
 
+@pytest.mark.slow
 def test_the_equal_tolerances_cause_the_paper_s_differences_at_worst(explained):
     nominal = extremes()
     for place, one in enumerate(explained.differences):
@@ -80,6 +81,7 @@ def test_the_finding_of_the_documentation_is_that_of_today(explained):
     assert explained.without_class == ("D",)
 
 
+@pytest.mark.slow
 def test_the_explanation_is_printed_and_is_an_object():
     told = sevenbar("tolerance", "rssr", "--explain", TABLE_1)
     assert told.returncode == 0
