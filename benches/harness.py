@@ -129,7 +129,7 @@ def at_most(limit: float) -> Iterator[None]:
     """Ends Python code that takes more CPU time [s] than that with `OutOfTimeError`; for the main thread."""
 
     def stop(*_: object) -> None:
-        raise OutOfTimeError(f"not done after {limit:g} s of CPU time")
+        raise OutOfTimeError(f"not done after {limit:.2g} s of CPU time")
 
     before = signal.signal(signal.SIGPROF, stop)
     signal.setitimer(signal.ITIMER_PROF, limit)
