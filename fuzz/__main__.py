@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import signal
 import sys
 import time
 from pathlib import Path
@@ -47,6 +48,8 @@ def _run(given: argparse.Namespace) -> int:
             sys.stdout.write(words + "\n")
             sys.stdout.flush()
 
+    # a shell that runs a script starts what is in the background deaf to it
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         run.go(tell)
     except KeyboardInterrupt:

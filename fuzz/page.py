@@ -93,7 +93,7 @@ def _circumstances(plain: Mapping[str, Any]) -> str:
 
 def _checked() -> str:
     lines = (
-        "No panic, no exception but a `SevenbarError`, no call over its limit, no process lost.",
+        "No panic, no exception but a `SevenbarError`, no warning, no call over its limit, no process lost.",
         "Each row with a pose closes, by the core and by a walk along the loop that shares no formula "
         f"with it: to {checks.CLOSED:g} "
         f"where its condition is below {checks.WELL:g}, to {checks.CLOSED_BADLY:g} elsewhere.",

@@ -9,6 +9,7 @@ from __future__ import annotations
 import tempfile
 import time
 import traceback
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,9 +55,11 @@ class Way:
 
 
 def run(job: Job, mark: Mark) -> Tally:
-    """Judges the cases of a job."""
+    """Judges the cases of a job; a warning is a finding, since it would stand in somebody's terminal."""
     tally = Tally()
-    WAYS[job.way].run(job, tally, mark)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        WAYS[job.way].run(job, tally, mark)
     return tally
 
 

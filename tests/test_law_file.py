@@ -287,6 +287,10 @@ NEEDED = "'time [s],crank [deg]'"
             "column 'crank [rad/s]': is no velocity of 'crank [deg]': it makes for 57.3 times its changes; "
             "check both units",
         ),
+        (
+            table("time [s],crank [rad],crank [rad/s]", *(f"{i},3,1e300" for i in range(9))),
+            "column 'crank [rad/s]': is no velocity of 'crank [rad]': those values rest; check both units",
+        ),
     ],
 )
 def test_each_mistake_in_a_law_has_its_own_message(tmp_path, content, message):

@@ -140,11 +140,11 @@ def _refuse_other_rates(
     expected = 0.5 * (velocity[1:] + velocity[:-1]) * np.diff(t)
     scale = max(np.abs(moved).sum(), np.abs(expected).sum())
     if np.abs(moved - expected).sum() > UNIT_SLIP * scale:
-        with np.errstate(over="ignore"):  # values that rest beside a huge velocity: infinitely many times
-            ratio = np.abs(expected).sum() / max(np.abs(moved).sum(), np.finfo(float).tiny)
+        makes, changes = np.abs(expected).sum(), np.abs(moved).sum()
+        rests = changes <= np.finfo(float).eps * makes
+        told = "those values rest" if rests else f"it makes for {makes / changes:.3g} times its changes"
         raise table.wrong(
-            f"is no velocity of {table.labels[places['value']]}: it makes for {ratio:.3g} times its changes; "
-            "check both units",
+            f"is no velocity of {table.labels[places['value']]}: {told}; check both units",
             column=places["velocity"],
         )
 
