@@ -351,7 +351,8 @@ def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
         poses = frames_of(linkage, circuit.q[rows])
         # there a ball's turns have no value, but the links a place
         lost = np.flatnonzero(circuit.status[rows] == "turns-undefined")
-        poses[lost] = frames_along(linkage, circuit, rows[lost])
+        if lost.size:
+            poses[lost] = frames_along(linkage, circuit, rows[lost])
         if np.isnan(poses).any(axis=(1, 2, 3)).all():
             raise _nothing(circuit)
         return chain(
