@@ -13,6 +13,11 @@ import pytest
 START, END = 60.0, 20.0
 
 
+def _hear_the_terminal():
+    """What a shell starts in the background is deaf to SIGINT, and so would be all that tests start."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Served:
     """A program that prints its address `http://HOST:PORT` and serves until it is ended.
 
@@ -25,7 +30,7 @@ class Served:
         self._out, self._err = folder / "stdout.txt", folder / "stderr.txt"
         with self._out.open("w") as out, self._err.open("w") as err:
             start = {"cwd": self.here, "stdin": subprocess.DEVNULL, "stdout": out, "stderr": err}
-            self.process = subprocess.Popen([*map(str, command)], **start)
+            self.process = subprocess.Popen([*map(str, command)], preexec_fn=_hear_the_terminal, **start)
         self.stopped = False
         self.url = self._address()
 
