@@ -93,9 +93,9 @@ oldest: wheel  ## The fast tests with the oldest versions of all dependencies th
 	$(PYTHON) -m venv "$(VENV)-oldest"
 	$(BIN)/python tests/oldest_versions.py >"$(VENV)-oldest/versions.txt"
 	$(VENV)-oldest/bin/pip install -r "$(VENV)-oldest/versions.txt" "$(DIST)"/*.whl \
-	  hypothesis jsonschema mpmath nbformat playwright pytest pytest-xdist yourdfpy
+	  hypothesis mpmath nbformat playwright pytest pytest-xdist yourdfpy
 	$(VENV)-oldest/bin/pytest -n auto --dist worksteal -m "not slow and not proof" -o filterwarnings= \
-	  --ignore tests/test_docs_site.py --ignore tests/test_export_solids.py --ignore tests/test_layers.py
+	  $(foreach name,docs_reference docs_site export_solids layers,--ignore tests/test_$(name).py)
 
 # the wheel in an environment of its own, so that no peer changes the one for work and sizes are an installation's;
 # a quick look: make bench BENCH=--quick
