@@ -55,11 +55,9 @@ class Way:
 
 
 def run(job: Job, mark: Mark) -> Tally:
-    """Judges the cases of a job; a warning is a finding, since it would stand in somebody's terminal."""
+    """Judges the cases of a job."""
     tally = Tally()
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        WAYS[job.way].run(job, tally, mark)
+    WAYS[job.way].run(job, tally, mark)
     return tally
 
 
@@ -68,10 +66,12 @@ def _rng(way: str, seed: int, index: int) -> np.random.Generator:
 
 
 def _guarded(job: Job, index: int, content: str | bytes, call: Callable[[], None], tally: Tally) -> None:
-    """Calls, and keeps as a finding what is raised that must not be."""
+    """Calls, and keeps as a finding what must not be raised; a warning counts, as a terminal shows it."""
     start = time.process_time()
     try:
-        call()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            call()
     except Broken as broken:
         tally.add(Finding(job.way, index, str(broken), "", _text(content)))
     except (KeyboardInterrupt, SystemExit):

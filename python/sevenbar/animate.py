@@ -82,19 +82,18 @@ def animate(
 
 def check_target(target: Path) -> str:
     """The ffmpeg program that the path's ending needs, or none; raises as `animate` does for a bad path."""
-    check_ending(target)
+    ffmpeg = check_ending(target)
     with written_whole(target, keep=False) as file:
         file.touch()
-    return _ffmpeg() if target.suffix.lower() == ".mp4" else ""
+    return ffmpeg
 
 
-def check_ending(target: Path) -> None:
-    """Raises as `animate` does for an ending that is no animation's, and for an MP4 without ffmpeg."""
+def check_ending(target: Path) -> str:
+    """The same of the ending alone, where the folder may still have to be made."""
     ending = target.suffix.lower()
     if ending not in FASTEST:
         raise OutputError(f"{target}: {shown(target.suffix)} is not an animation format; give .gif or .mp4")
-    if ending == ".mp4":
-        _ffmpeg()
+    return _ffmpeg() if ending == ".mp4" else ""
 
 
 def _reported(
