@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from matplotlib import rc_context
@@ -13,6 +14,9 @@ from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure, save
 
 #: Width and height [inch].
 SIZE = (6.4, 3.6)
+
+#: Names of curves beside each other above a plot.
+LEGEND_COLUMNS = 3
 
 #: Ends of an axis further apart than this many times make it logarithmic.
 WIDE = 12.0
@@ -32,8 +36,9 @@ def drawn(plot: Plot, folder: Path) -> Path:
     """Writes a plot as SVG; returns its path."""
     with rc_context(STYLE):
         figure = new_figure(*SIZE)
-        axes = figure.add_axes((0.12, 0.135, 0.85, 0.77))
-        axes.set_title(plot.title, fontsize=10, loc="left")
+        legend_rows = math.ceil(len(plot.series) / LEGEND_COLUMNS)
+        axes = figure.add_axes((0.12, 0.135, 0.85, 0.77 - 0.06 * legend_rows))
+        axes.set_title(plot.title, fontsize=10, loc="left", pad=7 + 15 * legend_rows)
         axes.grid(visible=True)
         axes.set_axisbelow(True)
         measured = [series for series in plot.series if not series.yardstick]
@@ -63,7 +68,18 @@ def drawn(plot: Plot, folder: Path) -> Path:
         axes.set_xlabel(plot.x_label)
         axes.set_ylabel(plot.y_label)
         _scaled(axes, plot)
-        axes.legend(frameon=True, framealpha=0.9, edgecolor="none", fontsize=8)
+        # above the plot, where it hides no mark
+        axes.legend(
+            loc="lower left",
+            bbox_to_anchor=(0, 1.0),
+            ncols=LEGEND_COLUMNS,
+            frameon=False,
+            fontsize=8,
+            borderaxespad=0.2,
+            borderpad=0.2,
+            handlelength=1.8,
+            columnspacing=1.4,
+        )
         return save(figure, folder / f"{plot.name}.svg")
 
 
