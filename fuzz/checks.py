@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 import sevenbar as sb
 from accuracy.reference_loops import Loop
@@ -37,7 +38,7 @@ WELL, SAME = 1e4, 1e-7
 #: Share of their spread by which a row may lie beyond the extremes of a rate.
 BEYOND = 1e-6
 
-#: Rates of an output at rest are rounding, in parts of the greatest rate of the joints.
+#: Rates of an output at rest are rounding, in parts of the greatest rate of the joints up to this order.
 RESTING = 1e-14
 
 #: How far rows may lie outside the range of their circuit, in parts of it: limits may be roots of roundings.
@@ -176,14 +177,16 @@ def of_circuit(motion: sb.Motion, circuit: sb.Circuit) -> None:
     for d in circuit.dead_centres:
         hold(math.isfinite(d.input) and math.isfinite(d.output), f"a dead centre nowhere: {d}")
         hold(not math.isnan(d.condition), f"a dead centre without a condition: {d}")
+    greatest = 0.0
     for name, column in (("velocity", circuit.dq), ("acceleration", circuit.ddq), ("jerk", circuit.dddq)):
         extremes = getattr(circuit, name)
         if extremes is None:
             continue
+        greatest = max(greatest, np.abs(column[rated]).max(initial=0.0))
         hold(all(map(math.isfinite, vars(extremes).values())), f"{name}: {extremes}")
         values = column[rated, circuit.output_column]
         slack = BEYOND * (extremes.highest - extremes.lowest) + BEYOND * np.abs(values).max(initial=0.0)
-        slack += RESTING * np.abs(column[rated]).max(initial=0.0)
+        slack += RESTING * greatest
         if values.size and name != "jerk":
             hold(
                 values.max() <= extremes.highest + slack,
@@ -242,12 +245,12 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
         q = circuit.q[good]
         parts = [np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, screws], q[:, slides] / circuit.size]
         places.append(np.concatenate(parts, axis=1))
-    for i, one in enumerate(places):
+    trees = [cKDTree(place) for place in places]
+    for i, one in enumerate(trees):
         for j in range(i):
-            other = places[j]
-            if len(one) and len(other):
-                apart = np.abs(one[:, None] - other[None]).max(axis=2).min()
-                hold(apart > SAME, f"circuits {j} and {i} have a pose in common")
+            if one.n and trees[j].n:
+                common = one.sparse_distance_matrix(trees[j], SAME, p=np.inf, output_type="ndarray")
+                hold(not common.size, f"circuits {j} and {i} have a pose in common")
 
 
 def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:

@@ -111,7 +111,7 @@ class GeneralLoop:
         if law is None:
             self._found[column] = mobility
         if raw["input_rests"] and not raw["circuits"]:
-            raise self._rests(column)
+            raise self._rests(column, raw["moving"])
         circuits = tuple(
             self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw["circuits"])
         )
@@ -145,15 +145,18 @@ class GeneralLoop:
             )
         if "still" in raw:
             raise RequestError("pose: no motion through it could be followed; see mobility()")
-        if "input_rests" in raw:
-            raise self._rests(column)
+        if "moving" in raw:
+            raise self._rests(column, raw["moving"])
         return self._circuit(0, raw, (column, output), speed, law)
 
-    def _rests(self, column: int) -> RequestError:
+    def _rests(self, column: int, moving: list[int]) -> RequestError:
         linkage = self._linkage
+        moving_names = {linkage.columns[c] for c in moving}
+        others = [name for name in linkage.drivable(column) if name in moving_names]
+        advice = f"; give another: {', '.join(others)}" if others else ""
         return RequestError(
-            f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot drive; "
-            f"give another: {', '.join(linkage.drivable(column))}"
+            f"input: joint '{linkage.columns[column]}' stands still while others move, so it cannot "
+            f"drive{advice}"
         )
 
     def _solve(self, column: int, call: Any, *arguments: Any) -> Any:

@@ -160,6 +160,7 @@ impl Loop {
         result.set_item("misfits", motion.misfits.clone())?;
         result.set_item("agree", loops::AGREE)?;
         result.set_item("input_rests", motion.input_rests)?;
+        result.set_item("moving", motion.moving)?;
         let circuits = motion
             .circuits
             .into_iter()
@@ -198,7 +199,7 @@ impl Loop {
             Through::Circuit(circuit) => return self.circuit_dict(py, *circuit),
             Through::Apart(gap) => result.set_item("apart", gap)?,
             Through::Still => result.set_item("still", true)?,
-            Through::InputRests => result.set_item("input_rests", true)?,
+            Through::InputRests(moving) => result.set_item("moving", moving)?,
         }
         Ok(result)
     }

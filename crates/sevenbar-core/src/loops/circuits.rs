@@ -6,7 +6,7 @@ use super::dense::Inverse;
 use super::many;
 use super::polish::AGREE;
 use super::rates::{ORDERS, Rates};
-use super::turnings::{STILL, begun_at, insert, turns_at};
+use super::turnings::{begun_at, insert, turns_at};
 use crate::outcome::RowStatus;
 use crate::vectors::Number;
 use std::f64::consts::TAU;
@@ -151,20 +151,13 @@ pub(super) fn input_row<N: Number>(input: usize) -> Columns<N> {
 }
 
 impl<'a> Passes<'a> {
-    /// `None` where the input stands still all along the curve.
-    pub fn new(chain: &'a Chain, curve: &Curve, input: usize) -> Option<Self> {
-        let fastest = curve
-            .nodes
-            .iter()
-            .fold(0.0, |m: f64, n| m.max(n.rates[0][input].abs()));
-        if fastest < STILL {
-            return None;
-        }
+    /// The passes of a curve on which the input does not rest.
+    pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
         let passes = Self::of(chain, curve.clone(), input)?;
         if passes.passes[0].end > passes.passes[0].start {
             return Some(passes);
         }
-        Some(Self::of(chain, chain.turned_round(curve), input).unwrap_or(passes))
+        Some(Self::of(chain, chain.turned_round(&curve), input).unwrap_or(passes))
     }
 
     fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {

@@ -33,6 +33,9 @@ const AIMED: f64 = 0.34;
 const CONTRACTING: f64 = 0.5;
 const ALONE: f64 = 0.9;
 
+/// A column that goes over less than this part of the curve's length stands still.
+const STILL: f64 = 1e-9;
+
 /// Guesses of a step's length, each from the one before.
 const GUESSES: usize = 3;
 
@@ -164,6 +167,19 @@ pub(super) fn correction<N: Number>(
         }
     }
     (d, first)
+}
+
+impl Curve {
+    /// Whether a column stands still, but for rounding, all along.
+    pub fn rests(&self, column: usize) -> bool {
+        let (mut low, mut high, mut long) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        for node in &self.nodes {
+            low = low.min(node.at.values[column]);
+            high = high.max(node.at.values[column]);
+            long += node.step;
+        }
+        high - low < STILL * long
+    }
 }
 
 impl Node {

@@ -23,6 +23,9 @@ const SEARCHED_SEEDS: usize = 4;
 /// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be.
 const AHEAD: usize = 4;
 
+/// Modes of a loop without screws at an input; where more are found, curves of them are, and few are followed at once.
+const MOST_MODES: usize = 16;
+
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
@@ -83,8 +86,10 @@ pub struct Motion {
     pub modes_at_zero: Option<usize>,
     /// The circuits.
     pub circuits: Vec<Circuit>,
-    /// Whether some circuit has the input at rest.
+    /// Whether the loop moves somewhere with the input at rest.
     pub input_rests: bool,
+    /// Columns that move with it at rest.
+    pub moving: Vec<usize>,
 }
 
 /// What goes through a pose.
@@ -96,8 +101,8 @@ pub enum Through {
     Apart(f64),
     /// It closes and no motion could be followed.
     Still,
-    /// It moves with the input at rest.
-    InputRests,
+    /// It moves with the input at rest: the columns that do.
+    InputRests(Vec<usize>),
 }
 
 /// All curves of a chain.
@@ -138,13 +143,23 @@ impl Loop {
                 modes_at_zero: None,
                 circuits: Vec::new(),
                 input_rests: false,
+                moving: Vec::new(),
             });
         };
         let (a, b) = (self.chain_column(input)?, self.chain_column(output)?);
-        let curves = curves(chain, &[a, b], false);
-        let passes: Vec<Option<Passes>> = curves.curves.iter().map(|c| Passes::new(chain, c, a)).collect();
-        let input_rests = passes.iter().any(Option::is_none);
-        let passes: Vec<Passes> = passes.into_iter().flatten().collect();
+        let mut curves = curves(chain, &[a, b], false);
+        let followed = std::mem::take(&mut curves.curves);
+        let input_rests = followed.iter().any(|c| c.rests(a));
+        let moving = if input_rests {
+            self.moving(&followed)
+        } else {
+            Vec::new()
+        };
+        let passes: Vec<Passes> = followed
+            .into_iter()
+            .filter(|c| !c.rests(a))
+            .filter_map(|c| Passes::new(chain, c, a))
+            .collect();
         let (origin, step) = grid(chain, &passes, a, samples);
         let circuits = passes
             .iter()
@@ -167,6 +182,7 @@ impl Loop {
             modes_at_zero: curves.modes_at_zero,
             circuits,
             input_rests,
+            moving,
         })
     }
 
@@ -191,15 +207,26 @@ impl Loop {
         };
         let mut curves = Curves::new();
         curves.take(chain, &[pose], a);
-        let Some(curve) = curves.curves.first() else {
+        let Some(curve) = curves.curves.pop() else {
             return Some(Through::Still);
         };
+        if curve.rests(a) {
+            return Some(Through::InputRests(self.moving(&[curve])));
+        }
         let Some(passes) = Passes::new(chain, curve, a) else {
-            return Some(Through::InputRests);
+            return Some(Through::Still);
         };
         let grid = grid(chain, std::slice::from_ref(&passes), a, samples);
         let circuit = self.circuit(&passes, (input, output), (a, b), grid, speed, law);
         Some(Through::Circuit(Box::new(circuit)))
+    }
+
+    /// The columns that move along some of the curves.
+    fn moving(&self, curves: &[Curve]) -> Vec<usize> {
+        let moves = |c: usize| curves.iter().any(|curve| !curve.rests(c));
+        (0..self.columns)
+            .filter(|&column| self.chain_column(column).is_some_and(moves))
+            .collect()
     }
 
     /// How freely the loop moves, from the first poses found over the values of a column.
@@ -380,6 +407,7 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
         let places: Vec<Configuration> = rough
             .iter()
             .step_by(AHEAD)
+            .filter(|modes| modes.len() <= MOST_MODES)
             .flat_map(|modes| finder.polished(&out.unknown(chain, modes)))
             .collect();
         out.ahead = chain.closed_curves(&places);
@@ -444,6 +472,12 @@ impl Curves {
 
     /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
     fn take(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
+        for modes in modes.chunks(MOST_MODES) {
+            self.take_together(chain, modes, rising);
+        }
+    }
+
+    fn take_together(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
         let mut starts: Vec<Start> = Vec::new();
         let mut curves: Vec<Option<Curve>> = Vec::new();
         for mode in modes {

@@ -7,7 +7,7 @@ use super::curve::{Curve, End, Node, combined, dot, length, measure};
 const AT_REST: f64 = 1e-13;
 
 /// A column whose part of the unit tangent is below this stands still.
-pub(super) const STILL: f64 = 1e-9;
+const STILL: f64 = 1e-9;
 
 /// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
 const SAME_PLACE: f64 = 1e-6;
@@ -38,10 +38,12 @@ impl Curve {
             marks.clear();
             for look in 0..=LOOKS {
                 let s = a.step * look as f64 / LOOKS as f64;
-                let rate = if 2 * look < LOOKS {
-                    a.rate(column, s)
-                } else {
-                    b.rate(column, s - a.step)
+                // at the nodes their own rates, so that two steps see one sign of a rate that is zero but for rounding
+                let rate = match look {
+                    0 => a.rates[0][column],
+                    LOOKS => b.rates[0][column],
+                    _ if 2 * look < LOOKS => a.rate(column, s),
+                    _ => b.rate(column, s - a.step),
                 };
                 match marks.last_mut() {
                     Some(last) if last.1 * rate >= 0.0 => {

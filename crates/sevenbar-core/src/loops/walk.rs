@@ -12,6 +12,9 @@ const SHORTEST: f64 = 1e-10;
 /// Most nodes of a curve, 43 MB; an ordinary circuit has some hundreds, three screws over 50 rad 70,000.
 const MOST_NODES: usize = 100_000;
 
+/// The same of a piece between starts, which many walk at once; a longer one is left to the ordinary way.
+const MOST_PIECE_NODES: usize = 5_000;
+
 /// Slides [parts of the size] and screws [rad] are not followed farther than this.
 const FARTHEST: f64 = 50.0;
 
@@ -25,8 +28,11 @@ impl Chain {
         let open: Vec<usize> = (0..curves.len())
             .filter(|&k| !matches!(curves[k].end, End::Closed | End::Open))
             .collect();
-        // once more from the end it ran into
+        // once more from the end it ran into; a long curve is held once only
         let ends: Vec<Start> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
+        for &k in &open {
+            curves[k].nodes = Vec::new();
+        }
         for (k, curve) in open.into_iter().zip(self.walk(&ends)) {
             curves[k] = curve;
         }
@@ -323,7 +329,8 @@ impl Walk<'_> {
         let far = chain.joints.iter().zip(&chain.first).any(|(joint, &c)| {
             !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > FARTHEST
         });
-        (far || curve.nodes.len() > MOST_NODES).then_some(End::Far)
+        let most = if self.any { MOST_PIECE_NODES } else { MOST_NODES };
+        (far || curve.nodes.len() > most).then_some(End::Far)
     }
 }
 
