@@ -50,9 +50,6 @@ SAMPLES = 24
 #: Statuses of rows that have a pose, and of those whose rates are there.
 POSED, RATED = ("ok", "dead-centre", "change-point"), ("ok",)
 
-#: Where redundant constraints keep a pose open, a motion says so.
-MISSES = "redundant constraints, which miss by"
-
 #: Words of motion types that come with circuits and without them.
 WITHOUT = {"rigid", "two-inputs", "cannot-assemble"}
 SINGLE = {"crank", "rocker", "slider"}
@@ -255,7 +252,7 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
 
 def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:
     """Each well-conditioned circuit whose input turns fully has its modes at an input."""
-    if motion.completeness == "searched" or MISSES in motion.established:
+    if motion.completeness == "searched" or motion.misfits.size:
         return
     turning = [c for c in motion if c.closed and c.input_range is None and np.nanmax(c.condition) < WELL]
     least = sum(circuit.turns for circuit in turning)

@@ -314,6 +314,21 @@ def test_no_mode_is_an_answer():
     assert "no assembly modes at slider = 5000 mm" in run.stdout
 
 
+def test_poses_that_redundant_constraints_alone_keep_open_are_told_beside_the_modes(tmp_path):
+    rows = "\n".join(
+        f'[[link]]\njoint = "R"\nlength = {length}\noffset = 0\ntwist = {twist}'
+        for length, twist in ((1.0, 2e-7), (2.0, 0), (2.0, 0), (3.5, 0))
+    )
+    (tmp_path / "leans.toml").write_text(f"format = 1\n{rows}\n", encoding="utf-8")
+    run = sevenbar("modes", str(tmp_path / "leans.toml"), "--at", "100")
+    assert "no assembly modes" in run.stdout
+    # the axis leans by 2e-7 deg
+    assert "2 more poses close but for redundant constraints, which miss by 3.5e-09" in run.stdout
+    report = json.loads(sevenbar("modes", str(tmp_path / "leans.toml"), "--at", "100", "--json").stdout)
+    assert report["count"] == 0
+    assert report["misfits"] == pytest.approx([np.radians(2e-7)] * 2, rel=1e-2)
+
+
 def test_the_modes_are_drawn(tmp_path):
     assert sevenbar("modes", "bennett", "--out", tmp_path / "modes.svg").returncode == 0
     assert "</svg>" in (tmp_path / "modes.svg").read_text()

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "AGREE",
     "CoreError",
     "Loop",
     "Rows",
@@ -19,6 +20,8 @@ __all__ = [
 
 _Floats = npt.NDArray[np.float64]
 
+#: The closure error [rad, or parts of the size] up to which redundant constraints agree.
+AGREE: float
 __version__: str
 
 class CoreError(ValueError):
@@ -60,7 +63,7 @@ class Loop:
     def freedoms(self) -> int: ...
     @property
     def idle(self) -> list[tuple[str, int, int]]: ...
-    def assembly_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, str]: ...
+    def assembly_modes(self, column: int, value: float) -> tuple[_Floats, _Floats, str, list[float]]: ...
     def mobility(self, column: int) -> dict[str, Any]: ...
     def motion(
         self, input: int, output: int, samples: int, speed: float, law: _Floats | None = None

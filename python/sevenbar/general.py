@@ -93,8 +93,9 @@ class GeneralLoop:
 
     def modes(self, column: int, value: float) -> Modes:
         """Every assembly mode at one value of a column."""
-        q, residual, completeness = self._solve(column, self._core.assembly_modes, column, value)
-        return Modes(q, residual * self.size, completeness, self._linkage.columns, value)
+        found = self._solve(column, self._core.assembly_modes, column, value)
+        q, residual, completeness, misfits = found
+        return Modes(q, residual * self.size, completeness, self._linkage.columns, value, np.array(misfits))
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""
@@ -129,6 +130,7 @@ class GeneralLoop:
             completeness=raw["completeness"],
             redundant=mobility.redundant,
             established=_established(raw, linkage.columns),
+            misfits=np.array(raw["misfits"]),
             law=law,
         )
 
@@ -319,13 +321,19 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
         text += "each lies on a circuit"
     if raw["still"]:
         text += f", but {raw['still']} from which no motion could be followed"
-    if misfits := raw["misfits"]:
-        text += (
-            f"; {len(misfits)} more pose{'s close' if len(misfits) > 1 else ' closes'} but for redundant "
-            f"constraints, which miss by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad, or parts of the size) "
-            f"and are taken to agree up to {raw['agree']:.0e}"
-        )
+    if raw["misfits"]:
+        text += f"; {left_open(raw['misfits'])}"
     return text
+
+
+def left_open(misfits: Sequence[float] | Floats) -> str:
+    """How many poses redundant constraints alone keep open, and by how much; of one or more, rising."""
+    count = len(misfits)
+    return (
+        f"{count} more pose{'s close' if count > 1 else ' closes'} but for redundant constraints, which miss "
+        f"by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad, or parts of the size) and are taken to agree up to "
+        f"{_core.AGREE:.0e}"
+    )
 
 
 def size_of(linkage: Linkage) -> float:

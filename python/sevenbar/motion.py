@@ -78,6 +78,10 @@ class Output:
         return status
 
 
+def _none() -> Floats:
+    return np.array([])
+
+
 @dataclass(frozen=True, eq=False)
 class Modes:
     """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi].
@@ -90,6 +94,8 @@ class Modes:
     completeness: Literal["closed-form", "algebraic", "searched"]
     columns: tuple[str, ...]
     input: float
+    #: Other poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    misfits: Floats = field(default_factory=_none)
 
     @property
     def status(self) -> Words:
@@ -336,6 +342,8 @@ class Motion:
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...]
     law: Law | None = None
+    #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    misfits: Floats = field(default_factory=_none)
 
     @property
     def idle(self) -> tuple[str, ...]:

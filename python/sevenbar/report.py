@@ -21,6 +21,7 @@ from rich.text import Text
 
 from sevenbar.errors import RequestError, shown
 from sevenbar.folder import draw, fill_folder, write_columns, write_figures
+from sevenbar.general import left_open
 from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit, Extremes, Modes, Motion
 from sevenbar.page import Facts
@@ -95,6 +96,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         },
         "completeness": motion.completeness,
         "established": motion.established,
+        "misfits": motion.misfits.tolist(),
         "circuits": [_circuit_dict(circuit) for circuit in motion.circuits],
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),
@@ -293,6 +295,7 @@ def modes_json(linkage: Linkage, modes: Modes, column: int) -> str:
         "units": {"length": linkage.length_unit, "angle": "rad"},
         "input": {"joint": linkage.columns[column], "value": modes.input},
         "completeness": modes.completeness,
+        "misfits": modes.misfits.tolist(),
         "count": len(modes),
         "columns": [
             {"name": name, "kind": kind}
@@ -318,6 +321,8 @@ def print_modes(linkage: Linkage, modes: Modes, column: int, console: Console | 
         highlight=False,
         markup=False,
     )
+    if modes.misfits.size:
+        console.print(left_open(modes.misfits), highlight=False, markup=False)
     for sheet in modes_sheets(linkage, modes, console.width) if count else ():
         console.print()
         console.print(_table(sheet))

@@ -301,6 +301,7 @@ mod _core {
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
         use pyo3::types::PyModuleMethods;
+        module.add("AGREE", sevenbar_core::loops::AGREE)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -44,7 +44,12 @@ pub(crate) fn kinds(letters: &str, advances: &[f64]) -> PyResult<Vec<Kind>> {
         .collect()
 }
 
-type Modes<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, &'static str);
+type Modes<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    &'static str,
+    Vec<f64>,
+);
 
 fn no_input(column: usize) -> PyErr {
     CoreError::new_err(format!("column {column} has no freedom of its own"))
@@ -110,18 +115,18 @@ impl Loop {
             .collect()
     }
 
-    /// Joint values (m, columns) and closure errors (m,) of every assembly mode at one value of a column, and how complete they are.
+    /// Joint values (m, columns) and closure errors (m,) of every assembly mode at one value of a column, how complete they are, and
+    /// by how much redundant constraints keep other poses open.
     fn assembly_modes<'py>(&self, py: Python<'py>, column: usize, value: f64) -> PyResult<Modes<'py>> {
-        let (modes, completeness) = py
+        let found = py
             .detach(|| self.0.modes(column, value))
             .ok_or_else(|| no_input(column))?;
-        let residuals: Vec<f64> = modes.iter().map(|m| m.1).collect();
-        let values: Vec<f64> = modes.iter().flat_map(|m| m.0.iter().copied()).collect();
-        let columns = self.0.columns();
+        let (values, residuals): (Vec<Vec<f64>>, Vec<f64>) = found.modes.into_iter().unzip();
         Ok((
-            PyArray1::from_vec(py, values).reshape([modes.len(), columns])?,
+            PyArray1::from_vec(py, values.concat()).reshape([values.len(), self.0.columns()])?,
             residuals.into_pyarray(py),
-            completeness.name(),
+            found.completeness.name(),
+            found.misfits,
         ))
     }
 
@@ -158,7 +163,6 @@ impl Loop {
         result.set_item("seeds", motion.seeds)?;
         result.set_item("still", motion.still)?;
         result.set_item("misfits", motion.misfits.clone())?;
-        result.set_item("agree", loops::AGREE)?;
         result.set_item("input_rests", motion.input_rests)?;
         result.set_item("moving", motion.moving)?;
         let circuits = motion

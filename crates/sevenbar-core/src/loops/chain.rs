@@ -205,6 +205,11 @@ impl Chain {
             .all(|&(c, middle)| (at.values[c] - middle).cos() > 0.0)
     }
 
+    /// Whether joints that move with one freedom leave constraints that say what others say: seven columns with rank six do not.
+    pub fn is_redundant(&self) -> bool {
+        self.columns < COLUMNS
+    }
+
     /// The columns that are angles of joints with one axis.
     pub fn is_turn(&self, column: usize) -> bool {
         self.joints[self.joint_of(column)] == Joint::Turn

@@ -221,8 +221,8 @@ impl<'a> Passes<'a> {
         let off = self.chain.difference(&node.at, &solved.at);
         let along = dot(&off, &node.rates[0]);
         let aside = length(&combined(&off, 1.0, &self.chain.predicted(node, along), -1.0));
-        // a curve of fewer than seven columns has redundant constraints, and their misfit changes between its nodes
-        let closed = if self.chain.columns < COLUMNS {
+        // the misfit of redundant constraints changes between its nodes
+        let closed = if self.chain.is_redundant() {
             2.0 * AGREE
         } else {
             ROW_CLOSED

@@ -48,8 +48,16 @@ pub struct Loop {
     columns: usize,
 }
 
-/// Joint values of one assembly mode, and its closure error in parts of the size or radians.
-pub type Mode = (Vec<f64>, f64);
+/// All assembly modes at one input.
+#[derive(Clone, Debug)]
+pub struct Modes {
+    /// The joint values of each, and its closure error in parts of the size or radians.
+    pub modes: Vec<(Vec<f64>, f64)>,
+    /// How complete they are.
+    pub completeness: Completeness,
+    /// By how much redundant constraints keep other poses open, least first [rad, or parts of the size].
+    pub misfits: Vec<f64>,
+}
 
 impl Loop {
     /// From the kinds of the joints, the frames of the first joint and of the ground's side of the last, and the transforms of the
@@ -149,15 +157,17 @@ impl Loop {
     }
 
     /// Every assembly mode at one value of a column [rad, or length]; `None` where that column is no input.
-    pub fn modes(&self, column: usize, value: f64) -> Option<(Vec<Mode>, Completeness)> {
+    pub fn modes(&self, column: usize, value: f64) -> Option<Modes> {
         let chain = self.reduced.chain.as_ref()?;
         let input = self.chain_column(column)?;
         let finder = modes::ModeFinder::new(chain, input);
-        let found = finder
-            .once(value * self.inward(column))
-            .iter()
-            .map(|at| (self.joint_values(at), chain.residual(&chain.place(at))))
-            .collect();
-        Some((found, finder.completeness()))
+        let mut found = finder.once(value * self.inward(column));
+        found.misfits.sort_by(f64::total_cmp);
+        let closed = |at| (self.joint_values(at), chain.residual(&chain.place(at)));
+        Some(Modes {
+            modes: found.modes.iter().map(closed).collect(),
+            completeness: finder.completeness(),
+            misfits: found.misfits,
+        })
     }
 }

@@ -34,6 +34,14 @@ impl Completeness {
     }
 }
 
+/// Rough modes closed as well as they can be.
+pub(super) struct Polished {
+    /// Those that close, in order.
+    pub modes: Vec<Configuration>,
+    /// By how much redundant constraints keep the others open [rad, or parts of the size].
+    pub misfits: Vec<f64>,
+}
+
 /// A solution whose turns or slides have larger imaginary parts than this is not tried as a real one.
 const REAL: f64 = 1e-5;
 
@@ -214,7 +222,7 @@ impl<'a> ModeFinder<'a> {
     }
 
     /// All modes at the one value that is asked for [rad, or parts of the size].
-    pub fn once(&self, value: f64) -> Vec<Configuration> {
+    pub fn once(&self, value: f64) -> Polished {
         if !self.algebraic {
             return self.polished(&self.search(value));
         }
@@ -224,16 +232,21 @@ impl<'a> ModeFinder<'a> {
         let found = follow(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
         let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
         if ends.len() == general_count(&self.slides) {
-            self.real_ones(ends, &shift, value)
+            self.polished(&self.real_ones(&ends, &shift, value))
         } else {
             self.at(value)
         }
     }
 
     /// All modes with the input at this value [rad, or parts of the size].
-    pub fn at(&self, value: f64) -> Vec<Configuration> {
+    pub fn at(&self, value: f64) -> Polished {
+        self.polished(&self.rough_at(value))
+    }
+
+    /// The same, some of them rough to [`POLISHED_MOVE`].
+    fn rough_at(&self, value: f64) -> Vec<Configuration> {
         if !self.algebraic {
-            return self.polished(&self.search(value));
+            return self.search(value);
         }
         let generic = self.generic();
         let input = self.input_at(value);
@@ -263,7 +276,7 @@ impl<'a> ModeFinder<'a> {
                 break;
             }
         }
-        self.real_ones(ends, &shift, value)
+        self.real_ones(&ends, &shift, value)
     }
 
     /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`].
@@ -283,41 +296,29 @@ impl<'a> ModeFinder<'a> {
                 let ends = distinct(&self.slides, ends.into_iter().flatten(), SAME_MODE);
                 // two paths that end near each other may have become one
                 if ends.len() < generic.solutions.len() {
-                    return self.at(value);
+                    return self.rough_at(value);
                 }
-                ends.iter()
-                    .filter_map(|end| self.configuration(end, &shift, value))
-                    .collect()
+                self.real_ones(&ends, &shift, value)
             })
             .collect()
     }
 
-    /// The modes among solutions, polished, in order.
-    fn real_ones(
-        &self,
-        ends: Vec<Solution>,
-        shift: &[Complex64; UNKNOWNS],
-        value: f64,
-    ) -> Vec<Configuration> {
-        let rough: Vec<Configuration> = ends
-            .iter()
+    /// The modes among solutions, rough to [`POLISHED_MOVE`].
+    fn real_ones(&self, ends: &[Solution], shift: &[Complex64; UNKNOWNS], value: f64) -> Vec<Configuration> {
+        ends.iter()
             .filter_map(|end| self.configuration(end, shift, value))
-            .collect();
-        self.polished(&rough)
+            .collect()
     }
 
-    /// Rough modes closed to rounding, each once, in order; without those that do not close near by.
-    pub fn polished(&self, rough: &[Configuration]) -> Vec<Configuration> {
-        let settled = self.settled(rough);
-        let closed = settled.into_iter().filter(|s| s.agrees());
-        self.in_order(closed.map(|s| s.at).collect())
-    }
-
-    /// By how much [rad, or parts of the size] redundant constraints keep rough modes open, each once.
-    pub fn misfits(&self, rough: &[Configuration]) -> Vec<f64> {
-        let settled = self.settled(rough);
-        let open = settled.iter().filter(|s| !s.agrees() && self.chain.counts(&s.at));
-        open.map(|s| s.misfit).collect()
+    /// Rough modes closed, each once; without those that do not close near by.
+    pub fn polished(&self, rough: &[Configuration]) -> Polished {
+        let (closed, open): (Vec<Settled>, Vec<Settled>) =
+            self.settled(rough).into_iter().partition(Settled::agrees);
+        let open = open.iter().filter(|s| self.chain.counts(&s.at));
+        Polished {
+            misfits: open.map(|s| s.misfit).collect(),
+            modes: self.in_order(closed.into_iter().map(|s| s.at).collect()),
+        }
     }
 
     /// Where rough modes come to close as well as they can, each once.

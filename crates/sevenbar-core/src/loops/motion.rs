@@ -395,29 +395,26 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
         if first_only {
             for k in 0..count {
                 if out.curves.is_empty() {
-                    out.take(chain, &finder.at(TAU * k as f64 / count as f64), wished[0]);
+                    out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, wished[0]);
                 }
             }
             continue;
         }
         let rough = finder.around(count);
         if seed == wished[0] {
-            out.modes_at_zero = Some(finder.polished(&rough[0]).len());
+            out.modes_at_zero = Some(finder.polished(&rough[0]).modes.len());
         }
         let places: Vec<Configuration> = rough
             .iter()
             .step_by(AHEAD)
             .filter(|modes| modes.len() <= MOST_MODES)
-            .flat_map(|modes| finder.polished(&out.unknown(chain, modes)))
+            .flat_map(|modes| finder.polished(&out.unknown(chain, modes)).modes)
             .collect();
         out.ahead = chain.closed_curves(&places);
         for modes in &rough {
-            let unknown = out.unknown(chain, modes);
-            let closed = finder.polished(&unknown);
-            if closed.len() < unknown.len() {
-                out.misfits.extend(finder.misfits(&unknown));
-            }
-            out.take(chain, &closed, wished[0]);
+            let polished = finder.polished(&out.unknown(chain, modes));
+            out.misfits.extend(polished.misfits);
+            out.take(chain, &polished.modes, wished[0]);
         }
     }
     out.misfits.sort_by(f64::total_cmp);

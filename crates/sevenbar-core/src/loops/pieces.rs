@@ -17,7 +17,7 @@ const LEAST_PIVOT: f64 = 1e-6;
 impl Chain {
     /// The closed curves through some of these closed configurations; those on other curves are left out.
     pub fn closed_curves(&self, places: &[Configuration]) -> Vec<Curve> {
-        if self.columns != COLUMNS {
+        if self.is_redundant() {
             return Vec::new();
         }
         let mut starts: Vec<Start> = Vec::with_capacity(places.len());

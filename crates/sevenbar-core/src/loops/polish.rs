@@ -113,8 +113,8 @@ fn misfit(chain: &Chain, at: &Configuration) -> Option<f64> {
     }
     let error = &placed.error;
     let left = error.iter().map(|e| e * e).sum::<f64>().sqrt();
-    // seven columns with rank six have no redundant constraints; turned right round, the error tells nothing
-    if chain.columns == COLUMNS || left.is_nan() || residual > NEARLY {
+    // turned right round, the error tells nothing
+    if !chain.is_redundant() || left.is_nan() || residual > NEARLY {
         return None;
     }
     let columns = chain.screws(at);

@@ -53,7 +53,9 @@ fn the_loop_of_liu_and_zhu_has_sixteen_modes() {
         &[-0.189116062654422, 0.0, 0.0, 0.2, 0.0, 0.0, 0.1956089470001161],
         &[50.0, 90.0, 1.0, 90.0, 1.0, 90.0, 35.107829405198316],
     );
-    let modes = ModeFinder::new(&chain, 0).at(11.557058720012146_f64.to_radians());
+    let modes = ModeFinder::new(&chain, 0)
+        .at(11.557058720012146_f64.to_radians())
+        .modes;
     assert_eq!(modes.len(), 16);
 }
 
@@ -63,7 +65,7 @@ fn the_paper_s_loop_has_eight_solutions_all_of_them_real() {
     let finder = ModeFinder::new(&chain, 0);
     assert_eq!(finder.complex_count(), Some(8));
     for k in 0..12 {
-        assert_eq!(finder.at(0.5 * f64::from(k)).len(), 8);
+        assert_eq!(finder.at(0.5 * f64::from(k)).modes.len(), 8);
     }
 }
 
@@ -74,7 +76,7 @@ fn general_loops_have_sixteen_solutions_and_an_even_number_of_real_ones() {
         let chain = general_loop(&mut random);
         let finder = ModeFinder::new(&chain, 0);
         assert_eq!(finder.complex_count(), Some(16));
-        let modes = finder.at(0.0);
+        let modes = finder.at(0.0).modes;
         assert!(modes.len().is_multiple_of(2) && !modes.is_empty());
     }
 }
@@ -90,7 +92,8 @@ fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misf
         let finder = ModeFinder::new(&chain, 0);
         // half a turn on: the crank lies along the ground
         let rough = finder.around(4).swap_remove(2);
-        (finder.polished(&rough).len(), finder.misfits(&rough))
+        let polished = finder.polished(&rough);
+        (polished.modes.len(), polished.misfits)
     };
     for lean in [0.0, 1e-13, 1e-11, 1e-10, -5e-10] {
         assert_eq!(modes_and_misfits(lean), (2, vec![]));
@@ -111,7 +114,7 @@ fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misf
 #[test]
 fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
     let chain = seven_r();
-    for mode in ModeFinder::new(&chain, 0).at(0.3) {
+    for mode in ModeFinder::new(&chain, 0).at(0.3).modes {
         let curve = chain.follow(&[(mode, direction(&chain, &mode))]).swap_remove(0);
         assert_eq!(curve.end, End::Closed);
         let gained = curve.nodes[curve.nodes.len() - 1].at.values[0] - mode.values[0];
@@ -122,7 +125,7 @@ fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
 #[test]
 fn rows_side_by_side_are_the_rows_solved_singly() {
     let chain = seven_r();
-    for mode in ModeFinder::new(&chain, 0).at(0.3) {
+    for mode in ModeFinder::new(&chain, 0).at(0.3).modes {
         let curve = chain.follow(&[(mode, direction(&chain, &mode))]).swap_remove(0);
         let passes = Passes::new(&chain, curve, 0).unwrap();
         for row in passes.rows(0.0, 0.01) {
@@ -148,8 +151,8 @@ fn modes_from_the_circle_of_complex_inputs_are_those_found_singly() {
         for input in [0, 3] {
             let finder = ModeFinder::new(chain, input);
             for (k, rough) in finder.around(24).iter().enumerate() {
-                let singly = finder.at(std::f64::consts::TAU * k as f64 / 24.0);
-                let modes = finder.polished(rough);
+                let singly = finder.at(std::f64::consts::TAU * k as f64 / 24.0).modes;
+                let modes = finder.polished(rough).modes;
                 assert_eq!(modes.len(), singly.len(), "value {k}");
                 assert!(modes.iter().zip(&singly).all(|(a, b)| same(chain, a, b)));
             }
@@ -171,7 +174,7 @@ fn curves_joined_from_pieces_are_those_followed_whole_in_either_direction() {
     let mut compared = 0;
     for chain in &chains {
         let finder = ModeFinder::new(chain, 0);
-        let modes: Vec<Configuration> = (0..6).flat_map(|k| finder.at(f64::from(k))).collect();
+        let modes: Vec<Configuration> = (0..6).flat_map(|k| finder.at(f64::from(k)).modes).collect();
         let joined = chain.closed_curves(&modes);
         for mode in &modes {
             let whole = chain.follow(&[(*mode, direction(chain, mode))]).swap_remove(0);
