@@ -85,3 +85,9 @@ def test_primes_stand_beside_their_letter_and_powers_above_it():
         ("<msup><mi>A</mi><mo>+</mo></msup>", "<msup><mi>A</mi><mo>+</mo></msup>"),
     ):
         assert with_full_primes(f"<math>{given}</math>") == f"<math>{mended}</math>"
+
+
+def test_no_page_has_the_marks_of_a_merge_that_was_left():
+    # one had: they passed for a heading and for text
+    for page in DOCS.rglob("*.md"):
+        assert not re.search(r"^(<{7}|={7}|>{7})( |$)", page.read_text(encoding="utf-8"), re.MULTILINE), page
