@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -15,6 +16,9 @@ Results = Mapping[str, Any]
 #: Characters of a line of prose.
 WIDTH = 160
 
+#: A cell with a number, perhaps of parts a hundred, or none.
+NUMBER = re.compile(r"-?[\d,.]+(e[-+]?\d+)?( %)?|[-–]?")
+
 #: Relative errors of velocity, acceleration and jerk that the RSSR and general loops are to keep.
 ASKED = {"closed form": (1e-12, 1e-11, 1e-10), "general": (1e-10, 1e-9, 1e-8)}
 
@@ -26,7 +30,10 @@ def number(value: float) -> str:
 
 def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table of Markdown."""
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    # numbers to the right, where the site does not break their lines
+    right_of = [all(NUMBER.fullmatch(row[place]) for row in rows) for place in range(len(header))]
+    rule = ("---:" if right else "---" for right in right_of)
+    lines = ["| " + " | ".join(header) + " |", "|" + "|".join(rule) + "|"]
     return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows)])
 
 
