@@ -122,9 +122,11 @@ LINKAGES ?= 1000000
 FILES ?= 10000000
 THREADS ?= 2
 SEED ?= 1
+# ways to do anew after a change, where the others stand: make fuzz AGAIN="rssr loop"
+AGAIN ?=
 .PHONY: fuzz
-fuzz: $(VENV)/.installed-dev  ## Hard use: LINKAGES, FILES, THREADS, SEED; writes docs/hard-use.md
-	$(BIN)/python -m fuzz run --page --linkages $(LINKAGES) --files $(FILES) --threads $(THREADS) --seed $(SEED)
+fuzz: $(VENV)/.installed-dev  ## Hard use: LINKAGES, FILES, THREADS, SEED, AGAIN; writes docs/hard-use.md
+	$(BIN)/python -m fuzz run --page --linkages $(LINKAGES) --files $(FILES) --threads $(THREADS) --seed $(SEED) $(if $(AGAIN),--again $(AGAIN))
 
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too

@@ -15,6 +15,8 @@ TELLING = 30.0
 
 def main() -> int:
     """Runs what the command line asks for; 1 where something was found."""
+    from fuzz.ways import WAYS
+
     parser = argparse.ArgumentParser(prog="python -m fuzz", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="draw and judge; goes on where the same run was stopped")
@@ -22,6 +24,7 @@ def main() -> int:
     run.add_argument("--files", type=int, default=10_000_000)
     run.add_argument("--threads", type=int, default=2, help="worker processes")
     run.add_argument("--seed", type=int, default=1)
+    run.add_argument("--again", nargs="+", default=[], choices=WAYS, help="ways to do anew after a change")
     run.add_argument("--page", action="store_true", help="write docs/hard-use.json and docs/hard-use.md")
     replay = commands.add_parser("replay", help="judge the case of a finding again")
     replay.add_argument("file", type=Path)
@@ -34,6 +37,7 @@ def _run(given: argparse.Namespace) -> int:
     from fuzz.summary import ROOT, SUMMARY, Run
 
     run = Run(given.linkages, given.files, given.seed, given.threads)
+    run.forget(given.again)
     start = told = time.monotonic()
     total = run.linkages + run.files
 

@@ -84,10 +84,15 @@ def written(plain: Mapping[str, Any]) -> str:
 
 
 def _circumstances(plain: Mapping[str, Any]) -> str:
+    elsewhere: dict[str, list[str]] = {}
+    for way, commits in plain["commits"].items():
+        if commits != [plain["commit"]]:
+            elsewhere.setdefault(" and ".join(commits), []).append(f"`{way}`")
     return (
         f"{in_words(plain)}. {plain['linkages']:,} linkages and {plain['files']:,} files "
         f"from seed {plain['seed']} in {plain['minutes']:.0f} minutes "
         f"on {plain['threads']} worker{'s' * (plain['threads'] != 1)}."
+        + "".join(f" {' and '.join(ways)} at commit {commits}." for commits, ways in elsewhere.items())
     )
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from accuracy.circumstances import circumstances
+from accuracy.circumstances import circumstances, commit
 from fuzz import ROOT
 from fuzz.tally import Tally
 from fuzz.watch import Watch
@@ -40,6 +41,8 @@ class Run:
     peak_way: str = ""
     peak_after: int = 0
     seconds: float = 0.0
+    #: The commits of the sources that did each way, as a run may go on with others.
+    commits: dict[str, set[str]] = field(default_factory=dict)
     _jobs_done: int = 0
 
     def counts(self) -> dict[str, int]:
@@ -71,27 +74,47 @@ class Run:
         """The lines of what is done: a run with the same numbers goes on from there."""
         return JOURNALS / f"{self.linkages}-{self.files}-{self.seed}.jsonl"
 
-    def take(self, job: Job, plain: dict[str, Any], peak: int, seconds: float) -> None:
-        """Adds what a job came to."""
-        self.tallies.setdefault(job.way, Tally()).merge(plain)
+    def take(self, job: Job, row: dict[str, Any]) -> None:
+        """Adds what a job came to, a line of the journal."""
+        self.tallies.setdefault(job.way, Tally()).merge(row["tally"])
+        self.commits.setdefault(job.way, set()).add(row["commit"])
+        peak = row["peak"]
         self._jobs_done += 1
         if peak > self.peak_memory:
             self.peak_memory, self.peak_way, self.peak_after = peak, job.way, self._jobs_done
-        self.seconds += seconds
+        self.seconds += row["seconds"]
+
+    def forget(self, ways: Collection[str]) -> None:
+        """Takes these ways out of the journal, to do them anew."""
+        if ways:
+            self._keep([row for row in self._rows() if row["job"][0] not in ways])
+
+    def _rows(self) -> list[dict[str, Any]]:
+        """What the journal has, without the line at which the run before was stopped."""
+        if not self.journal.exists():
+            return []
+        rows = []
+        for line in self.journal.read_text(encoding="utf-8").splitlines():
+            with contextlib.suppress(ValueError):
+                rows.append(json.loads(line))
+        return rows
+
+    def _keep(self, rows: list[dict[str, Any]]) -> None:
+        self.journal.parent.mkdir(parents=True, exist_ok=True)
+        rest = self.journal.with_suffix(".rest")
+        rest.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
+        rest.replace(self.journal)
 
     def go(self, tell: Any) -> None:
         """Does all that the journal has not; `tell` is called with findings, and now and then with words."""
-        self.journal.parent.mkdir(parents=True, exist_ok=True)
+        source = commit()
         done: dict[str, list[tuple[int, int]]] = {way: [] for way in WAYS}
-        if self.journal.exists():
-            for line in self.journal.read_text(encoding="utf-8").splitlines():
-                try:
-                    row = json.loads(line)
-                except ValueError:  # the line at which the run before was stopped
-                    continue
-                job = Job(*row["job"])
-                done[job.way].append((job.first, job.last))
-                self.take(job, row["tally"], row["peak"], row["seconds"])
+        rows = self._rows()
+        self._keep(rows)
+        for row in rows:
+            job = Job(*row["job"])
+            done[job.way].append((job.first, job.last))
+            self.take(job, row)
         covered = {way: {index for a, b in parts for index in (a,) if b > a} for way, parts in done.items()}
         left = [job for job in self.jobs() if job.first not in covered[job.way]]
         if self._jobs_done:
@@ -103,9 +126,14 @@ class Run:
                 nonlocal last
                 now = time.monotonic()
                 seconds, last = now - last, now
-                plain = tally.plain()
-                self.take(job, plain, peak, seconds)
-                row = {"job": list(job), "tally": plain, "peak": peak, "seconds": seconds}
+                row = {
+                    "job": list(job),
+                    "commit": source,
+                    "tally": tally.plain(),
+                    "peak": peak,
+                    "seconds": seconds,
+                }
+                self.take(job, row)
                 journal.write(json.dumps(row) + "\n")
                 journal.flush()
                 for finding in tally.findings:
@@ -130,6 +158,7 @@ class Run:
                 "after": self.peak_after / max(1, self._jobs_done),
             },
             "limits": {way: WAYS[way].limit for way in self.counts()},
+            "commits": {way: sorted(self.commits[way]) for way in self.counts() if way in self.commits},
             "ways": {
                 way: self.tallies[way].plain() | {"findings": []}
                 for way in self.counts()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from accuracy.reference_loops import Loop
 from fuzz.checks import circuits_are_distinct
 from random_linkages import random_rotation
 from sevenbar.errors import MOST_TOLD, DescriptionError, RequestError, TableError
@@ -152,6 +153,34 @@ def test_an_extreme_beside_the_first_row_of_a_circuit_is_found() -> None:
         assert coarse.jerk.highest == pytest.approx(jerk.max(), rel=1e-5)
 
 
+def test_turns_of_balls_close_the_loop_also_where_the_middle_one_is_a_quarter_but_for_1e_8() -> None:
+    # the coupler runs along the crank's axis within 1e-8, where each turn has eight digits: the loop was open by 1 rad
+    for near in (
+        {"M": -1e-100, "N": -2.0, "L1": 1e-12, "L2": 1.000000000000001, "L3": 0.999999999999999, "D": 1e-12},
+        {"M": 1e-50, "N": -1.000000000000001, "L1": 1.000000000000001, "L2": 2.0,
+         "L3": 0.999999999999999, "D": 1.000000000000001},
+    ):  # fmt: skip
+        linkage = sb.rssr(**near)
+        motion = linkage.motion(24)
+        assert motion.circuits
+        for circuit in motion:
+            q = circuit.q[np.isfinite(circuit.q).all(axis=1)]
+            assert len(q) > 20
+            assert Loop.of(linkage).errors(q).max() < 1e-13
+
+
+def test_a_transmission_angle_is_a_number_where_rounding_hides_its_greatest_or_no_direction_is() -> None:
+    # an arc of 1.6e-4 rad of a crank of 1e12; a ball that comes to lie in the rocker's axis
+    for near in (
+        {"M": -1e-50, "N": -1e-12, "L1": 1e12, "L2": 1.000000000000001, "L3": 1.0, "D": 1e12},
+        {"M": 0.0, "N": 0.0, "L1": 1.0, "L2": 4.123105625617661, "L3": 4.0, "D": 0.0},
+    ):
+        for circuit in sb.rssr(**near).motion(24):
+            assert circuit.transmission is not None
+            assert circuit.transmission.lowest == 0.0
+            assert 0.0 <= circuit.transmission.highest < np.pi / 2
+
+
 def test_rates_that_peak_where_no_digit_of_them_is_left_have_no_extremes() -> None:
     # the branches pass each other 1e-6 rad apart: -0.19 was told where rows have -0.21, and the peak is a million
     near = {
@@ -219,6 +248,18 @@ def test_a_circuit_between_change_points_is_found_once() -> None:
     middles = np.array([circuit.q[len(circuit.q) // 2] for circuit in linkage.motion()])
     gaps = np.linalg.norm(middles[:, None] - middles[None], axis=2)
     assert (gaps[~np.eye(len(gaps), dtype=bool)] > 0.1).all()
+
+
+def test_a_circuit_whose_steps_led_on_over_a_change_point_is_not_told_in_parts_too() -> None:
+    # an antiparallelogram of slides, whose axes lean by less than the digits that a change point leaves
+    revolute, leaning = (
+        {"joint": "R", "length": 2, "twist": t, "offset": o} for t, o in ((0, 1), (1e-9, -1))
+    )
+    slide = {"joint": "P", "length": -1, "twist": -90, "angle": 0}
+    linkage = from_description({"format": 1, "link": [revolute, leaning, slide, revolute, leaning, slide]})
+    motion = linkage.motion(24)
+    assert motion.motion_type == "change-point"
+    circuits_are_distinct(motion)
 
 
 def test_a_screw_turned_once_more_is_another_pose_however_small_its_pitch_beside_the_loop() -> None:

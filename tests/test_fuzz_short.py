@@ -220,6 +220,15 @@ def test_a_run_that_was_stopped_goes_on_and_comes_to_the_same(
     for way, tally in first.tallies.items():
         assert again.tallies[way].cases == tally.cases == first.counts()[way]
         assert again.tallies[way].seen == tally.seen
+    # one way anew, as after a change of what it looks at
+    monkeypatch.setattr(summary, "commit", lambda: "later")
+    anew = summary.Run(linkages=100, files=900, seed=3, threads=1)
+    anew.forget(["rssr"])
+    anew.go(lambda _: None)
+    assert anew.tallies["rssr"].cases == first.counts()["rssr"]
+    assert {way for way, commits in anew.commits.items() if commits == {"later"}} == {"rssr"}
+    assert "later" not in anew.commits["file"]
+    assert "`rssr` at commit later." in page.written(anew.plain() | {"commit": "now"})
 
 
 def test_the_page_tells_what_the_summary_counts() -> None:
@@ -227,7 +236,8 @@ def test_the_page_tells_what_the_summary_counts() -> None:
     for way, count in run.counts().items():
         tally = Tally(cases=count, seen=Counter({"type rigid": count, "refused ~ is text": 2}))
         tally.add(Finding(way, 1, f"{way} went wrong 3 times", "", ""))
-        run.take(ways.Job(way, 3, 0, count), json.loads(json.dumps(tally.plain())), 5_000_000, 60.0)
+        row = {"commit": "abc", "tally": tally.plain(), "peak": 5_000_000, "seconds": 60.0}
+        run.take(ways.Job(way, 3, 0, count), json.loads(json.dumps(row)))
     told = page.written(run.plain())
     assert f"{len(run.counts())} minutes" in told
     for way, count in run.counts().items():

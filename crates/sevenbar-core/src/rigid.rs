@@ -82,16 +82,20 @@ pub fn still<const N: usize>(a: Vec3) -> Vec3Taylor<N> {
 const TURNS_UNDEFINED: f64 = 1e-8;
 
 /// The turns about z, y and x, one after the other, that make up a rotation whose entries are asked for by row and column.
+///
+/// The third is that which the first leaves to do: near a middle turn of a quarter both have few digits, and their product all.
 pub fn turns_zyx<const N: usize>(entry: impl Fn(usize, usize) -> Taylor<N>) -> Option<[Taylor<N>; 3]> {
     let (x, y) = (entry(0, 0), entry(1, 0));
-    let level = x * x + y * y;
-    if level.value() < TURNS_UNDEFINED * TURNS_UNDEFINED {
+    let square = x * x + y * y;
+    if square.value() < TURNS_UNDEFINED * TURNS_UNDEFINED {
         return None;
     }
+    let level = square.sqrt();
+    let turned_back = |j: usize| x * entry(1, j) - y * entry(0, j);
     Some([
         Taylor::atan2(y, x),
-        Taylor::atan2(-entry(2, 0), level.sqrt()),
-        Taylor::atan2(entry(2, 1), entry(2, 2)),
+        Taylor::atan2(-entry(2, 0), level),
+        Taylor::atan2(-turned_back(2), turned_back(1)),
     ])
 }
 

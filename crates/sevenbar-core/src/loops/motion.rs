@@ -417,6 +417,7 @@ fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
             out.take(chain, &polished.modes, wished[0]);
         }
     }
+    out.forget_parts(chain);
     out.misfits.sort_by(f64::total_cmp);
     if out.seed_columns.is_empty() {
         out.completeness = Completeness::Searched;
@@ -531,9 +532,25 @@ impl Curves {
 
     /// Whether a curve between change points is known: beside one of them no step of a curve tells that a mode is on it.
     fn has_middle_of(&self, chain: &Chain, curve: &Curve) -> bool {
-        let middle = &curve.nodes[curve.nodes.len() / 2].at;
-        curve.end == End::Singular && self.curves.iter().any(|c| lies_on(chain, c, middle))
+        curve.end == End::Singular && self.curves.iter().any(|c| lies_on(chain, c, middle(curve)))
     }
+
+    /// Forgets the curves between change points that are parts of later ones: those led on where these ended, within rounding.
+    fn forget_parts(&mut self, chain: &Chain) {
+        let mut k = 0;
+        while k < self.curves.len() {
+            let (curve, later) = (&self.curves[k], &self.curves[k + 1..]);
+            if curve.end == End::Singular && later.iter().any(|c| lies_on(chain, c, middle(curve))) {
+                self.curves.remove(k);
+            } else {
+                k += 1;
+            }
+        }
+    }
+}
+
+fn middle(curve: &Curve) -> &Configuration {
+    &curve.nodes[curve.nodes.len() / 2].at
 }
 
 /// A basis of the wrenches that no joint yields to: force and moment with zero power on every screw.

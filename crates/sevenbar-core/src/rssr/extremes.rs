@@ -132,7 +132,12 @@ pub(super) fn transmission_extremes(pair: &Pair, extent: Extent, branch: usize) 
         .map(|z| z.angle)
         .filter(|&x| extent.distance(x) == 0.0)
         .collect();
-    inputs.extend((extent == Extent::Full).then_some(0.0));
+    match extent {
+        Extent::Full => inputs.push(0.0),
+        // the angle rises from one limit and falls to the other; where rounding hides the place between, any is as good
+        Extent::Arc(start, end) if inputs.is_empty() => inputs.push(0.5 * (start + end)),
+        Extent::Arc(..) => {}
+    }
     let angle_at = |&input: &f64| Extreme { input, value: pair.transmission_angle(input, branch) };
     let least = inputs
         .iter()
@@ -156,6 +161,10 @@ impl Pair {
     pub fn transmission_angle(&self, driver: f64, branch: usize) -> f64 {
         let reach = self.reach(driver);
         let slope = reach.slope.unwrap_or(0.0);
+        if slope == 0.0 {
+            // the line of the coupler meets the driven axis, perhaps in the ball, with which no direction is
+            return 0.0;
+        }
         let (sine, cosine) = self.direction(&reach, slope, branch);
         let [x, y, z] = reach.ball;
         let radial = x * cosine + y * sine - self.radius;

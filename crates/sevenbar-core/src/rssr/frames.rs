@@ -184,6 +184,9 @@ fn spin_rule<const N: usize>(
     if square.value() < SPIN_UNDEFINED_SINE * SPIN_UNDEFINED_SINE {
         return None;
     }
-    let z = scale_taylor(across, square.sqrt().recip());
+    // once more, since rounding of the difference is along x too, and counts where the difference is small
+    let rest = dot_taylor(across, x);
+    let across: Vec3Taylor<N> = std::array::from_fn(|i| across[i] - x[i] * rest);
+    let z = scale_taylor(across, dot_taylor(across, across).sqrt().recip());
     Some((cross_taylor(z, x), z))
 }
