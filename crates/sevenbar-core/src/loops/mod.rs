@@ -3,6 +3,7 @@
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
+mod all_curves;
 mod around;
 mod chain;
 mod circuits;
@@ -26,10 +27,11 @@ mod tests;
 mod turnings;
 mod walk;
 
+pub use all_curves::Found;
 pub use extremes::Ends;
 pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
-pub use motion::{Circuit, Found, Motion, Through};
+pub use motion::{Circuit, Motion, Through};
 pub use polish::AGREE;
 pub use reduce::{Idle, Kind};
 pub use rows::Rows;

@@ -1,50 +1,20 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
 use super::Loop;
+use super::all_curves::{Curves, Found, curves};
 use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
 use super::circuits::{Passes, Row};
-use super::curve::{Curve, End, Node, combined, dot};
-use super::dense::singular_values;
+use super::curve::{Curve, End, Node, combined};
 use super::extremes::{Ends, output_extremes};
-use super::modes::{Completeness, ModeFinder};
-use super::polish::{CLOSED, NO_RANK, Settled, polish, rank, unyielding};
+use super::modes::Completeness;
+use super::polish::{Settled, polish};
 use super::rates::ORDERS;
 use super::rows::Rows;
-use super::walk::Start;
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
 use std::f64::consts::TAU;
 
-/// Values of a joint at which the modes are found, all of which must lie on the circuits.
-const SEEDS: usize = 24;
-
-/// The same where modes are searched for.
-const SEARCHED_SEEDS: usize = 4;
-
-/// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be.
-const AHEAD: usize = 4;
-
-/// Modes of a loop without screws at an input; where more are found, curves of them are, and few are followed at once.
-const MOST_MODES: usize = 16;
-
-/// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
-const SEED_JOINTS: usize = 2;
-
-/// Norm of the screws' inverse from which rounding leaves nothing to follow.
-const LOST: f64 = 1e6;
-
 /// How far a joint of a given pose [rad, or parts of the size] may be moved to close the loop.
 const PUT_RIGHT: f64 = 0.05;
-
-/// How freely a loop moves, as found in its poses.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// Rank of the joints' screws, idle freedoms aside.
-    pub rank: usize,
-    /// Wrenches that the redundant constraints bear, a basis: force and moment in the frame of the first joint.
-    pub redundant: Vec<[f64; 6]>,
-    /// Freedoms of the motion as found.
-    pub finite: usize,
-}
 
 /// One connected motion over an input.
 #[derive(Clone, Debug)]
@@ -103,21 +73,6 @@ pub enum Through {
     Still,
     /// It moves with the input at rest: the columns that do.
     InputRests(Vec<usize>),
-}
-
-/// All curves of a chain.
-struct Curves {
-    curves: Vec<Curve>,
-    found: Option<Found>,
-    completeness: Completeness,
-    seed_columns: Vec<usize>,
-    seeds: usize,
-    still: usize,
-    misfits: Vec<f64>,
-    /// Modes at the zero of the first of the wished joints.
-    modes_at_zero: Option<usize>,
-    /// Curves through some of the modes to come.
-    ahead: Vec<Curve>,
 }
 
 impl Loop {
@@ -368,211 +323,6 @@ impl Loop {
                 .map(|e| e.map(|ends| ends.map(|[value, at]| [value * scale(columns.1), at + shift[a]]))),
         }
     }
-}
-
-/// The curves through all modes at the seeds, or the first: seeds are values of the wished joints if they turn, else of the
-/// first joints that do.
-fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
-    let mut seeds: Vec<usize> = Vec::new();
-    for c in wished.iter().copied().chain(0..chain.columns) {
-        if chain.is_turn(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
-            seeds.push(c);
-        }
-    }
-    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new() };
-    // the pose of a drawing first: the joints are zero there
-    if chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED {
-        out.take(chain, &[Configuration::ZERO], wished[0]);
-    }
-    for seed in seeds {
-        let finder = ModeFinder::new(chain, seed);
-        let searched = finder.completeness() == Completeness::Searched;
-        if searched {
-            out.completeness = Completeness::Searched;
-        }
-        let count = if searched { SEARCHED_SEEDS } else { SEEDS };
-        out.seeds = count;
-        if first_only {
-            for k in 0..count {
-                if out.curves.is_empty() {
-                    out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, wished[0]);
-                }
-            }
-            continue;
-        }
-        let rough = finder.around(count);
-        if seed == wished[0] {
-            out.modes_at_zero = Some(finder.polished(&rough[0]).modes.len());
-        }
-        let places: Vec<Configuration> = rough
-            .iter()
-            .step_by(AHEAD)
-            .filter(|modes| modes.len() <= MOST_MODES)
-            .flat_map(|modes| finder.polished(&out.unknown(chain, modes)).modes)
-            .collect();
-        out.ahead = chain.closed_curves(&places);
-        for modes in &rough {
-            let polished = finder.polished(&out.unknown(chain, modes));
-            out.misfits.extend(polished.misfits);
-            out.take(chain, &polished.modes, wished[0]);
-        }
-    }
-    out.forget_parts(chain);
-    out.misfits.sort_by(f64::total_cmp);
-    if out.seed_columns.is_empty() {
-        out.completeness = Completeness::Searched;
-    }
-    if out.curves.is_empty()
-        && let Some(found) = &mut out.found
-        && found.finite == 1
-    {
-        found.finite = 0;
-    }
-    out
-}
-
-impl Curves {
-    fn new() -> Self {
-        Self {
-            curves: Vec::new(),
-            found: None,
-            completeness: Completeness::Algebraic,
-            seed_columns: Vec::new(),
-            seeds: 0,
-            still: 0,
-            misfits: Vec::new(),
-            modes_at_zero: None,
-            ahead: Vec::new(),
-        }
-    }
-
-    /// Those modes that lie on no curve yet.
-    fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
-        let known = |m: &&Configuration| self.curves.iter().any(|c| lies_on(chain, c, m));
-        modes.iter().filter(|m| !known(m)).copied().collect()
-    }
-
-    /// The curve ahead on which a mode lies, if there is one, in this direction there.
-    fn taken_ahead(&mut self, chain: &Chain, (mode, direction): &Start) -> Option<Curve> {
-        let (k, node) = self
-            .ahead
-            .iter()
-            .enumerate()
-            .find_map(|(k, c)| Some((k, place_on(chain, c, mode)?)))?;
-        let backwards = dot(&node.rates[0], direction) < 0.0;
-        let curve = self.ahead.swap_remove(k);
-        Some(if backwards {
-            chain.turned_round(&curve)
-        } else {
-            curve
-        })
-    }
-
-    /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
-    fn take(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
-        for modes in modes.chunks(MOST_MODES) {
-            self.take_together(chain, modes, rising);
-        }
-    }
-
-    fn take_together(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
-        let mut starts: Vec<Start> = Vec::new();
-        let mut curves: Vec<Option<Curve>> = Vec::new();
-        for mode in modes {
-            let known = |c: &Curve| lies_on(chain, c, mode);
-            if self.curves.iter().any(known) || curves.iter().flatten().any(known) {
-                continue;
-            }
-            let columns = chain.screws(mode);
-            let (values, vectors) = singular_values(&columns);
-            let rank = rank(&values, NO_RANK);
-            if self.found.as_ref().is_none_or(|f| rank > f.rank) {
-                self.found = Some(Found {
-                    rank,
-                    redundant: wrenches(&columns, rank),
-                    finite: chain.columns - rank,
-                });
-            }
-            if chain.columns - rank != 1 {
-                self.still += 1;
-                continue;
-            }
-            let mut direction = [0.0; COLUMNS];
-            direction[..chain.columns].copy_from_slice(&vectors[chain.columns - 1]);
-            if direction[rising] < 0.0 {
-                direction = direction.map(|d| -d);
-            }
-            starts.push((*mode, direction));
-            curves.push(self.taken_ahead(chain, &(*mode, direction)));
-        }
-        let left: Vec<Start> = starts
-            .iter()
-            .zip(&curves)
-            .filter(|(_, c)| c.is_none())
-            .map(|(s, _)| *s)
-            .collect();
-        let mut followed = chain.follow(&left).into_iter();
-        let before = self.curves.len();
-        for (curve, start) in curves.into_iter().zip(&starts) {
-            let Some(curve) = curve.or_else(|| followed.next()) else {
-                unreachable!()
-            };
-            // two modes may lie on one circuit
-            if self.curves[before..].iter().any(|c| lies_on(chain, c, &start.0)) {
-                continue;
-            }
-            let lost = curve.end == End::Singular && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
-            if curve.nodes.len() < 3 || curve.end == End::Open || lost {
-                self.still += 1;
-            } else if !self.has_middle_of(chain, &curve) {
-                self.curves.push(curve);
-            }
-        }
-    }
-
-    /// Whether a curve between change points is known: beside one of them no step of a curve tells that a mode is on it.
-    fn has_middle_of(&self, chain: &Chain, curve: &Curve) -> bool {
-        curve.end == End::Singular && self.curves.iter().any(|c| lies_on(chain, c, middle(curve)))
-    }
-
-    /// Forgets the curves between change points that are parts of later ones: those led on where these ended, within rounding.
-    fn forget_parts(&mut self, chain: &Chain) {
-        let mut k = 0;
-        while k < self.curves.len() {
-            let (curve, later) = (&self.curves[k], &self.curves[k + 1..]);
-            if curve.end == End::Singular && later.iter().any(|c| lies_on(chain, c, middle(curve))) {
-                self.curves.remove(k);
-            } else {
-                k += 1;
-            }
-        }
-    }
-}
-
-fn middle(curve: &Curve) -> &Configuration {
-    &curve.nodes[curve.nodes.len() / 2].at
-}
-
-/// A basis of the wrenches that no joint yields to: force and moment with zero power on every screw.
-fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
-    unyielding(columns, rank)
-        .iter()
-        // the power of force f and moment m on (w, v) is m w + f v
-        .map(|v| [v[3], v[4], v[5], v[0], v[1], v[2]])
-        .collect()
-}
-
-/// Whether a mode is a place of a curve.
-fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
-    place_on(chain, curve, mode).is_some()
-}
-
-/// The node of a curve from which a step leads over a mode.
-fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
-    curve
-        .nodes
-        .iter()
-        .find(|node| chain.may_pass(node, mode) && chain.passes_through(node, mode).is_some())
 }
 
 /// Origin and step of the inputs of rows.
