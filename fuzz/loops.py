@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-import random_loops
+from fuzz import random_loops
 from sevenbar.gallery import names, text
 from sevenbar.written import FREEDOMS
 

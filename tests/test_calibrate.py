@@ -12,8 +12,8 @@ from scipy.stats import binom, t
 import sevenbar as sb
 from accuracy import reference_rssr
 from accuracy.reference_loops import Loop
-from random_linkages import Dimensions
-from random_loops import general
+from fuzz.random_linkages import Dimensions
+from fuzz.random_loops import general
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError
 from sevenbar.gallery import text
 from sevenbar.measuring.calibrate import calibrate

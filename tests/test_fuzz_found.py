@@ -10,7 +10,7 @@ import pytest
 import sevenbar as sb
 from accuracy.reference_loops import Loop
 from fuzz.checks import circuits_are_distinct
-from random_linkages import random_rotation
+from fuzz.random_linkages import random_rotation
 from sevenbar.errors import MOST_TOLD, DescriptionError, RequestError, TableError
 from sevenbar.forms import from_description
 from sevenbar.measuring.measured import Ends, read_measured

@@ -17,8 +17,8 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import sevenbar as sb
-from random_linkages import random_rotation
-from random_loops import Drawn, bennett, compound, drawn, general, planar_four_bar, spherical_four_bar
+from fuzz.random_linkages import random_rotation
+from fuzz.random_loops import Drawn, bennett, compound, drawn, general, planar_four_bar, spherical_four_bar
 from sevenbar.general import GeneralLoop
 from strategies import linkages, wrapped
 

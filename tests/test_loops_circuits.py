@@ -16,8 +16,8 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_loops import Loop
-from random_linkages import Dimensions, mixed
-from random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
+from fuzz.random_linkages import Dimensions, mixed
+from fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
 from sevenbar.errors import RequestError
 from sevenbar.gallery import names
 

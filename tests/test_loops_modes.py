@@ -17,7 +17,7 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_loops import ISOLATED, Found, Loop, closed_poses, doubles, missed, nearest, searched
-from random_loops import (
+from fuzz.random_loops import (
     OVERCONSTRAINED,
     SPECIAL,
     Case,

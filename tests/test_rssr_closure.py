@@ -13,7 +13,7 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_rssr import Rssr
-from random_linkages import Dimensions, Drawing, assembled_square, mixed, short_coupler, skew
+from fuzz.random_linkages import Dimensions, Drawing, assembled_square, mixed, short_coupler, skew
 
 #: Of the size: the closure error that is allowed, and the margin within which rounding decides what is reached.
 CLOSED = 1e-12

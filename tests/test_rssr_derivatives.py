@@ -23,7 +23,7 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_rssr import DIGITS, PreciseRssr
-from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew
+from fuzz.random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew
 
 ROUNDING = 2.0**-53
 

@@ -19,7 +19,7 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_rssr import Course, Rssr
-from random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew, square
+from fuzz.random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew, square
 
 TURN = 2 * np.pi
 

@@ -19,8 +19,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from random_linkages import assembled_square
-from random_loops import general
+from fuzz.random_linkages import assembled_square
+from fuzz.random_loops import general
 from sevenbar import _core
 from sevenbar.many import loop_motions
 

@@ -9,8 +9,8 @@ import pytest
 
 import sevenbar as sb
 from accuracy import reference_rssr
-from random_linkages import Dimensions
-from random_loops import general, prismatic
+from fuzz.random_linkages import Dimensions
+from fuzz.random_loops import general, prismatic
 from sevenbar.design.tolerance.numbers import Numbered
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.errors import RequestError

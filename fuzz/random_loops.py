@@ -1,8 +1,9 @@
 """Random single loops with a pose that closes: Denavit-Hartenberg rows, and joints as drawn.
 
-A loop with one pose needs no solver: seven axes anywhere in space are an assembled linkage. `general` reads the
-rows off such axes; `rows` fixes the first links' lengths, twists and offsets as a special geometry wants them and
-reads off the last two; the drawn families place joints as they like. Each case tells the input of the pose that is known.
+A loop with one pose needs no solver: seven axes anywhere in space are an assembled linkage. `general` reads
+the rows off such axes; `rows` fixes the first links' lengths, twists and offsets as a special geometry wants
+them and reads off the last two; the drawn families place joints as they like. Each case tells the input of
+the pose that is known.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import sevenbar as sb
-from random_linkages import random_rotation
+from fuzz.random_linkages import random_rotation
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +38,7 @@ class Rows:
         return float(self.pose[0])
 
     def linkage(self, **options: Any) -> sb.Linkage:
+        """As the product takes it."""
         angle = self.angle if "P" in self.kinds else None
         return sb.from_dh(
             self.kinds, length=self.length, twist=self.twist, offset=self.offset, angle=angle, **options
@@ -50,16 +52,18 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """Joints as drawn, for `from_axes`; the drawn pose closes at input 0, and `theta` is the input asked for."""
+    """Joints as drawn, for `from_axes`; the drawn pose closes at input 0, `theta` is the input asked for."""
 
     joints: tuple[Mapping[str, Any], ...]
     theta: float = 0.0
 
     @property
     def kinds(self) -> str:
+        """One letter for each joint."""
         return "".join(joint["kind"] for joint in self.joints)
 
     def linkage(self, **options: Any) -> sb.Linkage:
+        """As the product takes it."""
         return sb.from_axes(self.joints, **options)
 
 
@@ -103,8 +107,8 @@ def rows(
 ) -> Rows:
     """A loop whose links 1 to n - 2 are as given, closed by an axis n anywhere.
 
-    `length`, `twist` are of links 1 to n - 2, `offset` of joints 2 to n - 2 (R) with the others read off; `pose` the joint values
-    of joints 2 to n - 2 (random if left out).
+    `length`, `twist` are of links 1 to n - 2, `offset` of joints 2 to n - 2 (R) with the others read off;
+    `pose` the joint values of joints 2 to n - 2 (random if left out).
     """
     count = len(kinds)
     inner = count - 3
@@ -272,7 +276,7 @@ def _thinned(rng: np.random.Generator, values: np.ndarray, share: float = 0.45) 
 
 
 def _without_four_in_a_point(length: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """Offsets with which no four axes in a row meet: such a part moves alone, and the other joints cannot drive."""
+    """Offsets with which no four axes in a row meet: such a part moves alone, the others cannot drive."""
     kept = offset.copy()
     for k in range(3):
         if not length[k : k + 3].any() and not kept[k : k + 2].any():
@@ -346,7 +350,7 @@ def _near_or_at(rng: np.random.Generator) -> float:
 
 
 def bennett(rng: np.random.Generator) -> Rows:
-    """Opposite links alike, `a / sin(alpha) = b / sin(beta)`, no offsets: `tan(t1/2) tan(t2/2)` is constant."""
+    """Opposite links alike, `a / sin(alpha) = b / sin(beta)`, no offsets: tan(t1/2) tan(t2/2) is constant."""
     alpha, beta = rng.uniform(0.2, 2.9, 2)
     size = 10 ** rng.uniform(-0.5, 0.5)
     a, b = size * np.sin(alpha), size * np.sin(beta)

@@ -23,6 +23,7 @@ class Dimensions:
     L2: float
 
     def linkage(self) -> sb.Linkage:
+        """As the product takes it."""
         return sb.rssr(M=self.M, N=self.N, L1=self.L1, L3=self.L3, D=self.D, L2=self.L2)
 
     def reference(self) -> Rssr:
@@ -46,6 +47,7 @@ class Drawing:
     rocker_axis: np.ndarray
 
     def joints(self) -> list[dict[str, object]]:
+        """The tables of its file."""
         return [
             {"kind": "R", "at": self.crank_at, "axis": self.crank_axis, "name": "crank"},
             {"kind": "S", "at": self.ball_a, "name": "ball_a"},
@@ -54,6 +56,7 @@ class Drawing:
         ]
 
     def linkage(self) -> sb.Linkage:
+        """As the product takes it."""
         return sb.from_axes(self.joints())
 
     def reference(self) -> Rssr:
