@@ -444,6 +444,28 @@ def _rows_agree(circuit: sb.Circuit, exact: sb.Motion, name: object) -> int:
     return compared
 
 
+def test_extremes_of_rates_stand_where_the_closed_form_has_them_though_values_hide_the_place() -> None:
+    # within 1e-8 rad of an extreme all values are equal but for rounding
+    compared = 0
+    for name, linkage in rssrs(20):
+        exact, got = linkage.motion(samples=72), linkage.motion(samples=24, method="general")
+        if len(exact.change_points) or len(exact.circuits) != len(got.circuits):
+            continue
+        for circuit in got:
+            partner = min(exact, key=lambda c: np.abs(wrapped(c.output[0] - circuit.output[0])))
+            for rate in ("velocity", "acceleration", "jerk"):
+                ours, theirs = getattr(circuit, rate), getattr(partner, rate)
+                if ours is None or theirs is None or partner.condition.max() > 1e3:
+                    continue
+                for end in ("lowest", "highest"):
+                    value, want = getattr(ours, end), getattr(theirs, end)
+                    assert value == pytest.approx(want, rel=1e-10, abs=1e-10), (name, rate, end)
+                    apart = wrapped(np.array(getattr(ours, f"{end}_at") - getattr(theirs, f"{end}_at")))
+                    assert abs(apart) < 1e-11, (name, rate, end)
+                    compared += 1
+    assert compared > 20
+
+
 # Formulas of overconstrained loops
 
 

@@ -23,6 +23,10 @@ const SAME_INPUT: f64 = 1e-14;
 /// Rows at inputs [rad] nearer than this to each other bracket nothing.
 const SAME_SAMPLE: f64 = 1e-9;
 
+/// Values of a rate that differ by less than this part, at inputs [rad] nearer than this, are of one extreme.
+const SAME_VALUE: f64 = 1e-14;
+const SAME_EXTREME: f64 = 1e-6;
+
 /// Refinements of a bracket.
 const MOST_REFINEMENTS: usize = 40;
 
@@ -164,6 +168,9 @@ impl Search<'_, '_> {
     fn refine(&self, order: usize, mut low: Sample, mut high: Sample, ends: &mut Ends) {
         let passes = self.passes;
         let start = passes.passes[0].start;
+        let side = usize::from(low.slope > high.slope);
+        // rounding of values hides the place; that of slopes does not
+        let mut flattest: Option<Sample> = None;
         for step in 0..MOST_REFINEMENTS {
             let input = if step % 3 == 2 {
                 0.5 * (low.input + high.input)
@@ -175,7 +182,9 @@ impl Search<'_, '_> {
                 break;
             };
             let here = Sample { input, value: self.rate(&row, order), slope: self.slope(&row, order) };
-            look(ends, here.value, input);
+            if flattest.is_none_or(|f| here.slope.abs() < f.slope.abs()) {
+                flattest = Some(here);
+            }
             if here.slope.abs() < NO_SLOPE || (high.input - low.input).abs() < SAME_INPUT {
                 break;
             }
@@ -183,6 +192,14 @@ impl Search<'_, '_> {
                 low = here;
             } else {
                 high = here;
+            }
+        }
+        if let Some(Sample { input, value, .. }) = flattest {
+            let end = &mut ends[side];
+            let beyond = if side == 1 { value - end[0] } else { end[0] - value };
+            let same = beyond > -SAME_VALUE * value.abs() && (input - end[1]).abs() < SAME_EXTREME;
+            if beyond > 0.0 || same {
+                *end = [value, input];
             }
         }
     }
