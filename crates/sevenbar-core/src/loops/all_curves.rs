@@ -208,15 +208,25 @@ impl Curves {
             let lost = curve.end == End::Singular && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
             if curve.nodes.len() < 3 || curve.end == End::Open || lost {
                 self.still += 1;
-            } else if !self.has_middle_of(chain, &curve) {
+            } else if !self.is_known(chain, &curve) {
                 self.curves.push(curve);
             }
         }
     }
 
-    /// Whether a curve between change points is known: beside one of them no step of a curve tells that a mode is on it.
-    fn has_middle_of(&self, chain: &Chain, curve: &Curve) -> bool {
-        curve.end == End::Singular && self.curves.iter().any(|c| lies_on(chain, c, middle(curve)))
+    /// Whether a curve with ends is known, though its start was not seen on one that is: beside a change point no step of a curve
+    /// tells that a mode is on it, and a curve of too many nodes is known in part.
+    fn is_known(&self, chain: &Chain, curve: &Curve) -> bool {
+        match curve.end {
+            End::Singular => self.curves.iter().any(|c| lies_on(chain, c, middle(curve))),
+            End::Far => {
+                let overlap =
+                    |one: &Curve, other: &Curve| ends(other).iter().any(|at| lies_on(chain, one, at));
+                let mut far = self.curves.iter().filter(|c| c.end == End::Far);
+                far.any(|c| overlap(c, curve) || overlap(curve, c))
+            }
+            _ => false,
+        }
     }
 
     /// Forgets the curves between change points that are parts of later ones: those led on where these ended, within rounding.
@@ -231,6 +241,10 @@ impl Curves {
             }
         }
     }
+}
+
+fn ends(curve: &Curve) -> [&Configuration; 2] {
+    [&curve.nodes[0].at, &curve.nodes[curve.nodes.len() - 1].at]
 }
 
 fn middle(curve: &Curve) -> &Configuration {
