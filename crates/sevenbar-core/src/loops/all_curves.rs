@@ -1,6 +1,4 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
-//!
-//! Source: docs/theory.md, "How the set of circuits is established".
 
 use super::chain::{COLUMNS, Chain, Configuration};
 use super::curve::{Curve, End, Node, dot};
