@@ -108,7 +108,7 @@ def _rows(results: Results) -> Iterator[str]:
     for name, found in rows.items():
         cells = [
             name,
-            " ".join(found["kind"]),
+            found["kind"],
             str(found["circuits"]),
             str(_count(found)),
             str(found["digits"]),
