@@ -161,8 +161,11 @@ class Linkage:
         name = last[-1].columns[0] if last else self.drivable(column)[-1]
         return self.columns.index(name)
 
+    def _input(self, name: str | None) -> int:
+        return self.column(self.drive.joint if name is None else name, "input")
+
     def _ends(self, input: str | None, output: str | None) -> tuple[int, int]:
-        first = self.column(self.drive.joint if input is None else input, "input")
+        first = self._input(input)
         if output is None:
             return first, self.other_column(first)
         second = self.column(output, "output")
@@ -215,7 +218,7 @@ class Linkage:
         Source: docs/rssr.md, (3) to (9); Sun and Zhou, eq. (8), (9), and (12), (13) with their signs mended.
         """
         solver = self._rssr("output")
-        column, _ = self._ends(input, None)
+        column = self._input(input)
         array = np.ascontiguousarray(values, dtype=np.float64).reshape(-1)
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
             raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
@@ -247,7 +250,7 @@ class Linkage:
 
         Source: docs/theory.md, (6); docs/rssr.md, (4).
         """
-        column, _ = self._ends(input, None)
+        column = self._input(input)
         (value,) = finite_array("theta", theta)
         if self._has_closed_form(method):
             return self._closed_form.modes(column, value)
