@@ -1,5 +1,8 @@
 """`sevenbar studio` as it is called: what is wrong is said before anything is served."""
 
+import subprocess
+import sys
+
 import pytest
 
 from commands import mistake, sevenbar
@@ -38,3 +41,21 @@ def test_the_command_line_does_not_load_the_studio_without_need(tmp_path):
         before="import sys, atexit\natexit.register(lambda: print('viser' in sys.modules))",
     )
     assert run.stdout.splitlines()[-1] == "False"
+
+
+def test_it_ends_also_where_the_signal_reaches_another_thread():
+    # a wait without end did not notice, and the program went on
+    code = """
+import signal, threading, time
+from sevenbar.studio.server import StudioServer
+
+def elsewhere():
+    time.sleep(0.5)
+    signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+threading.Thread(target=elsewhere, daemon=True).start()
+StudioServer.wait(None)
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert (run.returncode, run.stderr) == (0, "")

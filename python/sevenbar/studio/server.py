@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from contextlib import suppress
 
 import viser
@@ -10,6 +11,9 @@ import viser
 from sevenbar.studio.local_server import LocalServer
 from sevenbar.studio.session import Session
 from sevenbar.studio.tab import Tab
+
+#: How often [s] a server that waits looks whether it is to end.
+GLANCE = 0.25
 
 
 class StudioServer:
@@ -67,4 +71,6 @@ class StudioServer:
     def wait(self) -> None:
         """Serves until it is interrupted by Ctrl+C."""
         with suppress(KeyboardInterrupt):
-            threading.Event().wait()
+            while True:
+                # the signal may reach another thread, which a wait without end would not notice
+                time.sleep(GLANCE)
