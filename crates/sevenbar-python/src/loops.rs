@@ -159,6 +159,22 @@ impl Loop {
             write_found(&result, found)?;
         }
         result.set_item("completeness", motion.completeness.name())?;
+        match &motion.count {
+            Ok(count) => {
+                let open: Vec<_> = count.open.iter().map(|o| (o.from, o.to, o.missing)).collect();
+                result.set_item(
+                    "count",
+                    (
+                        count.column,
+                        count.dead_centres,
+                        count.complex_branch_points,
+                        count.poles,
+                        open,
+                    ),
+                )?;
+            }
+            Err(why) => result.set_item("uncounted", why.name())?,
+        }
         result.set_item("seed_columns", motion.seed_columns.clone())?;
         result.set_item("seeds", motion.seeds)?;
         result.set_item("still", motion.still)?;

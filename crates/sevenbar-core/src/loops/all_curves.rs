@@ -1,6 +1,8 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
+use super::around::Circle;
 use super::chain::{COLUMNS, Chain, Configuration};
+use super::counting::{Count, Survey, Uncounted};
 use super::curve::{Curve, End, Node, dot};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
@@ -42,6 +44,8 @@ pub(super) struct Curves {
     pub curves: Vec<Curve>,
     pub found: Option<Found>,
     pub completeness: Completeness,
+    /// The account of the branch points of the first seed column, or why there is none.
+    pub count: Result<Count, Uncounted>,
     pub seed_columns: Vec<usize>,
     pub seeds: usize,
     pub still: usize,
@@ -82,7 +86,12 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             }
             continue;
         }
-        let rough = finder.around(count);
+        let survey = if seed == out.seed_columns[0] {
+            Survey::new(&finder)
+        } else {
+            None
+        };
+        let (rough, circle) = finder.around(count, survey.as_ref().map(|s| &s.watch));
         if seed == wished[0] {
             out.modes_at_zero = Some(finder.polished(&rough[0]).modes.len());
         }
@@ -97,6 +106,15 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             let polished = finder.polished(&out.unknown(chain, modes));
             out.misfits.extend(polished.misfits);
             out.take(chain, &polished.modes, wished[0]);
+        }
+        out.ahead.clear();
+        if let (Some(survey), Some(circle)) = (survey, circle) {
+            out.count = out.counted(chain, &survey, circle, (seed, wished[0]));
+            // circuits on which this joint stands still are branch points, too
+            if out.is_counted() && !chain.is_redundant() {
+                out.seed_columns.truncate(1);
+                break;
+            }
         }
     }
     out.forget_parts(chain);
@@ -119,6 +137,7 @@ impl Curves {
             curves: Vec::new(),
             found: None,
             completeness: Completeness::Algebraic,
+            count: Err(Uncounted::Searched),
             seed_columns: Vec::new(),
             seeds: 0,
             still: 0,
@@ -126,6 +145,31 @@ impl Curves {
             modes_at_zero: None,
             ahead: Vec::new(),
         }
+    }
+
+    /// Whether all branch points of the first seed column are accounted for.
+    pub fn is_counted(&self) -> bool {
+        self.count.as_ref().is_ok_and(|c| c.open.is_empty())
+    }
+
+    /// The account of a column's branch points; curves that it leads to are followed.
+    fn counted(
+        &mut self,
+        chain: &Chain,
+        survey: &Survey,
+        circle: Circle,
+        (column, rising): (usize, usize),
+    ) -> Result<Count, Uncounted> {
+        let inputs = |curves: &[Curve]| -> Vec<f64> {
+            let turnings = curves.iter().flat_map(|c| c.turnings(chain, column));
+            turnings.map(|t| t.node.at.values[column]).collect()
+        };
+        let known = inputs(&self.curves);
+        survey.count(circle, known, &[], &mut |pose| {
+            let before = self.curves.len();
+            self.take(chain, &[*pose], rising);
+            inputs(&self.curves[before..])
+        })
     }
 
     /// Those modes that lie on no curve yet.

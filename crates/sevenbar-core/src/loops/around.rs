@@ -9,14 +9,19 @@
 
 use super::lanes::Lanes;
 use super::paths::{
-    JOINTS, LAST_CORRECTIONS, LAST_SECOND_FAR, LEAST_CONTRACTION, LONGEST_MOVE, Linear, Pace, Parameters,
-    SHORTEST_STEP, Slides, Solution, Triple, UNKNOWNS, cosine_sine, cross, infinite, moved, size, turn,
+    BRISK, JOINTS, LAST_CORRECTIONS, LAST_SECOND_FAR, LEAST_CONTRACTION, LONGEST_MOVE, Linear, Pace,
+    Parameters, SHORTEST_STEP, Slides, Solution, Triple, UNKNOWNS, cosine_sine, cross, infinite, moved, size,
+    turn,
 };
+use super::phases::{FACTORS, PhaseLanes, Phases, Watch};
 use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
 use num_complex::Complex64;
 
 /// Most steps on the way to one value; a path that needs more runs into a place where two solutions meet.
 const MOST_STEPS: usize = 60;
+
+/// The same where steps are kept short.
+const MOST_SHORT_STEPS: usize = 400;
 
 /// First steps along the circle [rad].
 const FIRST_STEP: f64 = 0.02;
@@ -27,6 +32,8 @@ const ARRIVED: f64 = 1e-9;
 /// A linkage as its closure has it, all constants real: cosines and sines of twists and of given turns, and shifts.
 pub(super) struct Around<'a> {
     slides: &'a Slides,
+    /// What is watched on all ways, if anything is.
+    watch: Option<Watch>,
     twists: [[f64; 2]; JOINTS],
     shifts: [[f64; 3]; JOINTS],
     turns: [[f64; 2]; JOINTS],
@@ -45,6 +52,7 @@ pub(super) struct Place {
     before: Complex64,
     /// Length of the step that is likely to be allowed next.
     step: f64,
+    phases: Phases,
 }
 
 /// A straight way in `tau`: its direction, its length, and `e^(i tau)` at its end.
@@ -53,87 +61,141 @@ struct Way {
     direction: Complex64,
     length: f64,
     end: Complex64,
+    /// Whether its end is corrected to rounding.
+    settle: bool,
+}
+
+/// What was followed round a circle of complex inputs, and from places of it down to the real values beneath.
+pub(super) struct Circle {
+    /// `|e^(i tau)|` of it.
+    pub radius: f64,
+    /// The angle of its first place [rad], and how many there are in a turn.
+    pub first: f64,
+    pub count: usize,
+    /// The places of each path, that after the last being the first again, a turn on, and the ends of the ways down; a path that
+    /// is lost has none.
+    pub places: Vec<Vec<Option<Place>>>,
+    pub ends: Vec<Vec<Option<Place>>>,
 }
 
 impl<'a> Around<'a> {
     /// From the closure's parameters at the input zero.
-    pub fn new(slides: &'a Slides, parameters: &Parameters) -> Self {
+    pub fn new(slides: &'a Slides, parameters: &Parameters, watch: Option<Watch>) -> Self {
         let pair = |z: Complex64| [z.re, z.im];
         Self {
             slides,
+            watch,
             twists: parameters.twists.map(pair),
             shifts: parameters.shifts.map(|s| s.map(|x| x.re)),
             turns: parameters.turns.map(pair),
         }
     }
 
-    /// Where the paths from solutions at a complex input arrive at the real values `2 pi k / count`: for each of these as many
-    /// as there are solutions, `None` for one that does not arrive.
-    pub fn values(
+    /// Follows solutions at a complex input to a circle of this radius, once round it, and from `count` places of it straight down to
+    /// the real values `2 pi k / count`.
+    pub fn circle(
         &self,
         from: Complex64,
         solutions: &[Solution],
-        count: usize,
+        (radius, count): (f64, usize),
         pace: Pace,
-    ) -> Vec<Vec<Option<Solution>>> {
+    ) -> Circle {
         let spacing = std::f64::consts::TAU / count as f64;
-        let (radius, start) = (from.norm(), from.arg());
-        // the given turn of the last joint is the input's zero
-        let zero = Complex64::new(self.turns[UNKNOWNS][0], self.turns[UNKNOWNS][1]);
-        let first = (start / spacing).ceil();
-        let at = |k: usize| (first + k as f64) * spacing;
-        let circle: Vec<Way> = (0..count)
-            .map(|k| Way {
-                direction: Complex64::ONE,
-                length: at(k) - if k == 0 { start } else { at(k - 1) },
-                end: zero * Complex64::from_polar(radius, at(k)),
+        let zero = self.zero();
+        let first = (from.arg() / spacing).ceil() * spacing;
+        let at = |k: usize| first + k as f64 * spacing;
+        let inward = (from.norm() / radius).ln();
+        let mut ways = vec![Way {
+            direction: Complex64::I * inward.signum(),
+            length: inward.abs(),
+            end: zero * Complex64::from_polar(radius, from.arg()),
+            settle: false,
+        }];
+        // the first place once more at the end
+        ways.extend((0..=count).map(|k| Way {
+            direction: Complex64::ONE,
+            length: at(k) - if k == 0 { from.arg() } else { at(k - 1) },
+            end: zero * Complex64::from_polar(radius, at(k)),
+            settle: k == 0 || k == count,
+        }));
+        let starts: Vec<Place> = solutions.iter().map(|x| Place::begun(x, zero * from)).collect();
+        let reached = self.follow(&starts, &[ways.as_slice()], pace);
+        let each = ways.len();
+        let places = (0..=count)
+            .map(|k| {
+                (0..solutions.len())
+                    .map(|path| reached[path * each + k + 1])
+                    .collect()
             })
             .collect();
-        let places: Vec<Place> = solutions.iter().map(|x| Place::begun(x, zero * from)).collect();
-        let reached = self.follow(&places, &[circle.as_slice()], pace, false);
-        let depth = radius.ln();
-        let ways: Vec<Way> = (0..count)
-            .map(|k| Way {
-                direction: Complex64::I * depth.signum(),
-                length: depth.abs(),
-                end: zero * Complex64::from_polar(1.0, at(k)),
-            })
-            .collect();
-        // value by value, so that neighbours in the lanes are likely to take as long
+        let mut circle = Circle { radius, first, count, places, ends: Vec::new() };
         let mut begun = Vec::with_capacity(reached.len());
-        let mut downward = Vec::with_capacity(reached.len());
         let mut owner = Vec::with_capacity(reached.len());
+        // value by value, so that neighbours in the lanes are likely to take as long
         for k in 0..count {
-            for path in 0..solutions.len() {
-                if let Some(place) = reached[path * count + k] {
-                    begun.push(place);
-                    downward.push(std::slice::from_ref(&ways[k]));
+            for (path, place) in circle.places[k].iter().enumerate() {
+                if let Some(place) = place {
+                    begun.push(*place);
                     owner.push((k, path));
                 }
             }
         }
-        let ends = self.follow(&begun, &downward, pace, true);
-        let mut out = vec![vec![None; solutions.len()]; count];
-        for (end, (k, path)) in ends.iter().zip(owner) {
-            let value = (first as i64 + k as i64).rem_euclid(count as i64) as usize;
-            out[value][path] = end.map(|e| e.x);
+        let downward: Vec<Way> = (0..count).map(|k| self.down(at(k), radius.ln(), 0.0)).collect();
+        let ways: Vec<&[Way]> = owner
+            .iter()
+            .map(|&(k, _)| std::slice::from_ref(&downward[k]))
+            .collect();
+        circle.ends = vec![vec![None; solutions.len()]; count];
+        for (end, (k, path)) in self.follow(&begun, &ways, pace).into_iter().zip(owner) {
+            circle.ends[k][path] = end;
         }
-        out
+        circle
+    }
+
+    /// Where places above an angle arrive straight below, at a height that is less; both as `ln |e^(i tau)|`.
+    pub fn lowered(&self, places: &[Place], angle: f64, (height, to): (f64, f64)) -> Option<Vec<Place>> {
+        let way = [self.down(angle, height, to)];
+        self.follow(places, &[&way], BRISK).into_iter().collect()
+    }
+
+    /// Where places at a height arrive after an arc from one angle to another.
+    pub fn along(&self, places: &[Place], height: f64, (from, to): (f64, f64)) -> Option<Vec<Place>> {
+        let way = [Way {
+            direction: Complex64::ONE,
+            length: to - from,
+            end: self.zero() * Complex64::from_polar(height.exp(), to),
+            settle: true,
+        }];
+        self.follow(places, &[&way], BRISK).into_iter().collect()
+    }
+
+    fn down(&self, angle: f64, height: f64, to: f64) -> Way {
+        Way {
+            direction: Complex64::I * (height - to).signum(),
+            length: (height - to).abs(),
+            end: self.zero() * Complex64::from_polar(to.exp(), angle),
+            settle: true,
+        }
+    }
+
+    /// `e^(i t)` of the given turn of the last joint at the input's zero.
+    pub fn zero(&self) -> Complex64 {
+        Complex64::new(self.turns[UNKNOWNS][0], self.turns[UNKNOWNS][1])
     }
 
     /// The places at the end of each way of each start, way by way; `ways` is one list for all, or one for each.
-    fn follow(&self, starts: &[Place], ways: &[&[Way]], pace: Pace, settle: bool) -> Vec<Option<Place>> {
+    fn follow(&self, starts: &[Place], ways: &[&[Way]], pace: Pace) -> Vec<Option<Place>> {
         let each = ways.first().map_or(0, |w| w.len());
         let mut ends = vec![None; starts.len() * each];
         if !ends.is_empty() {
-            dispatch(Follow { linkage: self, starts, ways, each, pace, settle, ends: &mut ends });
+            dispatch(Follow { linkage: self, starts, ways, each, pace, ends: &mut ends });
         }
         ends
     }
 
     /// The closure linearised in the unknowns, with the input's screw for the drift.
     #[inline(always)]
-    fn linearise<V: Vector>(&self, x: &[Lanes<V>; UNKNOWNS], input: Lanes<V>) -> Linear<V> {
+    pub fn linearise<V: Vector>(&self, x: &[Lanes<V>; UNKNOWNS], input: Lanes<V>) -> Linear<V> {
         let (zero, one) = (Lanes::<V>::zero(), Lanes::<V>::one());
         let mut rows = [[zero; UNKNOWNS + 2]; 6];
         let mut ex = [one, zero, zero];
@@ -196,7 +258,8 @@ fn turn_real<V: Vector>(a: &mut Triple<V>, b: &mut Triple<V>, [cosine, sine]: [f
 }
 
 impl Place {
-    fn begun(x: &Solution, input: Complex64) -> Self {
+    /// Where a way begins.
+    pub fn begun(x: &Solution, input: Complex64) -> Self {
         let zero = [Complex64::ZERO; UNKNOWNS];
         Self {
             x: *x,
@@ -206,7 +269,22 @@ impl Place {
             moved_before: zero,
             before: Complex64::ZERO,
             step: 0.0,
+            phases: Phases::NONE,
         }
+    }
+
+    pub fn solution(&self) -> &Solution {
+        &self.x
+    }
+
+    /// The solution's rate with `tau`.
+    pub fn rate(&self) -> &Solution {
+        &self.rate
+    }
+
+    /// Its phases.
+    pub fn phases(&self) -> &Phases {
+        &self.phases
     }
 }
 
@@ -216,7 +294,6 @@ struct Follow<'a> {
     ways: &'a [&'a [Way]],
     each: usize,
     pace: Pace,
-    settle: bool,
     ends: &'a mut [Option<Place>],
 }
 
@@ -228,6 +305,7 @@ struct Walk<V> {
     moved_before: [Lanes<V>; UNKNOWNS],
     input: Lanes<V>,
     before: Lanes<V>,
+    phases: PhaseLanes<V>,
     /// Length of the way that is left, and of the step that is likely to be allowed.
     left: Reals,
     step: Reals,
@@ -249,6 +327,7 @@ impl LaneKernel for Follow<'_> {
             moved_before: zero,
             input: Lanes::one(),
             before: Lanes::zero(),
+            phases: PhaseLanes::none(),
             left: [0.0; LANES],
             step: [0.0; LANES],
             path: [usize::MAX; LANES],
@@ -303,6 +382,9 @@ impl Follow<'_> {
             }
             put(&mut walk.input, lane, start.input);
             put(&mut walk.before, lane, start.before);
+            if let Some(watch) = &self.linkage.watch {
+                walk.phases.put(lane, &start.phases, watch);
+            }
         }
     }
 
@@ -349,19 +431,25 @@ impl Follow<'_> {
         let slides = self.linkage.slides;
         let reach = size(slides, &walk.x, &predicted);
         let x1 = moved(slides, &walk.x, &predicted);
-        let (first_correction, _) = self.linkage.linearise(&x1, input).solve();
+        let (first_correction, ..) = self.linkage.linearise(&x1, input).solve();
         let first = size(slides, &x1, &first_correction);
         let x2 = moved(slides, &x1, &first_correction);
-        let (second_correction, rate) = self.linkage.linearise(&x2, input).solve();
+        let (second_correction, rate, determinant) = self.linkage.linearise(&x2, input).solve();
         let last = size(slides, &x2, &second_correction);
         let x3 = moved(slides, &x2, &second_correction);
+        let (mut factors, mut steady) = ([Lanes::<V>::zero(); FACTORS], [0.0; LANES]);
+        if let Some(watch) = &self.linkage.watch {
+            factors = watch.factors(slides, &x2, determinant);
+            steady = walk.phases.steady(&factors, watch);
+        }
 
         let mut accepted = [0.0; LANES];
         for k in 0..LANES {
             let good = reach[k] <= LONGEST_MOVE
                 && first[k] <= self.pace.largest
                 && last[k] <= self.pace.second
-                && last[k] <= (LEAST_CONTRACTION * first[k]).max(LAST_SECOND_FAR);
+                && last[k] <= (LEAST_CONTRACTION * first[k]).max(LAST_SECOND_FAR)
+                && steady[k] >= 0.0;
             accepted[k] = f64::from(u8::from(good));
             walk.count[k] += 1;
             let room = LONGEST_MOVE * 0.8 / reach[k].max(1e-3);
@@ -391,6 +479,9 @@ impl Follow<'_> {
         }
         let gone = V::load(&gone);
         walk.input = walk.input.replaced_where(taken, half, input);
+        if let Some(watch) = &self.linkage.watch {
+            walk.phases.go_on(&factors, taken, watch);
+        }
         walk.before = walk.before.replaced_where(gone, zero, ahead);
         for i in 0..UNKNOWNS {
             let by = predicted[i] + first_correction[i] + second_correction[i];
@@ -411,6 +502,11 @@ impl Follow<'_> {
         (first, last): (&Reals, &Reals),
     ) -> [bool; LANES] {
         let infinite = infinite(self.linkage.slides, &walk.x);
+        let most_steps = if self.pace.aimed < BRISK.aimed {
+            MOST_SHORT_STEPS
+        } else {
+            MOST_STEPS
+        };
         let mut done = [false; LANES];
         for k in 0..LANES {
             if walk.path[k] >= self.starts.len() {
@@ -422,13 +518,16 @@ impl Follow<'_> {
             // Newton's corrections square: the third from the first two
             let ratio = last[k] / first[k].max(f64::MIN_POSITIVE);
             let off = last[k] * ratio * ratio;
-            let settled = !self.settle
+            let settled = !self.way(walk.path[k], walk.way[k]).settle
                 || (off <= ARRIVED && ratio <= LEAST_CONTRACTION)
                 || last[k] <= ARRIVED
                 || (walk.settling[k] > LAST_CORRECTIONS && last[k] <= LAST_SECOND_FAR);
-            let stuck = (accepted[k] == 0.0 && walk.step[k] < SHORTEST_STEP) || walk.count[k] > MOST_STEPS;
+            let stuck = (accepted[k] == 0.0 && walk.step[k] < SHORTEST_STEP) || walk.count[k] > most_steps;
             if at_end && settled {
-                let end = walk.place(k);
+                let mut end = walk.place(k);
+                if let Some(watch) = &self.linkage.watch {
+                    end.phases = walk.phases.get(k, watch);
+                }
                 self.ends[walk.path[k] * self.each + walk.way[k]] = Some(end);
                 walk.way[k] += 1;
                 walk.count[k] = 0;

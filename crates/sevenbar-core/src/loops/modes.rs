@@ -5,9 +5,11 @@
 //! any real input only the input moves. Chains with fewer than six passive freedoms close although they have too few; joints
 //! about axes in general position are added, and the solutions kept in which these stay at zero.
 
-use super::around::Around;
+use super::around::{Around, Circle};
 use super::chain::{BALLS, Chain, Configuration, Joint, Rotation, product, short_way, squared_up};
-use super::paths::{BRISK, CAREFUL, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::paths::{BRISK, CAREFUL, JOINTS, Pace, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::phases::Watch;
+use super::poles::poles;
 use super::polish::{Settled, polish};
 use super::reduce::Z_TO_X;
 use super::starts::{Frame, Random, SAME_GENERAL, STARTS, distinct, general_count, start};
@@ -56,7 +58,7 @@ const CONFIRMING_STARTS: usize = 2;
 
 /// `|e^(i t)|` of the general value of an input that turns: near the real ones, and beside the places on them where solutions
 /// meet.
-const CIRCLE: f64 = 1.1;
+pub(super) const CIRCLE: f64 = 1.05;
 
 /// Starts of the search where there is no algebraic way.
 const SEARCH_STARTS: usize = 1500;
@@ -66,7 +68,7 @@ pub(super) const SCREW_TURNS: f64 = 1.0;
 
 /// What an unknown of the closure stands for.
 #[derive(Clone, Copy, Debug)]
-enum Unknown {
+pub(super) enum Unknown {
     Column(usize),
     /// The first, second or third turn of a ball, about z, y and x.
     BallTurn(usize, usize),
@@ -75,12 +77,12 @@ enum Unknown {
 
 /// Finds the modes of one chain at any value of one input.
 pub(super) struct ModeFinder<'a> {
-    chain: &'a Chain,
-    input: usize,
-    unknowns: Vec<Unknown>,
-    slides: Slides,
-    /// The fixed transform after each unknown, the last one before the input, and that after the input.
-    transforms: Vec<Pose>,
+    pub chain: &'a Chain,
+    pub input: usize,
+    pub unknowns: Vec<Unknown>,
+    pub slides: Slides,
+    /// The fixed transforms: after the input, and after each unknown.
+    pub transforms: Vec<Pose>,
     algebraic: bool,
     /// Found when it is first asked for.
     generic: OnceCell<Generic>,
@@ -156,6 +158,10 @@ impl<'a> ModeFinder<'a> {
         finder
     }
 
+    pub fn is_algebraic(&self) -> bool {
+        self.algebraic
+    }
+
     pub fn completeness(&self) -> Completeness {
         if self.algebraic {
             Completeness::Algebraic
@@ -199,6 +205,20 @@ impl<'a> ModeFinder<'a> {
 
     fn solve_generic(&self) -> Generic {
         let input = self.generic_input(&mut Random(0xa110));
+        Generic { input, solutions: self.solve(input) }
+    }
+
+    /// All solutions at one general complex value of an input that turns (`e^(i t)`) or slides, and `e^(i t)` of the unknowns' zeros.
+    pub fn solutions_at(&self, value: Complex64) -> (Vec<Solution>, [Complex64; UNKNOWNS]) {
+        let input = match self.chain.joints[self.chain.joint_of(self.input)] {
+            Joint::Slide => Input { turn: Complex64::ONE, slide: value },
+            _ => Input { turn: value, slide: Complex64::ZERO },
+        };
+        (self.solve(input), self.parameters(input).1)
+    }
+
+    /// All solutions at a general complex input.
+    fn solve(&self, input: Input) -> Vec<Solution> {
         let (target, _) = self.parameters(input);
         let want = general_count(&self.slides);
         let mut solutions = Vec::new();
@@ -218,7 +238,12 @@ impl<'a> ModeFinder<'a> {
                 break;
             }
         }
-        Generic { input, solutions }
+        solutions
+    }
+
+    /// Whether the closure has all the solutions that a general one has.
+    pub fn is_general(&self) -> bool {
+        self.algebraic && self.generic().solutions.len() == general_count(&self.slides)
     }
 
     /// All modes at the one value that is asked for [rad, or parts of the size].
@@ -279,28 +304,72 @@ impl<'a> ModeFinder<'a> {
         self.real_ones(&ends, &shift, value)
     }
 
-    /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`].
-    pub fn around(&self, count: usize) -> Vec<Vec<Configuration>> {
+    /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`], and the paths by
+    /// which they were found, if they are algebraic.
+    pub fn around(&self, count: usize, watch: Option<&Watch>) -> (Vec<Vec<Configuration>>, Option<Circle>) {
         let value = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
         if !self.algebraic {
-            return (0..count).map(|k| self.search(value(k))).collect();
+            return ((0..count).map(|k| self.search(value(k))).collect(), None);
         }
-        let generic = self.generic();
-        let (parameters, shift) = self.parameters(self.input_at(0.0));
-        let around = Around::new(&self.slides, &parameters);
-        let ends = around.values(generic.input.turn, &generic.solutions, count, BRISK);
-        ends.into_iter()
-            .enumerate()
-            .map(|(k, ends)| {
-                let value = value(k);
-                let ends = distinct(&self.slides, ends.into_iter().flatten(), SAME_MODE);
+        let want = self.generic().solutions.len();
+        let shift = self.zeros();
+        let circle = self.circle(&self.closure(watch), CIRCLE, count, BRISK);
+        let first = (circle.first * count as f64 / std::f64::consts::TAU).round() as i64;
+        let modes = (0..count)
+            .map(|k| {
+                let place = (k as i64 - first).rem_euclid(count as i64) as usize;
+                let ends = circle.ends[place].iter().flatten().map(|p| *p.solution());
+                let ends = distinct(&self.slides, ends, SAME_MODE);
                 // two paths that end near each other may have become one
-                if ends.len() < generic.solutions.len() {
-                    return self.rough_at(value);
+                if ends.len() < want {
+                    return self.rough_at(value(k));
                 }
-                self.real_ones(&ends, &shift, value)
+                self.real_ones(&ends, &shift, value(k))
             })
-            .collect()
+            .collect();
+        (modes, Some(circle))
+    }
+
+    /// The closure with everything but the input fixed.
+    pub fn closure(&self, watch: Option<&Watch>) -> Around<'_> {
+        Around::new(
+            &self.slides,
+            &self.parameters(self.input_at(0.0)).0,
+            watch.cloned(),
+        )
+    }
+
+    /// `e^(i tau)` of the inputs at which solutions run to infinity, if the geometry is general.
+    pub fn poles(&self) -> Option<Vec<Complex64>> {
+        let (parameters, _) = self.parameters(self.input_at(0.0));
+        let zero = parameters.turns[UNKNOWNS];
+        Some(poles(&parameters)?.into_iter().map(|z| z / zero).collect())
+    }
+
+    /// `e^(i t)` of the unknowns' zeros.
+    pub fn zeros(&self) -> [Complex64; UNKNOWNS] {
+        self.parameters(self.input_at(0.0)).1
+    }
+
+    /// All solutions followed round a circle and down to the real values beneath.
+    pub fn circle(&self, closure: &Around, radius: f64, count: usize, pace: Pace) -> Circle {
+        let generic = self.generic();
+        closure.circle(generic.input.turn, &generic.solutions, (radius, count), pace)
+    }
+
+    /// Which of the solutions leave the added joints at zero.
+    pub fn own(&self) -> Vec<usize> {
+        let shift = self.zeros();
+        let own = |x: &Solution| {
+            let mut added = self
+                .unknowns
+                .iter()
+                .enumerate()
+                .filter(|(_, u)| matches!(u, Unknown::Added));
+            added.all(|(i, _)| (x[i] / shift[i] - 1.0).norm() < REAL)
+        };
+        let solutions = &self.generic().solutions;
+        (0..solutions.len()).filter(|&k| own(&solutions[k])).collect()
     }
 
     /// The modes among solutions, rough to [`POLISHED_MOVE`].
@@ -370,7 +439,7 @@ impl<'a> ModeFinder<'a> {
     }
 
     /// The joints of a real solution; `None` for one that is not real, or in which an added joint moved.
-    fn configuration(
+    pub fn configuration(
         &self,
         solution: &Solution,
         shift: &[Complex64; UNKNOWNS],

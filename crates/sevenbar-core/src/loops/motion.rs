@@ -4,6 +4,7 @@ use super::Loop;
 use super::all_curves::{Curves, Found, curves};
 use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
 use super::circuits::{Passes, Row};
+use super::counting::{Count, Uncounted};
 use super::curve::{Curve, End, Node, combined};
 use super::extremes::{Ends, output_extremes};
 use super::modes::Completeness;
@@ -44,6 +45,8 @@ pub struct Motion {
     pub found: Option<Found>,
     /// How completely the modes at the seeds are known.
     pub completeness: Completeness,
+    /// The account of the branch points of the first seed column, or why there is none.
+    pub count: Result<Count, Uncounted>,
     /// Columns at whose values all modes were found.
     pub seed_columns: Vec<usize>,
     /// How many values of each.
@@ -91,6 +94,7 @@ impl Loop {
             return Some(Motion {
                 found: None,
                 completeness: Completeness::Searched,
+                count: Err(Uncounted::Searched),
                 seed_columns: Vec::new(),
                 seeds: 0,
                 still: 0,
@@ -122,15 +126,18 @@ impl Loop {
             // a pose so far out that the loop hardly closes leaves nothing to tell
             .filter(|c| !c.rows.is_empty())
             .collect();
+        let outer = |inner: usize| (0..self.columns).find(|&c| self.chain_column(c) == Some(inner));
+        let mut seed_columns: Vec<usize> = curves.seed_columns.iter().filter_map(|&c| outer(c)).collect();
+        seed_columns.sort_unstable();
+        let count = curves.count.and_then(|mut count| {
+            count.column = outer(count.column).ok_or(Uncounted::Searched)?;
+            Ok(count)
+        });
         Some(Motion {
             found: curves.found,
             completeness: curves.completeness,
-            seed_columns: (0..self.columns)
-                .filter(|&c| {
-                    self.chain_column(c)
-                        .is_some_and(|c| curves.seed_columns.contains(&c))
-                })
-                .collect(),
+            count,
+            seed_columns,
             seeds: curves.seeds,
             still: curves.still,
             misfits: curves.misfits,

@@ -281,10 +281,14 @@ pub(super) fn infinite<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS]) -> 
 }
 
 impl<V: Vector> Linear<V> {
-    /// The Newton correction and the rate with the parameters, by elimination with row exchanges in each lane.
+    /// The Newton correction, the rate with the parameters, and the determinant of the joints' columns, by elimination with row
+    /// exchanges in each lane.
     #[inline(always)]
-    pub fn solve(mut self) -> ([Lanes<V>; UNKNOWNS], [Lanes<V>; UNKNOWNS]) {
+    pub fn solve(mut self) -> ([Lanes<V>; UNKNOWNS], [Lanes<V>; UNKNOWNS], Lanes<V>) {
         let a = &mut self.rows;
+        let (one, minus) = (V::splat(1.0), V::splat(-1.0));
+        let mut determinant = Lanes::<V>::one();
+        let mut sign = one;
         for c in 0..6 {
             for r in c + 1..6 {
                 let (upper, lower) = (a[c][c].square(), a[r][c].square());
@@ -293,7 +297,9 @@ impl<V: Vector> Linear<V> {
                     a[c][j] = x.replaced_where(lower, upper, y);
                     a[r][j] = y.replaced_where(lower, upper, x);
                 }
+                sign = sign * lower.if_greater(upper, minus, one);
             }
+            determinant = determinant * a[c][c];
             let inverse = a[c][c].recip();
             for j in c + 1..UNKNOWNS + 2 {
                 a[c][j] = a[c][j] * inverse;
@@ -316,7 +322,7 @@ impl<V: Vector> Linear<V> {
             step[c] = s;
             rate[c] = t;
         }
-        (step, rate)
+        (step, rate, determinant.scale(sign))
     }
 }
 
@@ -425,10 +431,10 @@ impl Follow<'_> {
         }
         let reach = size(self.slides, &walk.x, &predicted);
         let x1 = moved(self.slides, &walk.x, &predicted);
-        let (first_correction, _) = self.linearise(&x1, now).solve();
+        let (first_correction, ..) = self.linearise(&x1, now).solve();
         let first = size(self.slides, &x1, &first_correction);
         let x2 = moved(self.slides, &x1, &first_correction);
-        let (second_correction, rate) = self.linearise(&x2, now).solve();
+        let (second_correction, rate, _) = self.linearise(&x2, now).solve();
         let last = size(self.slides, &x2, &second_correction);
         let x3 = moved(self.slides, &x2, &second_correction);
 

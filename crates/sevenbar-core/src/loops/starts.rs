@@ -144,7 +144,7 @@ impl Random {
         Complex64::from_polar(0.2 + 0.6 * self.uniform(), std::f64::consts::TAU * self.uniform())
     }
 
-    fn parameters(&mut self) -> Parameters {
+    pub fn parameters(&mut self) -> Parameters {
         Parameters {
             twists: std::array::from_fn(|_| self.phase()),
             shifts: std::array::from_fn(|_| std::array::from_fn(|_| self.number())),

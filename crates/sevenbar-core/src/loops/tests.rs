@@ -91,7 +91,7 @@ fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misf
         );
         let finder = ModeFinder::new(&chain, 0);
         // half a turn on: the crank lies along the ground
-        let rough = finder.around(4).swap_remove(2);
+        let rough = finder.around(4, None).0.swap_remove(2);
         let polished = finder.polished(&rough);
         (polished.modes.len(), polished.misfits)
     };
@@ -150,7 +150,7 @@ fn modes_from_the_circle_of_complex_inputs_are_those_found_singly() {
     for chain in &chains {
         for input in [0, 3] {
             let finder = ModeFinder::new(chain, input);
-            for (k, rough) in finder.around(24).iter().enumerate() {
+            for (k, rough) in finder.around(24, None).0.iter().enumerate() {
                 let singly = finder.at(std::f64::consts::TAU * k as f64 / 24.0).modes;
                 let modes = finder.polished(rough).modes;
                 assert_eq!(modes.len(), singly.len(), "value {k}");
