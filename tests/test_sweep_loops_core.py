@@ -86,7 +86,7 @@ def assert_is_the_motion(got: Batch, linkages: Sequence[sb.Linkage]) -> None:
     """Every number of a batch against the motion of each linkage by itself."""
     motions = [linkage.motion(SAMPLES, speed=1.0, method="general") for linkage in linkages]
     assert list(got["circuits"]) == [len(motion.circuits) for motion in motions]
-    assert list(got["complete"]) == [motion.completeness == "algebraic" for motion in motions]
+    assert list(got["complete"]) == [motion.completeness != "searched" for motion in motions]
     circuits = [circuit for motion in motions for circuit in motion]
     for name in ("closed", "turns"):
         assert list(got[name]) == [getattr(circuit, name) for circuit in circuits], name

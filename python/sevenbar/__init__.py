@@ -18,10 +18,11 @@ from sevenbar.files import load, loads
 from sevenbar.forms import from_axes, from_dh, rssr
 from sevenbar.law_file import load_law
 from sevenbar.linkage import Drive, Joint, Linkage, Point
-from sevenbar.motion import Circuit, DeadCentre, Extremes, Law, Modes, Motion, Output, Trace
+from sevenbar.motion import Circuit, Count, DeadCentre, Extremes, Law, Modes, Motion, OpenRange, Output, Trace
 
 __all__ = [
     "Circuit",
+    "Count",
     "DeadCentre",
     "Drive",
     "Extremes",
@@ -30,6 +31,7 @@ __all__ = [
     "Linkage",
     "Modes",
     "Motion",
+    "OpenRange",
     "Output",
     "Point",
     "Trace",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,11 +15,13 @@ from sevenbar.mobility import Mobility, redundant_constraints
 from sevenbar.motion import (
     STATUSES,
     Circuit,
+    Count,
     Floats,
     Integers,
     Law,
     Modes,
     Motion,
+    OpenRange,
     Trace,
     circuit_from,
 )
@@ -116,6 +118,7 @@ class GeneralLoop:
         circuits = tuple(
             self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw["circuits"])
         )
+        count = _count(raw, linkage.columns)
         limits = [d.input for c in circuits for d in c.dead_centres if d.kind == "input"]
         return Motion(
             linkage=linkage,
@@ -127,11 +130,12 @@ class GeneralLoop:
             limits=merged(limits, turns=linkage.column_kinds[column] == "turn", size=self.size),
             change_points=np.array([]),
             circuits=circuits,
-            completeness=raw["completeness"],
+            completeness=_completeness(raw, count),
             redundant=mobility.redundant,
-            established=_established(raw, linkage.columns),
+            established=_established(raw, linkage.columns, count),
             misfits=np.array(raw["misfits"]),
             law=law,
+            count=count,
         )
 
     def circuit(
@@ -306,7 +310,49 @@ def _motion_type(circuits: Sequence[Circuit], mobility: Mobility) -> str:
     return "cannot-assemble" if mobility.rank is None else "rigid"
 
 
-def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
+def _count(raw: Mapping[str, Any], columns: Sequence[str]) -> Count | None:
+    if "count" not in raw:
+        return None
+    column, real, complex_points, poles, ranges = raw["count"]
+    open_ranges = tuple(OpenRange(*each) for each in ranges)
+    return Count(columns[column], real, complex_points, poles, open_ranges)
+
+
+def _completeness(raw: Mapping[str, Any], count: Count | None) -> Literal["counted", "algebraic", "searched"]:
+    if raw["completeness"] != "algebraic":
+        return "searched"
+    return "counted" if count is not None and not count.open else "algebraic"
+
+
+#: Why circuits were not counted, by the core's word; a search says so itself.
+UNCOUNTED = {
+    "lost": "circuits are not counted, since a solution over the complex numbers was lost on the way",
+    "still": "circuits are not counted, since there may be motions with the joint at rest",
+}
+
+
+def _counted(raw: Mapping[str, Any], count: Count | None) -> str:
+    """What the count of branch points tells; empty where nothing was counted."""
+    if count is None:
+        return UNCOUNTED.get(raw.get("uncounted", ""), "")
+    if not count.open:
+        others = f" and {count.complex_branch_points} complex" if count.complex_branch_points else ""
+        many = f"{count.dead_centres} dead centre{'s' * (count.dead_centres != 1)}"
+        return f"branch points of {count.joint} are all accounted for: {many}{others}"
+    told = []
+    for each in count.open[:MOST_RANGES_TOLD]:
+        start = math.degrees(each.start) % 360
+        what = "some" if each.missing is None else f"{each.missing}"
+        told.append(f"{what} between {start:.6g} and {start + math.degrees(each.end - each.start):.6g} deg")
+    more = " and elsewhere" if len(count.open) > MOST_RANGES_TOLD else ""
+    return f"branch points of {count.joint} are not all accounted for: {', '.join(told)}{more}"
+
+
+#: Ranges that do not balance told in one sentence.
+MOST_RANGES_TOLD = 4
+
+
+def _established(raw: Mapping[str, Any], columns: Sequence[str], count: Count | None) -> str:
     if not raw["seeds"]:
         return "from the drawn pose only"
     how = {
@@ -321,6 +367,8 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str]) -> str:
         text += "each lies on a circuit"
     if raw["still"]:
         text += f", but {raw['still']} from which no motion could be followed"
+    if told := _counted(raw, count):
+        text += f"; {told}"
     if raw["misfits"]:
         text += f"; {left_open(raw['misfits'])}"
     return text

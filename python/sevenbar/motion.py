@@ -106,6 +106,34 @@ class Modes:
         return len(self.q)
 
 
+@dataclass(frozen=True)
+class OpenRange:
+    """A range of a joint [rad] in which its branch points are not all accounted for."""
+
+    start: float
+    end: float
+    #: Dead centres counted there and not known; `None` where solutions run to infinity, or were lost.
+    missing: int | None
+
+
+@dataclass(frozen=True)
+class Count:
+    """The account of a joint's branch points: with all modes at one value, its dead centres mean all circuits.
+
+    The joint is the input, or the first that turns where the input slides.
+    """
+
+    joint: str
+    #: Real branch points, where this joint turns back on a circuit.
+    dead_centres: int
+    #: Complex ones near the real values, located and counted off.
+    complex_branch_points: int
+    #: Solutions that run to infinity near the real values, kept out of the count.
+    poles: int
+    #: Ranges that do not balance; none where circuits are `counted`.
+    open: tuple[OpenRange, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Trace:
     """A point of a link along a circuit, in the report frame; arrays of shape (n, 3).
@@ -336,7 +364,7 @@ class Motion:
     #: Inputs [rad] where two limits meet, or come nearer than 1e-6 rad.
     change_points: Floats
     circuits: tuple[Circuit, ...]
-    completeness: Literal["closed-form", "algebraic", "searched"]
+    completeness: Literal["closed-form", "counted", "algebraic", "searched"]
     #: How the set of circuits was established.
     established: str
     #: Constraints that the others imply, in words.
@@ -344,6 +372,8 @@ class Motion:
     law: Law | None = None
     #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
     misfits: Floats = field(default_factory=_none)
+    #: How the circuits were counted; `None` where they were not.
+    count: Count | None = None
 
     @property
     def idle(self) -> tuple[str, ...]:

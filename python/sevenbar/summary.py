@@ -25,6 +25,7 @@ GAP = 2
 #: What each word for completeness means.
 COMPLETE = {
     "closed-form": "all modes are found",
+    "counted": "all modes and all circuits are found",
     "algebraic": "all modes are found",
     "searched": "the modes that a search from many starts found; there may be others",
 }

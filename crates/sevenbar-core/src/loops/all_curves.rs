@@ -2,11 +2,12 @@
 
 use super::around::Circle;
 use super::chain::{COLUMNS, Chain, Configuration};
-use super::counting::{Count, Survey, Uncounted};
+use super::counting::{Count, Uncounted};
 use super::curve::{Curve, End, Node, dot};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
+use super::survey::Survey;
 use super::walk::Start;
 use std::f64::consts::TAU;
 

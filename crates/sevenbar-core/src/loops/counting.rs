@@ -8,12 +8,13 @@
 //! Source: docs/theory_many.md, (12) to (16).
 
 use super::around::{Around, Circle, Place};
-use super::chain::{Chain, Configuration, Joint};
-use super::locating::{Branching, branch_points, still};
-use super::modes::{CIRCLE, ModeFinder, SAME_MODE, Unknown};
-use super::paths::{BRISK, CAREFUL, Solution, UNKNOWNS};
-use super::phases::{FACTORS, Watch};
-use super::starts::{Random, distinct};
+use super::chain::Configuration;
+use super::locating::{Branching, branch_points};
+use super::modes::{CIRCLE, SAME_MODE};
+use super::paths::{CAREFUL, Slides, Solution, UNKNOWNS};
+use super::phases::FACTORS;
+use super::starts::distinct;
+use super::survey::{Infinite, Survey};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
@@ -25,6 +26,19 @@ const WHOLE: f64 = 0.02;
 
 /// How often a range that does not balance is halved, down to a millionth of a radian.
 const MOST_HALVINGS: usize = 18;
+
+/// The same where solutions run to infinity, or where a count fails: to a few ten thousandths and to some hundredths of a radian.
+const MOST_HALVINGS_AT_POLES: usize = 9;
+const MOST_HALVINGS_LOST: usize = 2;
+
+/// Ranges that are looked into, all together.
+const MOST_RANGES: usize = 300;
+
+/// An open range wider than this [rad] is tried again from another circle.
+const WIDE: f64 = 0.01;
+
+/// A solution is the same as another if it is nearer to it than this part of the distance to the next.
+const NEARER: f64 = 0.1;
 
 /// Part of the circle's height to which the path of a range that does not balance is led first.
 const LOWERED: f64 = 0.05;
@@ -41,9 +55,6 @@ const SAME_POINT: f64 = 1e-8;
 
 /// Cosine of a ball's middle turn below which its turns, and not its pose, are singular.
 const GIMBAL: f64 = 1e-6;
-
-/// `ln |e^(i tau)|` below which an input at which another joint moves alone counts as real.
-const REAL_INPUT: f64 = 1e-6;
 
 /// A range of the input whose branch points are not accounted for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,24 +104,6 @@ impl Uncounted {
     }
 }
 
-/// What is watched on the way round, and where the watched joints have their values.
-pub(super) struct Survey<'a> {
-    finder: &'a ModeFinder<'a>,
-    pub watch: Watch,
-    infinite: Infinite,
-    /// Of how many solutions each pose has one: those with a ball's turns, or an idle coupler, turned over.
-    flips: i64,
-    still: bool,
-}
-
-/// What tells of solutions that run to infinity.
-enum Infinite {
-    /// `e^(i tau)` where they do, one at infinity being one at zero in the mirror of the real inputs.
-    At(Vec<Complex64>),
-    /// `e^(i tau)` of the solutions at which each joint has its watched value.
-    Watched([Vec<Complex64>; UNKNOWNS]),
-}
-
 /// A way down to a real input: where it begins, and the change of the phases on it.
 #[derive(Clone, Copy)]
 struct Border {
@@ -140,80 +133,12 @@ struct Account<'a> {
     singular: &'a [f64],
     located: Vec<Branching>,
     open: Vec<Open>,
+    ranges: usize,
     /// Follows the curve through a pose; gives the inputs of its dead centres if it is new.
     seed: &'a mut dyn FnMut(&Configuration) -> Vec<f64>,
 }
 
-impl<'a> Survey<'a> {
-    /// For an input that turns; `None` where its modes are not algebraic.
-    pub fn new(finder: &'a ModeFinder<'a>) -> Option<Self> {
-        if !finder.is_algebraic() {
-            return None;
-        }
-        let zeros = finder.zeros();
-        let mut watch = Watch { values: [None; UNKNOWNS], middles: Vec::new() };
-        for (i, unknown) in finder.unknowns.iter().enumerate() {
-            match *unknown {
-                Unknown::BallTurn(_, 1) => watch.middles.push((i, zeros[i])),
-                Unknown::Column(c) => {
-                    let half = finder.chain.halves.iter().find(|h| h.0 == c);
-                    let middle = half.map(|h| (i, zeros[i] * Complex64::from_polar(1.0, h.1)));
-                    watch.middles.extend(middle);
-                }
-                _ => {}
-            }
-        }
-        let flips = 1 << watch.middles.len();
-        // the columns of a general loop of seven turning joints
-        let general = watch.middles.is_empty()
-            && !finder.slides.contains(&true)
-            && finder.unknowns.iter().all(|u| matches!(u, Unknown::Column(_)))
-            && finder.is_general();
-        let known = if general { finder.poles() } else { None };
-        if let Some(at) = known {
-            // solutions infinite at a real input may be those of a motion with the input at rest
-            let still = at.iter().any(|x| x.norm().ln().abs() < REAL_INPUT);
-            return Some(Self { finder, watch, infinite: Infinite::At(at), flips, still });
-        }
-        Some(Self::watching_all(finder, watch))
-    }
-
-    /// With every passive joint watched, as special geometry asks for.
-    fn watching_all(finder: &'a ModeFinder<'a>, mut watch: Watch) -> Self {
-        let zeros = finder.zeros();
-        let mut random = Random(0xb0b);
-        let mut met: [Vec<Complex64>; UNKNOWNS] = Default::default();
-        let mut rests = false;
-        let chain = turned_out(finder);
-        let closure = finder.closure(None);
-        for i in 0..UNKNOWNS {
-            if matches!(finder.unknowns[i], Unknown::Added) {
-                continue;
-            }
-            let value = Complex64::from_polar(0.45 + 0.35 * random.uniform(), TAU * random.uniform());
-            let solutions = solutions_with(&chain, finder, i, value);
-            let at: Vec<(Solution, Complex64)> = solutions
-                .iter()
-                .map(|(x, input)| (*x, closure.zero() * input))
-                .collect();
-            for ((_, input), alone) in solutions.iter().zip(still(&closure, &at)) {
-                if alone {
-                    rests |= input.norm().ln().abs() < REAL_INPUT;
-                } else {
-                    met[i].push(*input);
-                }
-            }
-            let zero = if finder.slides[i] {
-                Complex64::ONE
-            } else {
-                zeros[i]
-            };
-            watch.values[i] = Some(value * zero);
-        }
-        let flips = 1 << watch.middles.len();
-        Self { finder, watch, infinite: Infinite::Watched(met), flips, still: rests }
-    }
-
+impl Survey<'_> {
     /// The account, from the circle that was followed and the inputs of the dead centres that are known, and of singular poses.
     /// `seed` follows the curve through a pose that was found, and gives the inputs of its dead centres if it is new.
     pub fn count(
@@ -236,85 +161,36 @@ impl<'a> Survey<'a> {
             singular,
             located: Vec::new(),
             open: Vec::new(),
+            ranges: 0,
             seed,
         };
         let mut followed = Some(circle);
-        for (n, &radius) in RADII.iter().enumerate() {
-            let pace = if n == 0 { BRISK } else { CAREFUL };
+        let mut count: Option<Count> = None;
+        for &radius in &RADII {
             let circle = followed
                 .take()
-                .unwrap_or_else(|| self.finder.circle(&closure, radius, places, pace));
-            if let Some(poles) = account.balance(&circle, &own) {
-                return Ok(Count {
-                    column: self.finder.input,
-                    dead_centres: account.known.len(),
-                    complex_branch_points: account.located.iter().filter(|b| !is_real(b)).count(),
-                    poles: poles as usize,
-                    open: account.open,
-                });
-            }
-        }
-        Err(Uncounted::Lost)
-    }
-}
-
-/// The chain with the input first, balls as three turns, and no added joints.
-fn turned_out(finder: &ModeFinder) -> Chain {
-    let mut joints = vec![Joint::Turn];
-    let mut links = vec![finder.transforms[0]];
-    for (i, unknown) in finder.unknowns.iter().enumerate() {
-        let after = finder.transforms[i + 1];
-        if matches!(unknown, Unknown::Added) {
-            let last = links.len() - 1;
-            links[last] = links[last].then(&after);
-        } else {
-            joints.push(if finder.slides[i] {
-                Joint::Slide
-            } else {
-                Joint::Turn
-            });
-            links.push(after);
-        }
-    }
-    Chain::new(joints, links)
-}
-
-/// The solutions with one unknown at a complex value, as the finder has them, and `e^(i tau)` of its input there.
-fn solutions_with(
-    chain: &Chain,
-    finder: &ModeFinder,
-    unknown: usize,
-    value: Complex64,
-) -> Vec<(Solution, Complex64)> {
-    let zeros = finder.zeros();
-    let other = ModeFinder::new(chain, unknown + 1);
-    let (solutions, shift) = other.solutions_at(value);
-    let mut out = Vec::with_capacity(solutions.len());
-    'solutions: for solution in solutions {
-        let mut values = [Complex64::ONE; 1 + UNKNOWNS];
-        values[unknown + 1] = value;
-        for (i, kind) in other.unknowns.iter().enumerate() {
-            let z = if other.slides[i] {
-                solution[i]
-            } else {
-                solution[i] / shift[i]
+                .unwrap_or_else(|| self.finder.circle(&closure, radius, places, CAREFUL));
+            let Some(poles) = account.balance(&circle, &own) else {
+                continue;
             };
-            match *kind {
-                Unknown::Column(c) => values[c] = z,
-                _ if (z - 1.0).norm() > 1e-6 => continue 'solutions,
-                _ => {}
+            let open = std::mem::take(&mut account.open);
+            let count = count.get_or_insert_with(|| Count { open: open.clone(), ..Count::default() });
+            // a range that balances on one circle is settled
+            let overlaps = |a: &Open| {
+                open.iter()
+                    .any(|b| within(b.from, a.from, a.to) || within(a.from, b.from, b.to))
+            };
+            count.open.retain(overlaps);
+            count.column = self.finder.input;
+            count.dead_centres = account.known.len();
+            count.complex_branch_points = account.located.iter().filter(|b| !is_real(b)).count();
+            count.poles = count.poles.max(poles as usize);
+            if count.open.iter().all(|o| o.to - o.from < WIDE) {
+                break;
             }
         }
-        let x = std::array::from_fn(|i| {
-            if finder.slides[i] {
-                values[i + 1]
-            } else {
-                values[i + 1] * zeros[i]
-            }
-        });
-        out.push((x, values[0]));
+        count.ok_or(Uncounted::Lost)
     }
-    out
 }
 
 fn is_real(b: &Branching) -> bool {
@@ -324,6 +200,18 @@ fn is_real(b: &Branching) -> bool {
 /// Whether an angle lies in a range, whole turns aside.
 fn within(angle: f64, from: f64, to: f64) -> bool {
     (angle - from).rem_euclid(TAU) < to - from
+}
+
+/// How far two solutions are apart [parts of their values, or of the size].
+fn distance(slides: &Slides, a: &Solution, b: &Solution) -> f64 {
+    let off = |i: usize| {
+        if slides[i] {
+            (a[i] - b[i]).norm() / (1.0 + a[i].norm())
+        } else {
+            (a[i] / b[i] - 1.0).norm()
+        }
+    };
+    (0..UNKNOWNS).map(off).fold(0.0, f64::max)
 }
 
 /// The places of some of the paths; none where one is lost.
@@ -419,17 +307,22 @@ impl Account<'_> {
             })
     }
 
+    /// Whether two lists hold the same solutions: each has one in the other that is far nearer than all others, and no two have one.
     fn are_same(&self, a: &[Place], b: &[Place]) -> bool {
         let slides = &self.survey.finder.slides;
-        let count = |places: &mut dyn Iterator<Item = &Place>| {
-            distinct(slides, places.map(|p| *p.solution()), SAME_MODE).len()
-        };
-        [a.len(); 3]
-            == [
-                count(&mut a.iter()),
-                count(&mut b.iter()),
-                count(&mut a.iter().chain(b)),
-            ]
+        let mut taken = vec![false; b.len()];
+        a.iter().all(|a| {
+            let (mut nearest, mut least, mut next) = (0, f64::INFINITY, f64::INFINITY);
+            for (k, b) in b.iter().enumerate() {
+                let off = distance(slides, a.solution(), b.solution());
+                if off < least {
+                    (nearest, least, next) = (k, off, least);
+                } else {
+                    next = next.min(off);
+                }
+            }
+            least < NEARER * next && !std::mem::replace(&mut taken[nearest], true)
+        })
     }
 
     /// The same border from nearer to the real inputs.
@@ -513,14 +406,23 @@ impl Account<'_> {
             return;
         }
         let middle = self.parted(a, b);
-        if let Some(middle) = &middle {
+        let most = match numbers {
+            None => MOST_HALVINGS_LOST,
+            Some((_, 0)) => MOST_HALVINGS,
+            Some(_) => MOST_HALVINGS_AT_POLES,
+        };
+        if most == MOST_HALVINGS
+            && let Some(middle) = &middle
+        {
             self.locate(&[a, middle, b]);
         }
         let missing = self.missing(numbers, from, to);
         if missing == Some(0) {
             return;
         }
-        if halved < MOST_HALVINGS
+        self.ranges += 1;
+        if halved < most
+            && self.ranges < MOST_RANGES
             && let Some(middle) = middle
         {
             let lower = |stand: &Stand| self.lowered(stand, 0.5);
@@ -534,7 +436,15 @@ impl Account<'_> {
     }
 
     fn open(&mut self, a: &Border, b: &Border, missing: Option<i64>) {
-        self.open.push(Open { from: a.angle, to: b.angle, missing });
+        // neighbours are one
+        if let Some(last) = self.open.last_mut()
+            && last.to == a.angle
+        {
+            last.to = b.angle;
+            last.missing = last.missing.zip(missing).map(|(x, y)| x + y);
+        } else {
+            self.open.push(Open { from: a.angle, to: b.angle, missing });
+        }
     }
 
     /// Branch points to which the places at the borders of a range lead; the curves through real ones are followed.
@@ -590,7 +500,9 @@ impl Account<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::modes::random_pose;
+    use super::super::chain::{Chain, Joint};
+    use super::super::modes::{ModeFinder, random_pose};
+    use super::super::starts::Random;
     use super::*;
     use crate::rigid::Pose;
 
@@ -605,6 +517,7 @@ mod tests {
             singular: &[],
             located: Vec::new(),
             open: Vec::new(),
+            ranges: 0,
             seed: &mut |_| Vec::new(),
         };
         let sectors = account.sectors(&circle, &finder.own()).unwrap();
@@ -629,5 +542,69 @@ mod tests {
             seen += a.iter().map(|(_, n)| n.1).sum::<i64>();
         }
         assert!(seen > 10);
+    }
+
+    /// The account of a loop by rows of length and twist [deg], from dead centres that are known.
+    fn count_of(length: &[f64], twist_deg: &[f64], known: &[f64]) -> Count {
+        let links = length.iter().zip(twist_deg).map(|(&a, t)| {
+            let (s, c) = t.to_radians().sin_cos();
+            Pose {
+                rotation: [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
+                translation: [a, 0.0, 0.0],
+            }
+        });
+        let chain = Chain::new(vec![Joint::Turn; length.len()], links.collect());
+        let finder = ModeFinder::new(&chain, 0);
+        let survey = Survey::new(&finder).unwrap();
+        let circle = finder.around(24, Some(&survey.watch)).1.unwrap();
+        survey
+            .count(circle, known.to_vec(), &[], &mut |_| Vec::new())
+            .unwrap()
+    }
+
+    #[test]
+    fn a_planar_four_bar_has_its_limits_and_no_other_branch_points() {
+        // the coupler and the rocker in line, by the cosine rule; the last row is the ground
+        let [a, b, c, d] = [2.0, 1.0, 2.2, 2.9];
+        let limit = |sum: f64| {
+            let x: f64 = (a * a + d * d - sum * sum) / (2.0 * a * d);
+            (x.abs() < 1.0).then(|| x.acos())
+        };
+        let limits: Vec<f64> = [limit(b + c), limit(c - b)]
+            .into_iter()
+            .flatten()
+            .flat_map(|x| [std::f64::consts::PI - x, x - std::f64::consts::PI])
+            .collect();
+        assert_eq!(limits.len(), 4);
+        let whole = count_of(&[a, b, c, d], &[0.0; 4], &limits);
+        assert_eq!((whole.dead_centres, whole.open), (4, vec![]));
+        // one that is not told is asked for, in a range that holds it
+        let lacking = count_of(&[a, b, c, d], &[0.0; 4], &limits[1..]);
+        assert!(!lacking.open.is_empty());
+        assert!(
+            lacking
+                .open
+                .iter()
+                .any(|o| within(limits[0], o.from - 1e-9, o.to + 1e-9))
+        );
+    }
+
+    #[test]
+    fn a_crank_has_no_branch_points() {
+        for twist in [[0.0; 4], [20.0, 50.0, 60.0, 70.0]] {
+            let count = count_of(
+                if twist[0] == 0.0 {
+                    &[1.0, 3.0, 2.5, 2.0]
+                } else {
+                    &[0.0; 4]
+                },
+                &twist,
+                &[],
+            );
+            assert_eq!(
+                (count.dead_centres, count.complex_branch_points, count.open),
+                (0, 0, vec![])
+            );
+        }
     }
 }

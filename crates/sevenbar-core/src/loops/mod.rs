@@ -26,6 +26,7 @@ mod rates;
 mod reduce;
 mod rows;
 mod starts;
+mod survey;
 #[cfg(test)]
 mod tests;
 mod turnings;

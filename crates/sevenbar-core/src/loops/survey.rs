@@ -1,0 +1,164 @@
+//! What is watched along solutions so that their branch points can be counted, and where they run to infinity.
+//!
+//! Source: docs/theory_many.md, (14) and (17).
+
+use super::chain::{Chain, Joint};
+use super::locating::still;
+use super::modes::{ModeFinder, Unknown};
+use super::paths::{Solution, UNKNOWNS};
+use super::phases::Watch;
+use super::starts::Random;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// `ln |e^(i tau)|` below which an input at which another joint moves alone counts as real.
+const REAL_INPUT: f64 = 1e-6;
+
+/// What is watched on the way round, and where the watched joints have their values.
+pub(super) struct Survey<'a> {
+    pub finder: &'a ModeFinder<'a>,
+    pub watch: Watch,
+    pub infinite: Infinite,
+    /// Of how many solutions each pose has one: those with a ball's turns, or an idle coupler, turned over.
+    pub flips: i64,
+    /// Whether other joints may move with the input at rest.
+    pub still: bool,
+}
+
+/// What tells of solutions that run to infinity.
+pub(super) enum Infinite {
+    /// `e^(i tau)` where they do, one at infinity being one at zero in the mirror of the real inputs.
+    At(Vec<Complex64>),
+    /// `e^(i tau)` of the solutions at which each joint has its watched value.
+    Watched([Vec<Complex64>; UNKNOWNS]),
+}
+
+impl<'a> Survey<'a> {
+    /// For an input that turns; `None` where its modes are not algebraic.
+    pub fn new(finder: &'a ModeFinder<'a>) -> Option<Self> {
+        if !finder.is_algebraic() {
+            return None;
+        }
+        let zeros = finder.zeros();
+        let mut watch = Watch { values: [None; UNKNOWNS], middles: Vec::new() };
+        for (i, unknown) in finder.unknowns.iter().enumerate() {
+            match *unknown {
+                Unknown::BallTurn(_, 1) => watch.middles.push((i, zeros[i])),
+                Unknown::Column(c) => {
+                    let half = finder.chain.halves.iter().find(|h| h.0 == c);
+                    let middle = half.map(|h| (i, zeros[i] * Complex64::from_polar(1.0, h.1)));
+                    watch.middles.extend(middle);
+                }
+                _ => {}
+            }
+        }
+        let flips = 1 << watch.middles.len();
+        // the columns of a general loop of seven turning joints
+        let general = watch.middles.is_empty()
+            && !finder.slides.contains(&true)
+            && finder.unknowns.iter().all(|u| matches!(u, Unknown::Column(_)))
+            && finder.is_general();
+        let known = if general { finder.poles() } else { None };
+        if let Some(at) = known {
+            // solutions infinite at a real input may be those of a motion with the input at rest
+            let still = at.iter().any(|x| x.norm().ln().abs() < REAL_INPUT);
+            return Some(Self { finder, watch, infinite: Infinite::At(at), flips, still });
+        }
+        Some(Self::watching_all(finder, watch))
+    }
+
+    /// With every passive joint watched, as special geometry asks for.
+    pub fn watching_all(finder: &'a ModeFinder<'a>, mut watch: Watch) -> Self {
+        let zeros = finder.zeros();
+        let mut random = Random(0xb0b);
+        let mut met: [Vec<Complex64>; UNKNOWNS] = Default::default();
+        let mut rests = false;
+        let chain = turned_out(finder);
+        let closure = finder.closure(None);
+        for i in 0..UNKNOWNS {
+            if matches!(finder.unknowns[i], Unknown::Added) {
+                continue;
+            }
+            let value = Complex64::from_polar(0.45 + 0.35 * random.uniform(), TAU * random.uniform());
+            let solutions = solutions_with(&chain, finder, i, value);
+            let at: Vec<(Solution, Complex64)> = solutions
+                .iter()
+                .map(|(x, input)| (*x, closure.zero() * input))
+                .collect();
+            for ((_, input), alone) in solutions.iter().zip(still(&closure, &at)) {
+                if alone {
+                    rests |= input.norm().ln().abs() < REAL_INPUT;
+                } else {
+                    met[i].push(*input);
+                }
+            }
+            let zero = if finder.slides[i] {
+                Complex64::ONE
+            } else {
+                zeros[i]
+            };
+            watch.values[i] = Some(value * zero);
+        }
+        let flips = 1 << watch.middles.len();
+        Self { finder, watch, infinite: Infinite::Watched(met), flips, still: rests }
+    }
+}
+
+/// The chain with the input first, balls as three turns, and no added joints.
+fn turned_out(finder: &ModeFinder) -> Chain {
+    let mut joints = vec![Joint::Turn];
+    let mut links = vec![finder.transforms[0]];
+    for (i, unknown) in finder.unknowns.iter().enumerate() {
+        let after = finder.transforms[i + 1];
+        if matches!(unknown, Unknown::Added) {
+            let last = links.len() - 1;
+            links[last] = links[last].then(&after);
+        } else {
+            joints.push(if finder.slides[i] {
+                Joint::Slide
+            } else {
+                Joint::Turn
+            });
+            links.push(after);
+        }
+    }
+    Chain::new(joints, links)
+}
+
+/// The solutions with one unknown at a complex value, as the finder has them, and `e^(i tau)` of its input there.
+fn solutions_with(
+    chain: &Chain,
+    finder: &ModeFinder,
+    unknown: usize,
+    value: Complex64,
+) -> Vec<(Solution, Complex64)> {
+    let zeros = finder.zeros();
+    let other = ModeFinder::new(chain, unknown + 1);
+    let (solutions, shift) = other.solutions_at(value);
+    let mut out = Vec::with_capacity(solutions.len());
+    'solutions: for solution in solutions {
+        let mut values = [Complex64::ONE; 1 + UNKNOWNS];
+        values[unknown + 1] = value;
+        for (i, kind) in other.unknowns.iter().enumerate() {
+            let z = if other.slides[i] {
+                solution[i]
+            } else {
+                solution[i] / shift[i]
+            };
+            match *kind {
+                Unknown::Column(c) => values[c] = z,
+                _ if (z - 1.0).norm() > 1e-6 => continue 'solutions,
+                _ => {}
+            }
+        }
+        let x = std::array::from_fn(|i| {
+            if finder.slides[i] {
+                values[i + 1]
+            } else {
+                values[i + 1] * zeros[i]
+            }
+        });
+        out.push((x, values[0]));
+    }
+    out
+}
