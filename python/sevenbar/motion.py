@@ -118,7 +118,7 @@ class OpenRange:
 
 @dataclass(frozen=True)
 class Count:
-    """The account of a joint's branch points: with all modes at one value, its dead centres mean all circuits.
+    """The account of a joint's branch points: all of them, and the modes at one value, mean all circuits.
 
     The joint is the input, or the first that turns where the input slides.
     """

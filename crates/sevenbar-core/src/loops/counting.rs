@@ -183,7 +183,7 @@ impl Survey<'_> {
             count.open.retain(overlaps);
             count.column = self.finder.input;
             count.dead_centres = account.known.len();
-            count.complex_branch_points = account.located.iter().filter(|b| !is_real(b)).count();
+            count.complex_branch_points = account.located.iter().filter(|b| !b.real).count();
             count.poles = count.poles.max(poles as usize);
             if count.open.iter().all(|o| o.to - o.from < WIDE) {
                 break;
@@ -191,10 +191,6 @@ impl Survey<'_> {
         }
         count.ok_or(Uncounted::Lost)
     }
-}
-
-fn is_real(b: &Branching) -> bool {
-    b.tau.im.abs() < REAL
 }
 
 /// Whether an angle lies in a range, whole turns aside.
@@ -387,7 +383,7 @@ impl Account<'_> {
         let between = |at: &f64| within(*at, a.angle, b.angle);
         let known = self.known.iter().filter(|at| between(at)).count() as i64;
         let singular = 2 * self.singular.iter().filter(|at| between(at)).count() as i64;
-        let complex = self.located.iter().filter(|b| !is_real(b));
+        let complex = self.located.iter().filter(|b| !b.real);
         let complex = complex
             .filter(|p| between(&p.tau.re) && p.tau.im.abs() < a.height)
             .count() as i64;
@@ -479,8 +475,14 @@ impl Account<'_> {
             if self.survey.watch.middles.iter().any(gimbal) || self.located.iter().any(|b| known(&b)) {
                 continue;
             }
-            self.located.push(found);
-            if !is_real(&found) {
+            let pose = (found.tau.im.abs() < REAL)
+                .then(|| finder.configuration(&found.at, &finder.zeros(), found.tau.re))
+                .flatten();
+            self.located.push(Branching { real: pose.is_some(), ..found });
+            if let Some(pose) = pose {
+                let new = (self.seed)(&pose);
+                self.known.extend(new);
+            } else {
                 let mirrored = std::array::from_fn(|i| {
                     if slides[i] {
                         found.at[i].conj()
@@ -488,11 +490,8 @@ impl Account<'_> {
                         1.0 / found.at[i].conj()
                     }
                 });
-                self.located
-                    .push(Branching { tau: found.tau.conj(), at: mirrored });
-            } else if let Some(pose) = finder.configuration(&found.at, &finder.zeros(), found.tau.re) {
-                let new = (self.seed)(&pose);
-                self.known.extend(new);
+                let tau = found.tau.conj();
+                self.located.push(Branching { tau, at: mirrored, real: false });
             }
         }
     }

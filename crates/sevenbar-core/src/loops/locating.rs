@@ -35,6 +35,8 @@ pub(super) struct Branching {
     /// The input [rad].
     pub tau: Complex64,
     pub at: Solution,
+    /// Whether it is a real pose: at a real input two complex ones may meet, too.
+    pub real: bool,
 }
 
 /// The closure linearised at a solution: `columns q' + input tau' = -error`.
@@ -197,7 +199,7 @@ fn newton(closure: &Around, slides: &Slides, mut at: Solution, mut tau: Complex6
         move_on(slides, &mut at, &rate, part.into());
         tau += by[6] * part;
         if size < SETTLED {
-            return Some(Branching { tau, at });
+            return Some(Branching { tau, at, real: false });
         }
         if n % RENEWED == 0 {
             right = unit_conjugate(&v);
