@@ -1,0 +1,122 @@
+"""Circuits counted: none is missed, however narrow, and what does not balance is told.
+
+Axes in one linear complex let the loop stand in a pose with two infinitesimal freedoms. Where the second-order form on these is
+definite the pose stands alone, and a link moved by epsilon opens it to a circuit as wide as the root of epsilon, far narrower
+than the spacing of the inputs at which modes are looked for.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import sevenbar as sb
+from sevenbar import _core
+
+Floats = npt.NDArray[np.float64]
+
+
+def screw(point: Floats, axis: Floats, letter: str) -> Floats:
+    if letter == "P":
+        return np.r_[np.zeros(3), axis]
+    return np.r_[axis, np.cross(point, axis)]
+
+
+def second_order(screws: Floats) -> tuple[Floats, Floats]:
+    """Singular values of the screws, and eigenvalues of the second-order form on what the first order leaves free."""
+
+    def bracket(a: Floats, b: Floats) -> Floats:
+        return np.r_[np.cross(a[:3], b[:3]), np.cross(a[:3], b[3:]) + np.cross(a[3:], b[:3])]
+
+    u, s, vt = np.linalg.svd(screws)
+    form = np.zeros((7, 7))
+    for i in range(7):
+        for j in range(i + 1, 7):
+            form[i, j] = form[j, i] = u[:, 5] @ bracket(screws[:, i], screws[:, j])
+    return s, np.linalg.eigvalsh(vt[5:] @ form @ vt[5:].T)
+
+
+def isolated_pose(rng: np.random.Generator, letters: str) -> list[tuple[Floats, Floats]]:
+    """Axes of a pose that stands alone, all in the linear complex with moment `pitch` along z."""
+    while True:
+        pitch = 0.7 * rng.normal()
+        axes = []
+        for letter in letters:
+            point = rng.uniform(-1, 1, 3)
+            normal = np.array([0.0, 0.0, 1.0]) if letter == "P" else np.array([-point[1], point[0], pitch])
+            axis = np.cross(normal, rng.normal(size=3))
+            axes.append((point, axis / np.linalg.norm(axis)))
+        s, form = second_order(
+            np.array([screw(*axis, letter) for axis, letter in zip(axes, letters, strict=True)]).T
+        )
+        if s[4] > 0.1 and np.abs(form).min() > 0.1 and form[0] * form[1] > 0:
+            return axes
+
+
+def opened(seed: int, letters: str, epsilon: float) -> dict[str, Any]:
+    """The motion of the loop with one link moved along the wrench that no joint yields to."""
+    rng = np.random.default_rng(seed)
+    frames = []
+    for point, axis in isolated_pose(rng, letters):
+        x = np.cross(axis, rng.normal(size=3))
+        x /= np.linalg.norm(x)
+        frame = np.eye(4)
+        frame[:3, :3] = np.array([x, np.cross(axis, x), axis]).T
+        frame[:3, 3] = point
+        frames.append(frame)
+    links = np.array([np.linalg.inv(a) @ b for a, b in zip(frames[:-1], frames[1:], strict=True)])
+    links[3][:3, 3] += epsilon * frames[3][2, :3]
+    loop = _core.Loop(letters, np.zeros(7), frames[0], frames[-1], links)
+    raw: dict[str, Any] = loop.motion(0, 6, 90, 1.0, None)
+    return raw
+
+
+def farthest(circuit: dict[str, Any]) -> float:
+    """How far a circuit goes from the pose that stood alone [rad, or length]."""
+    joints = circuit["joints"][0]
+    joints = joints[np.isfinite(joints).all(axis=1)]
+    return float(np.abs((joints + math.pi) % (2 * math.pi) - math.pi).max()) if len(joints) else math.inf
+
+
+@pytest.mark.parametrize("letters", ["RRRRRRR", "RRRPRRR"])
+@pytest.mark.parametrize("epsilon", [1e-5, 1e-8, 1e-11])
+def test_a_narrow_circuit_is_found_on_the_side_on_which_it_opens(letters: str, epsilon: float) -> None:
+    for seed in range(3):
+        found = []
+        for side in (1, -1):
+            raw = opened(seed, letters, side * epsilon)
+            assert raw["count"][4] == []
+            found.append(sum(farthest(c) < 200 * math.sqrt(epsilon) for c in raw["circuits"]))
+        assert sorted(found) == [0, 1]
+
+
+def test_the_paper_s_loop_has_no_branch_point() -> None:
+    motion = sb.load("seven_r").motion(24)
+    assert motion.completeness == "counted"
+    assert motion.count is not None
+    assert (motion.count.dead_centres, motion.count.complex_branch_points, motion.count.open) == (0, 0, ())
+
+
+def test_the_count_is_of_all_dead_centres_of_its_joint() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(8):
+        linkage = sb.from_dh(
+            "RRRRRRR",
+            length=rng.uniform(0.2, 1.2, 7),
+            twist=rng.uniform(-math.pi, math.pi, 7),
+            offset=rng.uniform(-0.6, 0.6, 7),
+        )
+        motion = linkage.motion(24)
+        assert motion.completeness == "counted"
+        assert motion.count is not None
+        dead_centres = [d for c in motion for d in c.dead_centres if d.kind == "input"]
+        assert motion.count.dead_centres == len(dead_centres)
+
+
+def test_screws_are_not_counted() -> None:
+    motion = sb.load("screw_drill").motion(24)
+    assert (motion.completeness, motion.count) == ("searched", None)
