@@ -337,7 +337,7 @@ def _counted(raw: Mapping[str, Any], count: Count | None) -> str:
         return UNCOUNTED.get(raw.get("uncounted", ""), "")
     if not count.open:
         others = f" and {count.complex_branch_points} complex" if count.complex_branch_points else ""
-        many = f"{count.dead_centres} dead centre{'s' * (count.dead_centres != 1)}"
+        many = f"{count.dead_centres or 'no'} dead centre{'s' * (count.dead_centres > 1)}"
         return f"branch points of {count.joint} are all accounted for: {many}{others}"
     told = []
     for each in count.open[:MOST_RANGES_TOLD]:

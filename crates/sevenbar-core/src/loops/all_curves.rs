@@ -26,6 +26,9 @@ const MOST_MODES: usize = 16;
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
+/// An open range narrower than this [rad] is that of one singular pose, or of solutions infinite at a real input, and open with any joint.
+const NARROW: f64 = 1e-3;
+
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
 
@@ -87,7 +90,7 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             }
             continue;
         }
-        let survey = if seed == out.seed_columns[0] {
+        let survey = if out.is_doubtful() {
             Survey::new(&finder)
         } else {
             None
@@ -110,9 +113,12 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         }
         out.ahead.clear();
         if let (Some(survey), Some(circle)) = (survey, circle) {
-            out.count = out.counted(chain, &survey, circle, (seed, wished[0]));
-            // circuits on which this joint stands still are branch points, too
-            if out.is_counted() && !chain.is_redundant() {
+            let count = out.counted(chain, &survey, circle, (seed, wished[0]));
+            if seed == out.seed_columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
+                out.count = count;
+            }
+            // a joint that stands still on some is told of, so that another need not be asked
+            if seed == out.seed_columns[0] && out.is_counted() && !chain.is_redundant() {
                 out.seed_columns.truncate(1);
                 break;
             }
@@ -151,6 +157,14 @@ impl Curves {
     /// Whether all branch points of the first seed column are accounted for.
     pub fn is_counted(&self) -> bool {
         self.count.as_ref().is_ok_and(|c| c.open.is_empty())
+    }
+
+    /// Whether nothing was counted yet, or so wide a range is left open that another joint may have an account of it.
+    fn is_doubtful(&self) -> bool {
+        match &self.count {
+            Ok(count) => count.open.iter().any(|o| o.to - o.from > NARROW),
+            Err(why) => *why != Uncounted::Still,
+        }
     }
 
     /// The account of a column's branch points; curves that it leads to are followed.
