@@ -182,7 +182,18 @@ impl Curves {
         let known = inputs(&self.curves);
         survey.count(circle, known, &[], &mut |pose| {
             let before = self.curves.len();
-            self.take(chain, &[*pose], rising);
+            // the same pose with an idle link turned over does not count
+            if chain.counts(pose) {
+                self.take(chain, &[*pose], rising);
+            }
+            // beside a singular pose a place of a known curve may lie outside its tubes, but not the whole curve
+            let (old, new) = self.curves.split_at(before);
+            if new
+                .iter()
+                .any(|n| old.iter().any(|c| lies_on(chain, c, middle(n))))
+            {
+                self.curves.truncate(before);
+            }
             inputs(&self.curves[before..])
         })
     }
