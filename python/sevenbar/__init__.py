@@ -18,9 +18,10 @@ from sevenbar.files import load, loads
 from sevenbar.forms import from_axes, from_dh, rssr
 from sevenbar.law_file import load_law
 from sevenbar.linkage import Drive, Joint, Linkage, Point
-from sevenbar.motion import Circuit, DeadCentre, Extremes, Law, Modes, Motion, Output, Trace
+from sevenbar.motion import ChangePoint, Circuit, DeadCentre, Extremes, Law, Modes, Motion, Output, Trace
 
 __all__ = [
+    "ChangePoint",
     "Circuit",
     "DeadCentre",
     "Drive",

@@ -19,6 +19,7 @@ from sevenbar.motion import (
     Motion,
     Output,
     Trace,
+    change_points_from,
     circuit_from,
 )
 
@@ -83,7 +84,7 @@ class ClosedForm:
             samples=samples,
             motion_type=raw["motion_type"],
             limits=raw["limits"],
-            change_points=raw["change_points"],
+            change_points=change_points_from(raw["change_points"], column),
             circuits=tuple(
                 self._circuit(i, c, (column, other), speed, law) for i, c in enumerate(raw["circuits"])
             ),

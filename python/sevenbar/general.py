@@ -14,6 +14,7 @@ from sevenbar.errors import RequestError
 from sevenbar.mobility import Mobility, redundant_constraints
 from sevenbar.motion import (
     STATUSES,
+    ChangePoint,
     Circuit,
     Floats,
     Integers,
@@ -21,6 +22,7 @@ from sevenbar.motion import (
     Modes,
     Motion,
     Trace,
+    change_points_from,
     circuit_from,
 )
 from sevenbar.written import Freedom
@@ -116,6 +118,7 @@ class GeneralLoop:
         circuits = tuple(
             self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw["circuits"])
         )
+        change_points = change_points_from(raw["change_points"], column)
         limits = [d.input for c in circuits for d in c.dead_centres if d.kind == "input"]
         return Motion(
             linkage=linkage,
@@ -123,9 +126,9 @@ class GeneralLoop:
             output=linkage.columns[output],
             speed=math.nan if law is not None else speed,
             samples=samples,
-            motion_type=_motion_type(circuits, mobility),
+            motion_type=_motion_type(circuits, change_points, mobility),
             limits=merged(limits, turns=linkage.column_kinds[column] == "turn", size=self.size),
-            change_points=np.array([]),
+            change_points=change_points,
             circuits=circuits,
             completeness=raw["completeness"],
             redundant=mobility.redundant,
@@ -297,7 +300,11 @@ def pair(first: str, second: str) -> str:
     return f"double-{first}" if first == second else f"{first}-{second}"
 
 
-def _motion_type(circuits: Sequence[Circuit], mobility: Mobility) -> str:
+def _motion_type(
+    circuits: Sequence[Circuit], change_points: Sequence[ChangePoint], mobility: Mobility
+) -> str:
+    if any(not point.isolated and point.circuits for point in change_points):
+        return "change-point"
     if circuits:
         types = {c.motion_type for c in circuits}
         return types.pop() if len(types) == 1 else "mixed"

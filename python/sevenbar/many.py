@@ -132,7 +132,10 @@ def loop_motions(linkages: Sequence[Linkage], input: int, output: int, samples: 
     types = np.array(["mixed"] * len(counts), dtype=object)
     bounds = np.concatenate([[0], np.cumsum(counts)])
     for place, (first, last) in enumerate(pairwise(bounds)):
-        if len(words := set(own[first:last])) == 1:
+        words = set(own[first:last])
+        if "change-point" in words:
+            types[place] = "change-point"
+        elif len(words) == 1:
             types[place] = words.pop()
     speed = np.array([linkage.speed_of(input) for linkage in linkages])
     columns = _columns(raw, speed[linkage], turns=kinds[output] == "turn")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -53,6 +53,37 @@ class DeadCentre:
     output: float
     branch: int
     condition: float
+
+
+@dataclass(frozen=True, eq=False)
+class ChangePoint:
+    """A pose from which the loop can go on in more than one way, or that stands alone.
+
+    `q` (columns,) are its joint values [rad in (-pi, pi], or length], `input` that of the input; `circuits`
+    the numbers of those that meet there; `ways` how many curves lead out of it, two for each branch that
+    passes. An isolated pose has none.
+
+    Source: docs/theory.md, (19) to (22).
+    """
+
+    input: float
+    q: Floats
+    circuits: tuple[int, ...]
+    ways: int
+
+    @property
+    def isolated(self) -> bool:
+        """Whether no motion leads out of it."""
+        return self.ways == 0
+
+
+def change_points_from(raw: Sequence[tuple[Any, Sequence[int], int]], column: int) -> tuple[ChangePoint, ...]:
+    """Change points from the core's values of all columns, circuits and ways; `column`: the input."""
+    points = (
+        ChangePoint(float(values[column]), np.array(values), tuple(circuits), ways)
+        for values, circuits, ways in raw
+    )
+    return tuple(sorted(points, key=lambda point: point.input % math.tau))
 
 
 @dataclass(frozen=True, eq=False)
@@ -333,8 +364,8 @@ class Motion:
     motion_type: str
     #: Input dead centres [rad] in [0, 2 pi), rising.
     limits: Floats
-    #: Inputs [rad] where two limits meet, or come nearer than 1e-6 rad.
-    change_points: Floats
+    #: Poses at which branches meet, or would by a change of some 1e-12 of a dimension; isolated poses too.
+    change_points: tuple[ChangePoint, ...]
     circuits: tuple[Circuit, ...]
     completeness: Literal["closed-form", "algebraic", "searched"]
     #: How the set of circuits was established.
@@ -344,6 +375,13 @@ class Motion:
     law: Law | None = None
     #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
     misfits: Floats = field(default_factory=_none)
+
+    @property
+    def change_point_inputs(self) -> Floats:
+        """The input at the change points [rad in [0, 2 pi), or length], rising; isolated poses aside."""
+        values = np.array([point.input for point in self.change_points if not point.isolated])
+        turns = self.linkage.column_kinds[self.linkage.columns.index(self.input)] == "turn"
+        return np.sort(np.mod(values, math.tau) if turns else values)
 
     @property
     def idle(self) -> tuple[str, ...]:

@@ -235,7 +235,10 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over
     if over == "input":
         if not slides(motion, motion.input):
             axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
-        for inputs, style, name in ((motion.limits, "--", LIMIT), (motion.change_points, ":", CHANGE_POINT)):
+        for inputs, style, name in (
+            (motion.limits, "--", LIMIT),
+            (motion.change_point_inputs, ":", CHANGE_POINT),
+        ):
             for place in inputs_between(motion, inputs, ends.min(), ends.max()):
                 axes.axvline(place, color="#505050", lw=1.0, ls=style, zorder=1, label=name)
     axes.set_xlabel(input_label(motion) if over == "input" else "time [s]")

@@ -87,7 +87,10 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "samples": motion.samples,
         "motion_type": motion.motion_type,
         "limits": motion.limits.tolist(),
-        "change_points": motion.change_points.tolist(),
+        "change_points": [
+            {"input": p.input, "q": p.q.tolist(), "circuits": list(p.circuits), "ways": p.ways}
+            for p in motion.change_points
+        ],
         "mobility": {
             "gruebler": motion.mobility.gruebler,
             "freedoms": motion.mobility.freedoms,

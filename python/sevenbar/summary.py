@@ -137,10 +137,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits or motion.limits.size:
         show = _Shown(_units(motion)[0])
         facts.append(("input limits", "  ".join(show(x) for x in motion.limits) or _no_limits(motion)))
-    if motion.change_points.size:
-        where = "  ".join(_degrees(x) for x in motion.change_points)
-        what = "two limits lie within 1e-6 rad; the least change of a dimension decides"
-        facts.append(("change point", f"input {where}: {what}"))
+    facts.extend(_change_points(motion))
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
     if motion.completeness != "closed-form":
         facts.append(("established", motion.established))
@@ -151,6 +148,21 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
     return facts
+
+
+def _change_points(motion: Motion) -> list[tuple[str, str]]:
+    """Lines for the poses at which branches meet, and for those that stand alone."""
+    show = _Shown(_units(motion)[0])
+    lines = []
+    meeting = [point for point in motion.change_points if not point.isolated]
+    if meeting:
+        where = "  ".join(show(x) for x in motion.change_point_inputs)
+        what = "branches meet there; the least change of a dimension decides how it goes on"
+        lines.append(("change point", f"input {where}: {what}"))
+    alone = [show(point.input) for point in motion.change_points if point.isolated]
+    if alone:
+        lines.append(("isolated pose", f"input {'  '.join(alone)}: no motion leads out of it"))
+    return lines
 
 
 def _units(motion: Motion) -> tuple[str, str]:
@@ -238,7 +250,7 @@ def _no_limits(motion: Motion) -> str:
 
 def _circuit_count(motion: Motion) -> str:
     if not motion.circuits:
-        return "none: it closes only at the change point" if motion.change_points.size else "none"
+        return "none: it closes only in isolated poses" if motion.change_points else "none"
     turning = sorted({c.turns for c in motion if c.closed and c.turns})
     ways = {
         f"{{}} after {_turns(k)} of the input": sum(c.closed and c.turns == k for c in motion)

@@ -171,6 +171,12 @@ impl Loop {
             .map(|c| self.circuit_dict(py, c))
             .collect::<PyResult<Vec<_>>>()?;
         result.set_item("circuits", circuits)?;
+        let change_points: Vec<_> = motion
+            .change_points
+            .into_iter()
+            .map(|p| (p.values, p.circuits, p.ways))
+            .collect();
+        result.set_item("change_points", change_points)?;
         Ok(result)
     }
 

@@ -242,7 +242,7 @@ def _limits(walked: Walked, frame: Frame, below: Axis, unit: str) -> str:
     own = shown_value(motion, motion.input, np.array(walked.circuit.input_range or ()))
     parts: list[str] = []
     free = 0.0
-    sorts = ((motion.limits, "4 3", "input limit"), (motion.change_points, "1 3", "change point"))
+    sorts = ((motion.limits, "4 3", "input limit"), (motion.change_point_inputs, "1 3", "change point"))
     for inputs, dashes, name in sorts:
         values = np.sort(inputs_between(motion, inputs, below.low, below.high))
         for value, x in zip(values.tolist(), frame.x(below, values).tolist(), strict=True):

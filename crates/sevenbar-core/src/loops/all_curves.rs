@@ -1,7 +1,9 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
+use super::arcs::{Arcs, contains, narrow_places};
 use super::chain::{COLUMNS, Chain, Configuration};
-use super::curve::{Curve, End, Node, dot};
+use super::change_points::ChangePoint;
+use super::curve::{Curve, End, Node, dot, length};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
@@ -26,6 +28,13 @@ const SEED_JOINTS: usize = 2;
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
 
+/// A mode whose screws have a singular value below this part of the greatest lies at a sharp bend.
+const NARROW: f64 = 1e-5;
+
+/// Norm of the screws' inverse at a sharp bend, and how many of its radii from a node of it a mode may be that lies there.
+const SHARP: f64 = 1e4;
+const BESIDE_BEND: f64 = 30.0;
+
 /// How freely a loop moves, as found in its poses.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -48,6 +57,16 @@ pub(super) struct Curves {
     pub misfits: Vec<f64>,
     /// Modes at the zero of the first of the wished joints.
     pub modes_at_zero: Option<usize>,
+    /// Poses at which curves are not smooth, or that stand alone, once all curves are known.
+    pub change_points: Vec<ChangePoint>,
+    /// Freedoms of a pose out of which more than one leads.
+    surface: usize,
+    arcs: Arcs,
+    /// Modes at sharp bends, left for the last; and whether it has come to that.
+    unfollowed: Vec<Configuration>,
+    last: bool,
+    /// Columns whose limits say what is a change point.
+    wished: Vec<usize>,
     /// Curves through some of the modes to come.
     ahead: Vec<Curve>,
 }
@@ -61,7 +80,7 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             seeds.push(c);
         }
     }
-    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new() };
+    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new(wished) };
     // the pose of a drawing first: the joints are zero there
     if chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED {
         out.take(chain, &[Configuration::ZERO], wished[0]);
@@ -76,7 +95,7 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         out.seeds = count;
         if first_only {
             for k in 0..count {
-                if out.curves.is_empty() {
+                if out.is_empty() {
                     out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, wished[0]);
                 }
             }
@@ -99,22 +118,17 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             out.take(chain, &polished.modes, wished[0]);
         }
     }
-    out.forget_parts(chain);
+    out.finish(chain);
     out.misfits.sort_by(f64::total_cmp);
     if out.seed_columns.is_empty() {
         out.completeness = Completeness::Searched;
-    }
-    if out.curves.is_empty()
-        && let Some(found) = &mut out.found
-        && found.finite == 1
-    {
-        found.finite = 0;
     }
     out
 }
 
 impl Curves {
-    pub fn new() -> Self {
+    /// None yet; limits of the wished columns say what is a change point.
+    pub fn new(wished: &[usize]) -> Self {
         Self {
             curves: Vec::new(),
             found: None,
@@ -124,14 +138,29 @@ impl Curves {
             still: 0,
             misfits: Vec::new(),
             modes_at_zero: None,
+            change_points: Vec::new(),
+            surface: 0,
+            arcs: Arcs::default(),
+            unfollowed: Vec::new(),
+            last: false,
+            wished: wished.to_vec(),
             ahead: Vec::new(),
         }
     }
 
+    /// Whether some motion is known.
+    fn is_empty(&self) -> bool {
+        self.curves.is_empty() && self.arcs.is_empty()
+    }
+
     /// Those modes that lie on no curve yet.
     fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
-        let known = |m: &&Configuration| self.curves.iter().any(|c| lies_on(chain, c, m));
-        modes.iter().filter(|m| !known(m)).copied().collect()
+        modes.iter().filter(|m| !self.holds(chain, m)).copied().collect()
+    }
+
+    /// Whether a mode is a place of a known curve.
+    fn holds(&self, chain: &Chain, mode: &Configuration) -> bool {
+        self.curves.iter().any(|c| lies_on(chain, c, mode)) || self.arcs.hold(chain, mode)
     }
 
     /// The curve ahead on which a mode lies, if there is one, in this direction there.
@@ -144,7 +173,7 @@ impl Curves {
         let backwards = dot(&node.rates[0], direction) < 0.0;
         let curve = self.ahead.swap_remove(k);
         Some(if backwards {
-            chain.turned_round(&curve)
+            chain.turned_round(&curve, &[])
         } else {
             curve
         })
@@ -157,12 +186,48 @@ impl Curves {
         }
     }
 
+    /// Follows what leads out of a pose at which the motion may not be smooth; tells whether it is a change point or stands alone.
+    fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
+        let Some(point) = self.arcs.learn(chain, pose, &self.wished, stuck) else {
+            return false;
+        };
+        self.surface = self.surface.max(self.arcs.points[point].finite);
+        let passing = self.arcs.complete(chain, &self.wished);
+        // what was followed over the point by rounding is known by its arcs
+        self.curves.retain(|c| !contains(chain, c, &self.arcs));
+        for curve in passing {
+            if !lies_on_any(chain, &self.curves, curve.plainest()) {
+                self.curves.push(curve);
+            }
+        }
+        true
+    }
+
+    /// Follows what was left for the last, joins the arcs between change points, and says how freely the loop moves.
+    pub fn finish(&mut self, chain: &Chain) {
+        self.last = true;
+        for mode in std::mem::take(&mut self.unfollowed) {
+            let near = |n: &Node| length(&chain.difference(&n.at, &mode)) * n.inverse_norm < BESIDE_BEND;
+            let beside_bend = |c: &Curve| c.nodes.iter().any(|n| n.inverse_norm > SHARP && near(n));
+            if !self.curves.iter().any(beside_bend) {
+                self.take_together(chain, &[mode], self.wished[0]);
+            }
+        }
+        self.forget_parts(chain);
+        self.curves.extend(self.arcs.joined(chain, self.wished[0]));
+        self.change_points = std::mem::take(&mut self.arcs.points);
+        let finite = if self.curves.is_empty() { self.surface } else { 1 };
+        if let Some(found) = &mut self.found {
+            found.finite = found.finite.min(finite);
+        }
+    }
+
     fn take_together(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
         let mut starts: Vec<Start> = Vec::new();
         let mut curves: Vec<Option<Curve>> = Vec::new();
         for mode in modes {
             let known = |c: &Curve| lies_on(chain, c, mode);
-            if self.curves.iter().any(known) || curves.iter().flatten().any(known) {
+            if self.holds(chain, mode) || curves.iter().flatten().any(known) {
                 continue;
             }
             let columns = chain.screws(mode);
@@ -176,7 +241,17 @@ impl Curves {
                 });
             }
             if chain.columns - rank != 1 {
-                self.still += 1;
+                // on a surface every pose is like this one
+                let isolated =
+                    chain.columns > rank + 1 && self.surface < 2 && self.branches(chain, mode, false);
+                self.still += usize::from(!isolated);
+                continue;
+            }
+            if values[rank - 1] < NARROW * values[0] && !self.last {
+                // where a curve bends sharply a start is not known well enough to be met again: from elsewhere first
+                if !self.branches(chain, mode, false) {
+                    self.unfollowed.push(*mode);
+                }
                 continue;
             }
             let mut direction = [0.0; COLUMNS];
@@ -193,38 +268,52 @@ impl Curves {
             .filter(|(_, c)| c.is_none())
             .map(|(s, _)| *s)
             .collect();
-        let mut followed = chain.follow(&left).into_iter();
-        let before = self.curves.len();
+        let mut followed = chain.follow(&left, &self.arcs.stops()).into_iter();
+        let mut fresh: Vec<Curve> = Vec::new();
         for (curve, start) in curves.into_iter().zip(&starts) {
             let Some(curve) = curve.or_else(|| followed.next()) else {
                 unreachable!()
             };
             // two modes may lie on one circuit
-            if self.curves[before..].iter().any(|c| lies_on(chain, c, &start.0)) {
+            if lies_on_any(chain, &fresh, &start.0)
+                || lies_on_any(chain, &fresh, curve.plainest())
+                || self.arcs.hold(chain, &start.0)
+            {
+                continue;
+            }
+            // one that could not be begun may lie on a curve that can be followed
+            let stuck = curve.end == End::Singular && curve.nodes.len() > 2;
+            let mut places = narrow_places(&curve);
+            if curve.end == End::Singular {
+                places.extend(curve.ends());
+            }
+            let mut branches = false;
+            for place in places {
+                branches |= self.branches(chain, &place, stuck);
+            }
+            if branches && (stuck || contains(chain, &curve, &self.arcs)) {
                 continue;
             }
             let lost = curve.end == End::Singular && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
             if curve.nodes.len() < 3 || curve.end == End::Open || lost {
                 self.still += 1;
             } else if !self.is_known(chain, &curve) {
-                self.curves.push(curve);
+                fresh.push(curve);
             }
         }
+        self.curves.extend(fresh);
     }
 
     /// Whether a curve with ends is known, though its start was not seen on one that is: beside a change point no step of a curve
     /// tells that a mode is on it, and a curve of too many nodes is known in part.
     fn is_known(&self, chain: &Chain, curve: &Curve) -> bool {
-        match curve.end {
-            End::Singular => self.curves.iter().any(|c| lies_on(chain, c, middle(curve))),
-            End::Far => {
-                let overlap =
-                    |one: &Curve, other: &Curve| ends(other).iter().any(|at| lies_on(chain, one, at));
-                let mut far = self.curves.iter().filter(|c| c.end == End::Far);
-                far.any(|c| overlap(c, curve) || overlap(curve, c))
-            }
-            _ => false,
+        if curve.end == End::Far {
+            let overlap =
+                |one: &Curve, other: &Curve| other.ends().into_iter().any(|at| lies_on(chain, one, at));
+            let mut far = self.curves.iter().filter(|c| c.end == End::Far);
+            return far.any(|c| overlap(c, curve) || overlap(curve, c));
         }
+        lies_on_any(chain, &self.curves, curve.plainest())
     }
 
     /// Forgets the curves between change points that are parts of later ones: those led on where these ended, within rounding.
@@ -232,21 +321,13 @@ impl Curves {
         let mut k = 0;
         while k < self.curves.len() {
             let (curve, later) = (&self.curves[k], &self.curves[k + 1..]);
-            if curve.end == End::Singular && later.iter().any(|c| lies_on(chain, c, middle(curve))) {
+            if curve.end == End::Singular && later.iter().any(|c| lies_on(chain, c, curve.plainest())) {
                 self.curves.remove(k);
             } else {
                 k += 1;
             }
         }
     }
-}
-
-fn ends(curve: &Curve) -> [&Configuration; 2] {
-    [&curve.nodes[0].at, &curve.nodes[curve.nodes.len() - 1].at]
-}
-
-fn middle(curve: &Curve) -> &Configuration {
-    &curve.nodes[curve.nodes.len() / 2].at
 }
 
 /// A basis of the wrenches that no joint yields to: force and moment with zero power on every screw.
@@ -258,13 +339,17 @@ fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
         .collect()
 }
 
+fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
+    curves.iter().any(|c| lies_on(chain, c, mode))
+}
+
 /// Whether a mode is a place of a curve.
-fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
+pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
     place_on(chain, curve, mode).is_some()
 }
 
 /// The node of a curve from which a step leads over a mode.
-fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
+pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
     curve
         .nodes
         .iter()

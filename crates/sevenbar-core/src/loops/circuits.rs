@@ -154,10 +154,11 @@ impl<'a> Passes<'a> {
     /// The passes of a curve on which the input does not rest.
     pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
         let passes = Self::of(chain, curve.clone(), input)?;
-        if passes.passes[0].end > passes.passes[0].start {
+        // a curve over change points was joined in the direction it is to have
+        if passes.passes[0].end > passes.passes[0].start || curve.crosses() {
             return Some(passes);
         }
-        Some(Self::of(chain, chain.turned_round(&curve), input).unwrap_or(passes))
+        Some(Self::of(chain, chain.turned_round(&curve, &[]), input).unwrap_or(passes))
     }
 
     fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {
@@ -192,7 +193,11 @@ impl<'a> Passes<'a> {
 
     /// The row of a pass at an input, which lies in it.
     pub fn row(&self, pass: usize, value: f64, rates: &[f64; ORDERS]) -> Option<Row> {
-        let rough = self.rough(pass, value);
+        let segment = self.segment(pass, value);
+        if let Some(row) = self.crossing_row(pass, segment, value) {
+            return Some(row);
+        }
+        let rough = self.rough_in(segment, value);
         let node = &self.curve.nodes[rough.node];
         self.chain
             .solved(self.input, &self.start(&rough), value, rates)
@@ -237,8 +242,26 @@ impl<'a> Passes<'a> {
         })
     }
 
-    /// Where a pass nearly has an input: the nearest node, and the length from it.
-    fn rough(&self, pass: usize, value: f64) -> Rough {
+    /// The row beside or at a change point, between the nodes where curves are cut: the pose, and no rates.
+    fn crossing_row(&self, pass: usize, segment: usize, value: f64) -> Option<Row> {
+        let chain = self.chain;
+        let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
+        let (crossing, other) = match (a.is_crossing(), b.is_crossing()) {
+            (true, _) => (a, b),
+            (_, true) => (b, a),
+            _ => return None,
+        };
+        let (here, there) = (crossing.at.values[self.input], other.at.values[self.input]);
+        let part = (value - here) / (there - here);
+        let part = if part.is_finite() { part } else { 0.0 };
+        let by = chain.difference(&crossing.at, &other.at).map(|x| x * part);
+        let mut at = chain.moved(&crossing.at, &by);
+        at.values[self.input] = value;
+        Some(self.pose_row(pass, at, RowStatus::ChangePoint))
+    }
+
+    /// The segment of a pass in which it has an input.
+    fn segment(&self, pass: usize, value: f64) -> usize {
         let p = &self.passes[pass];
         let nodes = &self.curve.nodes[p.from..=p.to];
         let rising = p.end > p.start;
@@ -246,10 +269,10 @@ impl<'a> Passes<'a> {
             let v = n.at.values[self.input];
             if rising { v <= value } else { v >= value }
         });
-        self.rough_in(p.from + past.saturating_sub(1).min(nodes.len() - 2), value)
+        p.from + past.saturating_sub(1).min(nodes.len() - 2)
     }
 
-    /// The same where the segment is known.
+    /// Where a segment nearly has an input: the nearest node, and the length from it.
     fn rough_in(&self, segment: usize, value: f64) -> Rough {
         let input = self.input;
         let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
@@ -263,6 +286,10 @@ impl<'a> Passes<'a> {
         } else {
             (segment + 1, -reach, 0.0)
         };
+        if a.is_crossing() || b.is_crossing() {
+            // left to the single row
+            return Rough { node, along: 0.0, tube: -1.0 };
+        }
         let n = &self.curve.nodes[node];
         let target = value - n.at.values[input];
         let (mut low, mut high) = (low, high);
@@ -303,13 +330,23 @@ impl<'a> Passes<'a> {
 
     /// The row at a dead centre.
     pub fn limit_row(&self, pass: usize, node: &Node) -> Row {
+        let status = if node.is_crossing() {
+            RowStatus::ChangePoint
+        } else {
+            RowStatus::DeadCentre
+        };
+        self.pose_row(pass, node.at, status)
+    }
+
+    /// A row without rates.
+    fn pose_row(&self, pass: usize, at: Configuration, status: RowStatus) -> Row {
         let chain = self.chain;
         Row {
-            at: node.at,
+            at,
             rates: [[f64::NAN; COLUMNS]; ORDERS],
-            status: RowStatus::DeadCentre,
+            status,
             pass,
-            residual: chain.residual(&chain.place(&node.at)),
+            residual: chain.residual(&chain.place(&at)),
             condition: f64::INFINITY,
         }
     }

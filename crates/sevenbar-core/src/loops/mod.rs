@@ -4,8 +4,10 @@
 #![allow(clippy::needless_range_loop)]
 
 mod all_curves;
+mod arcs;
 mod around;
 mod chain;
+mod change_points;
 mod circuits;
 mod curve;
 mod dense;
@@ -31,7 +33,7 @@ pub use all_curves::Found;
 pub use extremes::Ends;
 pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
-pub use motion::{Circuit, Motion, Through};
+pub use motion::{ChangePoint, Circuit, Motion, Through};
 pub use polish::AGREE;
 pub use reduce::{Idle, Kind};
 pub use rows::Rows;

@@ -37,6 +37,17 @@ pub struct Circuit {
     pub extremes: [Option<Ends>; ORDERS],
 }
 
+/// A pose at which curves meet, or one that stands alone.
+#[derive(Clone, Debug)]
+pub struct ChangePoint {
+    /// The value of each column.
+    pub values: Vec<f64>,
+    /// The circuits that pass it or end there, by their number; none where it stands alone.
+    pub circuits: Vec<usize>,
+    /// How many ways lead out of it.
+    pub ways: usize,
+}
+
 /// What a loop does.
 #[derive(Clone, Debug)]
 pub struct Motion {
@@ -56,6 +67,8 @@ pub struct Motion {
     pub modes_at_zero: Option<usize>,
     /// The circuits.
     pub circuits: Vec<Circuit>,
+    /// Poses at which the motion is not smooth.
+    pub change_points: Vec<ChangePoint>,
     /// Whether the loop moves somewhere with the input at rest.
     pub input_rests: bool,
     /// Columns that move with it at rest.
@@ -97,6 +110,7 @@ impl Loop {
                 misfits: Vec::new(),
                 modes_at_zero: None,
                 circuits: Vec::new(),
+                change_points: Vec::new(),
                 input_rests: false,
                 moving: Vec::new(),
             });
@@ -116,11 +130,27 @@ impl Loop {
             .filter_map(|c| Passes::new(chain, c, a))
             .collect();
         let (origin, step) = grid(chain, &passes, a, samples);
-        let circuits = passes
+        // a pose so far out that the loop hardly closes leaves nothing to tell
+        let (passes, circuits): (Vec<&Passes>, Vec<Circuit>) = passes
             .iter()
-            .map(|p| self.circuit(p, (input, output), (a, b), (origin, step), speed, law))
-            // a pose so far out that the loop hardly closes leaves nothing to tell
-            .filter(|c| !c.rows.is_empty())
+            .map(|p| {
+                (
+                    p,
+                    self.circuit(p, (input, output), (a, b), (origin, step), speed, law),
+                )
+            })
+            .filter(|(_, c)| !c.rows.is_empty())
+            .unzip();
+        let change_points = curves
+            .change_points
+            .iter()
+            .map(|point| ChangePoint {
+                values: self.joint_values(&point.at),
+                circuits: (0..passes.len())
+                    .filter(|&k| point.is_on(chain, &passes[k].curve))
+                    .collect(),
+                ways: point.rays.len(),
+            })
             .collect();
         Some(Motion {
             found: curves.found,
@@ -136,6 +166,7 @@ impl Loop {
             misfits: curves.misfits,
             modes_at_zero: curves.modes_at_zero,
             circuits,
+            change_points,
             input_rests,
             moving,
         })
@@ -160,8 +191,9 @@ impl Loop {
         else {
             return Some(Through::Apart(chain.residual(&chain.place(&rough))));
         };
-        let mut curves = Curves::new();
+        let mut curves = Curves::new(&[a, b]);
         curves.take(chain, &[pose], a);
+        curves.finish(chain);
         let Some(curve) = curves.curves.pop() else {
             return Some(Through::Still);
         };
@@ -219,7 +251,8 @@ impl Loop {
         if !rocks {
             begin_at_zero(chain, &mut rows, a, &gained, grid.1);
         }
-        let extremes = if rocks || !closed || law.is_some() {
+        let crosses = passes.curve.crosses();
+        let extremes = if rocks || !closed || crosses || law.is_some() {
             [None; ORDERS]
         } else {
             output_extremes(passes, &rows, b, &gained)
@@ -310,7 +343,7 @@ impl Loop {
                 },
             },
             closed,
-            singular: passes.curve.end == End::Singular,
+            singular: passes.curve.end == End::Singular || crosses,
             turns: if rocks {
                 0
             } else {

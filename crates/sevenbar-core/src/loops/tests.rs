@@ -115,7 +115,9 @@ fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misf
 fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
     let chain = seven_r();
     for mode in ModeFinder::new(&chain, 0).at(0.3).modes {
-        let curve = chain.follow(&[(mode, direction(&chain, &mode))]).swap_remove(0);
+        let curve = chain
+            .follow(&[(mode, direction(&chain, &mode))], &[])
+            .swap_remove(0);
         assert_eq!(curve.end, End::Closed);
         let gained = curve.nodes[curve.nodes.len() - 1].at.values[0] - mode.values[0];
         assert!((gained.abs() - std::f64::consts::TAU).abs() < 1e-12);
@@ -126,7 +128,9 @@ fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
 fn rows_side_by_side_are_the_rows_solved_singly() {
     let chain = seven_r();
     for mode in ModeFinder::new(&chain, 0).at(0.3).modes {
-        let curve = chain.follow(&[(mode, direction(&chain, &mode))]).swap_remove(0);
+        let curve = chain
+            .follow(&[(mode, direction(&chain, &mode))], &[])
+            .swap_remove(0);
         let passes = Passes::new(&chain, curve, 0).unwrap();
         for row in passes.rows(0.0, 0.01) {
             let single = passes.row(0, row.at.values[0], &[1.0, 0.0, 0.0]).unwrap();
@@ -177,7 +181,9 @@ fn curves_joined_from_pieces_are_those_followed_whole_in_either_direction() {
         let modes: Vec<Configuration> = (0..6).flat_map(|k| finder.at(f64::from(k)).modes).collect();
         let joined = chain.closed_curves(&modes);
         for mode in &modes {
-            let whole = chain.follow(&[(*mode, direction(chain, mode))]).swap_remove(0);
+            let whole = chain
+                .follow(&[(*mode, direction(chain, mode))], &[])
+                .swap_remove(0);
             let through: Vec<&Curve> = joined.iter().filter(|c| passes(chain, c, mode)).collect();
             if whole.end != End::Closed {
                 assert!(through.is_empty());
