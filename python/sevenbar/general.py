@@ -207,7 +207,8 @@ class GeneralLoop:
     ) -> Circuit:
         order = np.arange(len(raw["status"]))
         kinds = self._linkage.column_kinds
-        if speed < 0 and law is None and raw["closed"] and raw["turns"]:
+        turns_back = any(kind == "input" for kind, *_ in raw["dead_centres"])
+        if speed < 0 and law is None and raw["turns"] and not turns_back:
             order = np.append(order[:1], order[:0:-1])
             raw = _run_backwards(raw, order, kinds)
         q = raw["joints"][0]

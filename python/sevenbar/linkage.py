@@ -328,7 +328,7 @@ class Linkage:
 
         `samples` inputs in a full turn, or over the range of a sliding input. The input moves at `speed`
         [rad/s, or length/s], the drive's where none is given, or by a `law`, whose samples take the place of
-        the grid: a circuit that rocks holds them once for each of its passes. `input` and `output` name
+        the grid: a circuit that turns back holds them once for each of its passes. `input` and `output` name
         joints. `method` "general" takes the general way for an RSSR too, which has a closed form.
 
         Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which several

@@ -213,7 +213,8 @@ class Circuit:
     residual: Floats
     condition: Floats
     dead_centres: tuple[DeadCentre, ...]
-    #: Ranges [rad, or length] of input and output; `None` for one that turns fully.
+    #: Ranges [rad, or length] of input and output; `None` for one that turns fully, though it may turn back
+    #: on the way.
     input_range: tuple[float, float] | None
     output_range: tuple[float, float] | None
     #: The transmission angle [rad]; `None` where it is not defined.
@@ -243,6 +244,26 @@ class Circuit:
         return self.q[:, self.output_column]
 
     @property
+    def turns_back(self) -> bool:
+        """Whether the input has dead centres: there rates against it grow without bound."""
+        return any(d.kind == "input" for d in self.dead_centres)
+
+    @property
+    def goes_round(self) -> bool:
+        """Whether the input, driven one way, leads all along the circuit: it turns fully and never back."""
+        return self.closed and self.input_range is None and not self.turns_back
+
+    def pass_range(self, branch: int) -> tuple[float, float] | None:
+        """The range of the input [rad, or length] on one of its passes; `None` where it goes round."""
+        if self.goes_round:
+            return None
+        ends = [d.input for d in self.dead_centres if d.kind == "input"]
+        if not self.closed or branch >= len(ends):
+            return self.input_range
+        ends.append(ends[0] + math.tau * self.turns)
+        return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
+
+    @property
     def angle(self) -> Extremes | None:
         """The extremes of the output angle [rad]: its dead centres; `None` for an output that turns fully."""
         ends = [d for d in self.dead_centres if d.kind == "output"]
@@ -260,9 +281,10 @@ class Circuit:
     def time_ratio(self) -> float | None:
         """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
 
-        `None` also at a change point where both ends of the output are at one input: a stroke without time.
+        `None` also for a crank that turns back on the way, and at a change point where both ends of the
+        output are at one input: a stroke without time.
         """
-        if self.angle is None or self.input_range is not None:
+        if self.angle is None or self.input_range is not None or self.turns_back:
             return None
         stroke = (self.angle.highest_at - self.angle.lowest_at) % math.tau
         slower, quicker = max(stroke, math.tau - stroke), min(stroke, math.tau - stroke)
