@@ -189,7 +189,7 @@ def test_what_goes_wrong_on_a_page_is_seen(opened, page):
     page.evaluate("void setTimeout(() => { throw new Error('thrown') })")
     page.evaluate("void fetch('http://127.0.0.1:9/').catch(() => {})")
     end = time.monotonic() + PATIENCE
-    while len(opened.wrong) < 3 and time.monotonic() < end:
+    while len(opened.wrong) < 4 and time.monotonic() < end:
         page.wait_for_timeout(100)
     wrong = opened.wrong.copy()
     opened.wrong.clear()
