@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from sevenbar.motion import (
     Modes,
     Motion,
     Trace,
+    Words,
     change_points_from,
     circuit_from,
 )
@@ -48,6 +50,9 @@ class GeneralLoop:
         letters, advances, links, self._link = expanded(linkage)
         self._core = _core.Loop(letters, np.array(advances), linkage.base, linkage.ground, np.array(links))
         self._found: dict[int, Mobility] = {}
+
+    def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Linkage]]:
+        return GeneralLoop, (self._linkage,)
 
     @property
     def size(self) -> float:
@@ -205,14 +210,14 @@ class GeneralLoop:
     ) -> Circuit:
         order = np.arange(len(raw["status"]))
         kinds = self._linkage.column_kinds
-        if speed < 0 and law is None and raw["closed"] and raw["turns"]:
+        turns_back = any(kind == "input" for kind, *_ in raw["dead_centres"])
+        if speed < 0 and law is None and raw["turns"] and not turns_back:
             order = np.append(order[:1], order[:0:-1])
             raw = _run_backwards(raw, order, kinds)
         q = raw["joints"][0]
         status = np.array(STATUSES)[raw["status"]]
         # the pose of a row may be known where a ball's turns are not
         status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
-        rows = raw["rows"]
         words = (
             word(kinds[columns[0]], rocks=raw["input"] is not None),
             word(kinds[columns[1]], rocks=raw["output"] is not None),
@@ -230,10 +235,11 @@ class GeneralLoop:
             status=status,
             mode=np.full(len(q), index),
             transmission=None,
-            _point=lambda link, at: self._trace(rows, order, link, at, status),
+            _point=partial(self._trace, raw["rows"], order, status),
         )
 
-    def _trace(self, rows: Any, order: Integers, link: int, at: Floats, status: Any) -> Trace:
+    def _trace(self, rows: _core.Rows, order: Integers, status: Words, link: int, at: Floats) -> Trace:
+        """A point, `at` in its link's own frame, along rows in an order and of a status."""
         count = len(self._linkage.joints)
         if link == count:
             position = np.broadcast_to(at, (len(status), 3)).copy()
@@ -243,7 +249,7 @@ class GeneralLoop:
             velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
         else:
             position, velocity, acceleration, jerk = (
-                np.asarray(part)[order] for part in rows.point(self._link[link - 1], at)
+                np.asarray(part)[order] for part in self._core.point(rows, self._link[link - 1], at)
             )
         own = np.array(status)
         own[own == "turns-undefined"] = "ok"

@@ -189,6 +189,8 @@ def _time_ratio(raw: Mapping[str, Any]) -> Floats:
     stroke = (ends[:, 3] - ends[:, 1]) % math.tau
     slower, quicker = np.maximum(stroke, math.tau - stroke), np.minimum(stroke, math.tau - stroke)
     rocks = np.isfinite(raw["output_range"]).all(axis=1) & np.isnan(raw["input_range"][:, 0])
+    # an RSSR's input that turns fully has none
+    rocks &= np.equal(raw.get("input_dead_centre_count", 0), 0)
     ratio = np.full(len(stroke), np.nan)
     np.divide(slower, quicker, out=ratio, where=rocks & (quicker > 0))
     return ratio

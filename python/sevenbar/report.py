@@ -108,7 +108,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
 
 
 def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
-    unbounded = "unbounded" if circuit.input_range is not None else "change-point"
+    unbounded = "change-point" if circuit.goes_round else "unbounded"
     return {
         "motion_type": circuit.motion_type,
         "closed": circuit.closed,

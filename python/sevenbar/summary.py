@@ -309,7 +309,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
             return ends(extremes, _plain, "no row within the range")
-        return ends(extremes, _plain, "no bound at limits" if circuit.input_range else "change point")
+        return ends(extremes, _plain, "change point" if circuit.goes_round else "no bound at limits")
 
     def range_of(extent: tuple[float, float] | None, show: _Shown) -> Texts:
         return ("full turns",) if extent is None else (show(extent[0]), show(extent[1]))
@@ -335,8 +335,11 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         return _Quantity(f"{second} {name}", head, lambda c: rate(pick(c), c), f"[{unit}]", ends=True)
 
     def stands_still(end: str) -> list[_Quantity]:
-        told, others = f"dead centres of the {end}", f"other dead centres of the {end}"
-        head = f"other dead\ncentres of\nthe {end}"
+        # a table tells the ends of a range as that
+        ranged = end == "output" or any(c.input_range is not None for c in motion)
+        other = "other " if ranged else ""
+        told, others = f"dead centres of the {end}", f"{other}dead centres of the {end}"
+        head = f"{other}dead\ncentres of\nthe {end}"
         return [
             _Quantity(told, "", lambda c: _dead_centres(c, end, place), only="list"),
             _Quantity(others, head, lambda c: _dead_centres(c, end, place, within=True), only="table"),

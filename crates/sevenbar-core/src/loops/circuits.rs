@@ -66,7 +66,7 @@ pub(super) struct Passes<'a> {
     pub curve: Curve,
     pub input: usize,
     pub passes: Vec<Pass>,
-    /// The dead centres at the passes' ends; the first and last are one where the circuit rocks and is closed.
+    /// The dead centres at the passes' ends; the first and last are one where the circuit is closed.
     pub limits: Vec<Node>,
 }
 
@@ -153,6 +153,12 @@ pub(super) fn input_row<N: Number>(input: usize) -> Columns<N> {
 impl<'a> Passes<'a> {
     /// The passes of a curve on which the input does not rest.
     pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
+        // an input that gains turns rises on the whole, though it may turn back on the way
+        let curve = if curve.gained()[input] < 0.0 && curve.goes_round(chain, input) {
+            chain.turned_round(&curve)
+        } else {
+            curve
+        };
         let passes = Self::of(chain, curve.clone(), input)?;
         // a curve over change points was joined in the direction it is to have
         if passes.passes[0].end > passes.passes[0].start || curve.crosses() {
@@ -170,12 +176,18 @@ impl<'a> Passes<'a> {
         insert(chain, &mut curve, &turnings, input);
         let is_turning = |n: &Node| turns_at(n, input);
         if curve.end == End::Closed && !turnings.is_empty() {
+            let value = |k: usize| curve.nodes[k].at.values[input];
+            let goes_round = curve.goes_round(chain, input);
+            // which is the lowest of an input that gains turns depends on where the round begins: of its low ends that in the turn's
+            // first part is taken
+            let height = |k: usize| match goes_round {
+                true if value(k) < value(k + 1) => value(k).rem_euclid(TAU),
+                true => TAU + value(k).rem_euclid(TAU),
+                false => value(k),
+            };
             let lowest = (0..curve.nodes.len() - 1)
                 .filter(|&k| is_turning(&curve.nodes[k]))
-                .min_by(|&a, &b| {
-                    let value = |k: usize| curve.nodes[k].at.values[input];
-                    value(a).total_cmp(&value(b))
-                })?;
+                .min_by(|&a, &b| height(a).total_cmp(&height(b)))?;
             curve = begun_at(chain, &curve, lowest);
         }
         let last = curve.nodes.len() - 1;
@@ -351,8 +363,8 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Whether the circuit comes back with the input as it was.
-    pub fn rocks(&self) -> bool {
+    /// Whether the input has dead centres.
+    pub fn turns_back(&self) -> bool {
         !self.limits.is_empty()
     }
 
@@ -406,7 +418,10 @@ impl<'a> Passes<'a> {
     }
 
     /// Rows at the inputs of a law, once for each pass.
-    pub fn law_rows(&self, law: &[[f64; 4]], turns: bool) -> Vec<Row> {
+    ///
+    /// An input that turns may be met a turn on or back; one that lies in the pass with `shift` taken off it, as the circuit's
+    /// rows are told, is met there, for a pass may be longer than a turn.
+    pub fn law_rows(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> Vec<Row> {
         let mut rows = Vec::new();
         for (n, pass) in self.passes.iter().enumerate() {
             let (low, high) = (pass.start.min(pass.end), pass.start.max(pass.end));
@@ -414,6 +429,8 @@ impl<'a> Passes<'a> {
                 let span = high - low;
                 let value = if self.limits.is_empty() && turns {
                     low + (q[0] - low).rem_euclid(span)
+                } else if turns && q[0] - shift >= low && q[0] - shift <= high {
+                    q[0] - shift
                 } else if turns {
                     q[0] - TAU * ((q[0] - 0.5 * (low + high)) / TAU).round()
                 } else {

@@ -197,6 +197,17 @@ impl Curve {
         }
         high - low < STILL * long
     }
+
+    /// What each column gains from the first node to the last.
+    pub fn gained(&self) -> Columns {
+        let (first, last) = (&self.nodes[0], &self.nodes[self.nodes.len() - 1]);
+        combined(&last.at.values, 1.0, &first.at.values, -1.0)
+    }
+
+    /// Whether a column comes back whole turns on, be it with dead centres on the way.
+    pub fn goes_round(&self, chain: &Chain, column: usize) -> bool {
+        self.end == End::Closed && chain.is_turn(column) && self.gained()[column].abs() > 1.0
+    }
 }
 
 impl Node {

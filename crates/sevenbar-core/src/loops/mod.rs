@@ -36,7 +36,7 @@ pub use modes::Completeness;
 pub use motion::{ChangePoint, Circuit, Motion, Through};
 pub use polish::AGREE;
 pub use reduce::{Idle, Kind};
-pub use rows::Rows;
+pub use rows::{ROW_NUMBERS, Rows};
 
 use crate::rigid::{Pose, norm};
 use reduce::{Reduced, Source, reduce};

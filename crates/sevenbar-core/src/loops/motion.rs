@@ -4,7 +4,7 @@ use super::Loop;
 use super::all_curves::{Curves, Found, curves};
 use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
 use super::circuits::{Passes, Row};
-use super::curve::{Curve, End, Node, combined};
+use super::curve::{Curve, End, Node};
 use super::extremes::{Ends, output_extremes};
 use super::modes::Completeness;
 use super::polish::{Settled, polish};
@@ -25,7 +25,7 @@ pub struct Circuit {
     pub closed: bool,
     /// Whether it ends where it is not smooth.
     pub singular: bool,
-    /// Turns of the input after which it closes; none where the input rocks.
+    /// Turns that the input gains until it closes, be it with dead centres on the way; none where it rocks.
     pub turns: usize,
     /// Ranges of input and output; `None` for a joint that turns fully.
     pub input: Option<[f64; 2]>,
@@ -237,10 +237,11 @@ impl Loop {
             &passes.curve.nodes[0],
             &passes.curve.nodes[passes.curve.nodes.len() - 1],
         );
-        let gained: Columns = combined(&last.at.values, 1.0, &first.at.values, -1.0);
+        let gained = passes.curve.gained();
         let closed = passes.curve.end == End::Closed;
-        let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
-        let rocks = passes.rocks() || !turning(a);
+        let turning = |c: usize| passes.curve.goes_round(chain, c);
+        // never stopped by a dead centre
+        let driven_round = turning(a) && !passes.turns_back();
         let mut rows = passes.rows(grid.0, grid.1);
         if !closed {
             // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
@@ -248,14 +249,14 @@ impl Loop {
             rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
             rows.drain(..rows.iter().take_while(|r| lost(r)).count());
         }
-        if !rocks {
+        if driven_round {
             begin_at_zero(chain, &mut rows, a, &gained, grid.1);
         }
         let crosses = passes.curve.crosses();
-        let extremes = if rocks || !closed || crosses || law.is_some() {
-            [None; ORDERS]
-        } else {
+        let extremes = if driven_round && !crosses && law.is_none() {
             output_extremes(passes, &rows, b, &gained)
+        } else {
+            [None; ORDERS]
         };
         // whole turns that bring the first row into (-pi, pi]
         let mut shift = [0.0; COLUMNS];
@@ -314,7 +315,7 @@ impl Loop {
         } else {
             &ends[..]
         };
-        let input_range = rocks.then(|| range(a, columns.0, &mut passes.limits.iter().chain(ends)));
+        let input_range = (!turning(a)).then(|| range(a, columns.0, &mut passes.limits.iter().chain(ends)));
         let output_range = (!turning(b)).then(|| {
             let turned = turnings.iter().map(|t| &t.node);
             range(b, columns.1, &mut turned.chain(open_ends.iter().copied()))
@@ -324,7 +325,7 @@ impl Loop {
                 .iter()
                 .map(|q| q.map(|x| x * self.inward(columns.0)))
                 .collect();
-            rows = passes.law_rows(&inner_law, chain.is_turn(a));
+            rows = passes.law_rows(&inner_law, chain.is_turn(a), shift[a]);
         }
         let mut offsets = vec![0.0; self.columns];
         for (column, offset) in offsets.iter_mut().enumerate() {
@@ -344,10 +345,10 @@ impl Loop {
             },
             closed,
             singular: passes.curve.end == End::Singular || crosses,
-            turns: if rocks {
-                0
-            } else {
+            turns: if turning(a) {
                 (gained[a] / TAU).abs().round() as usize
+            } else {
+                0
             },
             input: input_range,
             output: output_range,

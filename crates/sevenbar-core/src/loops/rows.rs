@@ -1,7 +1,7 @@
 //! Rows of a circuit as the description's joints and links have them.
 
 use super::Loop;
-use super::chain::{Configuration, Joint, product, short_way, transposed};
+use super::chain::{BALLS, COLUMNS, Configuration, Joint, product, short_way, transposed};
 use super::circuits::Row;
 use super::modes::ball_rotation;
 use super::rates::{ORDERS, point_rates, product_series, turned_series};
@@ -9,6 +9,9 @@ use super::reduce::{Kind, Source, Z_TO_X};
 use crate::outcome::RowStatus;
 use crate::rigid::{Vec3, scale, turns_zyx};
 use crate::taylor::Taylor;
+
+/// Numbers that a row is kept as: joint values, balls, rates, and status, pass, residual and condition.
+pub const ROW_NUMBERS: usize = COLUMNS + 9 * BALLS + ORDERS * COLUMNS + 4;
 
 /// The rows of one circuit, kept as the chain has them, so that any point of any link can be asked for later.
 #[derive(Clone, Debug)]
@@ -51,6 +54,59 @@ impl Rows {
         self.rows.iter().map(|r| r.condition).collect()
     }
 
+    /// Turns to be added to each column of the description.
+    pub fn offsets(&self) -> &[f64] {
+        &self.offsets
+    }
+
+    /// d(input)/dt at which rates are given.
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Every row as `ROW_NUMBERS` numbers, from which `from_numbers` makes it again to the last bit.
+    pub fn numbers(&self) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.len() * ROW_NUMBERS);
+        for row in &self.rows {
+            out.extend(row.at.values);
+            out.extend(row.at.balls.as_flattened().as_flattened());
+            out.extend(row.rates.as_flattened());
+            out.extend([
+                f64::from(row.status as u8),
+                row.pass as f64,
+                row.residual,
+                row.condition,
+            ]);
+        }
+        out
+    }
+
+    /// Rows of what `numbers`, `offsets` and `speed` told; `None` where these are no such numbers.
+    pub fn from_numbers(numbers: &[f64], offsets: Vec<f64>, speed: f64) -> Option<Self> {
+        let rows = numbers.chunks(ROW_NUMBERS).map(|row| {
+            let (values, rest) = row.split_first_chunk::<COLUMNS>()?;
+            let (balls, rest) = rest.split_at_checked(9 * BALLS)?;
+            let (rates, rest) = rest.split_at_checked(ORDERS * COLUMNS)?;
+            let &[status, pass, residual, condition] = rest else {
+                return None;
+            };
+            Some(Row {
+                at: Configuration {
+                    values: *values,
+                    balls: std::array::from_fn(|b| {
+                        std::array::from_fn(|i| std::array::from_fn(|j| balls[9 * b + 3 * i + j]))
+                    }),
+                },
+                rates: std::array::from_fn(|order| std::array::from_fn(|c| rates[order * COLUMNS + c])),
+                status: RowStatus::numbered(status)?,
+                pass: pass as usize,
+                residual,
+                condition,
+            })
+        });
+        Some(Self { rows: rows.collect::<Option<_>>()?, offsets, speed })
+    }
+
     /// The row's rates at the speed asked for.
     fn rates(&self, row: &Row) -> super::rates::Rates {
         let mut rates = row.rates;
@@ -68,7 +124,7 @@ impl Rows {
 impl Loop {
     /// Joint values of a configuration; angles as they come, a ball's turns NaN where they are undefined.
     pub(super) fn joint_values(&self, at: &Configuration) -> Vec<f64> {
-        let still = [[0.0; super::chain::COLUMNS]; ORDERS];
+        let still = [[0.0; COLUMNS]; ORDERS];
         self.joint_rates(at, &still)
             .iter()
             .enumerate()

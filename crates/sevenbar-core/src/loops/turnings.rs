@@ -1,7 +1,7 @@
 //! Where a column changes direction along a followed curve, and the curve with these places among its nodes.
 
-use super::chain::{COLUMNS, Chain, Columns};
-use super::curve::{Curve, End, Node, combined, dot, length, measure};
+use super::chain::{COLUMNS, Chain};
+use super::curve::{Curve, End, Node, dot, length, measure};
 
 /// A rate of a column below this part of the curve's is zero.
 const AT_REST: f64 = 1e-13;
@@ -248,8 +248,7 @@ pub(super) fn turns_at(node: &Node, column: usize) -> bool {
 /// A closed curve begun at another of its nodes, turns counted on.
 pub(super) fn begun_at(chain: &Chain, curve: &Curve, start: usize) -> Curve {
     let last = curve.nodes.len() - 1;
-    let (first, end) = (curve.nodes[0].at.values, curve.nodes[last].at.values);
-    let gained: Columns = combined(&end, 1.0, &first, -1.0);
+    let gained = curve.gained();
     let mut nodes: Vec<Node> = curve.nodes[start..last].to_vec();
     nodes.extend(curve.nodes[..=start].iter().map(|n| {
         let mut n = *n;
