@@ -63,6 +63,10 @@ class GeneralLoop:
                     return f"spin of the coupler (link {link}) about the line of {first} and {second}"
                 case "between-balls":
                     return f"spin of link {link} about the line of {first} and {second}"
+                case "chain-between-balls":
+                    links = [str(i) for i in range(held + 1, other + 1)]
+                    told = f"{', '.join(links[:-1])} and {links[-1]}"
+                    return f"spin of links {told} together about the line of {first} and {second}"
                 case "ball-on-axis":
                     return f"spin of link {link} about the axis of {first}, on which {second} lies"
                 case "one-axis":
@@ -74,7 +78,16 @@ class GeneralLoop:
 
     def idle_links(self) -> frozenset[int]:
         """The links that have such a freedom, counted from 1."""
-        return frozenset(link for _, link, _, _ in self._idle())
+        found: set[int] = set()
+        for word, link, held, other in self._idle():
+            found |= set(range(held + 1, other + 1)) if word == "chain-between-balls" else {link}
+        return frozenset(found)
+
+    def unheld(self) -> str | None:
+        """The idle freedom for which the core has no rule, in words, of a loop that one input moves."""
+        if self._core.can_be_driven or self._core.freedoms > MOST_FREEDOMS:
+            return None
+        return self.idle()[-1]
 
     def _idle(self) -> list[tuple[str, int, int, int]]:
         """Each such freedom: the core's word, the link, and the joints held and beside it."""
@@ -185,7 +198,7 @@ class GeneralLoop:
         rank = raw.get("rank")
         idle = self.idle()
         finite = raw.get("finite") if rank is not None else None
-        if rank is None and self._core.freedoms > MOST_FREEDOMS:
+        if rank is None and not self._core.can_be_driven:
             # rank six at most
             finite = self._core.freedoms - 6
         return Mobility(

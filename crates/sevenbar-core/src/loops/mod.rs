@@ -10,6 +10,7 @@ mod circuits;
 mod curve;
 mod dense;
 mod extremes;
+mod idle;
 mod lanes;
 mod many;
 mod measures;
@@ -21,6 +22,7 @@ mod polish;
 mod rates;
 mod reduce;
 mod rows;
+mod spun;
 mod starts;
 #[cfg(test)]
 mod tests;
@@ -29,11 +31,12 @@ mod walk;
 
 pub use all_curves::Found;
 pub use extremes::Ends;
+pub use idle::Idle;
 pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
 pub use motion::{Circuit, Motion, Through};
 pub use polish::AGREE;
-pub use reduce::{Idle, Kind};
+pub use reduce::Kind;
 pub use rows::Rows;
 
 use crate::rigid::{Pose, norm};
@@ -113,7 +116,7 @@ impl Loop {
         self.columns
     }
 
-    /// Freedoms that move one link only.
+    /// Freedoms that no joint elsewhere takes part in.
     pub fn idle(&self) -> &[Idle] {
         &self.reduced.idle
     }
@@ -123,7 +126,7 @@ impl Loop {
         self.reduced.freedoms
     }
 
-    /// Whether no more than one freedom can remain, so that one input may drive it.
+    /// Whether no more than one freedom can remain, and every idle one is held, so that one input may drive it.
     pub fn can_be_driven(&self) -> bool {
         self.reduced.chain.is_some()
     }
