@@ -223,10 +223,10 @@ class GeneralLoop:
         # the pose of a row may be known where a ball's turns are not
         status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
         rows = raw["rows"]
-        words = (
-            word(kinds[columns[0]], rocks=raw["input"] is not None),
-            word(kinds[columns[1]], rocks=raw["output"] is not None),
-        )
+        words = [
+            word(kinds[column], rocks=span is not None, endless=is_endless(raw, span))
+            for column, span in zip(columns, (raw["input"], raw["output"]), strict=True)
+        ]
         return circuit_from(
             raw,
             linkage=self._linkage,
@@ -298,16 +298,37 @@ def expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[int
     return letters, advances, links, last
 
 
-def word(kind: str, *, rocks: bool) -> str:
-    """What a joint of a kind is called that rocks, or turns fully."""
+def is_endless(circuit: Mapping[str, Any], span: tuple[float, float] | None) -> bool:
+    """Whether a turn with this range goes on without end: over more than a turn, and nothing comes back.
+
+    Such a circuit has no end of its own, but is followed to where a screw or a slide is far out.
+    """
+    open_ended = not circuit["closed"] and not circuit["singular"]
+    return open_ended and span is not None and span[1] - span[0] > math.tau
+
+
+def word(kind: str, *, rocks: bool, endless: bool = False) -> str:
+    """What a joint of a kind is called that rocks, turns fully, or turns on without the loop coming back."""
     if kind == "slide":
         return "slider"
+    if endless:
+        return "spindle"
     return "rocker" if rocks else "crank"
 
 
 def pair(first: str, second: str) -> str:
     """The motion type of an input and an output by what each is called."""
     return f"double-{first}" if first == second else f"{first}-{second}"
+
+
+def words_of(motion_type: str) -> tuple[str, str]:
+    """What input and output are called, read off the motion type of a circuit.
+
+    >>> words_of("double-spindle"), words_of("spindle-slider"), words_of("change-point")
+    (('spindle', 'spindle'), ('spindle', 'slider'), ('change', 'point'))
+    """
+    first, _, second = motion_type.partition("-")
+    return (second, second) if first == "double" else (first, second)
 
 
 def _motion_type(circuits: Sequence[Circuit], mobility: Mobility) -> str:
