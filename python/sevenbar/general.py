@@ -70,6 +70,10 @@ class GeneralLoop:
                     return f"spin of the coupler (link {link}) about the line of {first} and {second}"
                 case "between-balls":
                     return f"spin of link {link} about the line of {first} and {second}"
+                case "chain-between-balls":
+                    links = [str(i) for i in range(held + 1, other + 1)]
+                    told = f"{', '.join(links[:-1])} and {links[-1]}"
+                    return f"spin of links {told} together about the line of {first} and {second}"
                 case "ball-on-axis":
                     return f"spin of link {link} about the axis of {first}, on which {second} lies"
                 case "one-axis":
@@ -81,7 +85,16 @@ class GeneralLoop:
 
     def idle_links(self) -> frozenset[int]:
         """The links that have such a freedom, counted from 1."""
-        return frozenset(link for _, link, _, _ in self._idle())
+        found: set[int] = set()
+        for word, link, held, other in self._idle():
+            found |= set(range(held + 1, other + 1)) if word == "chain-between-balls" else {link}
+        return frozenset(found)
+
+    def unheld(self) -> str | None:
+        """The idle freedom for which the core has no rule, in words, of a loop that one input moves."""
+        if self._core.can_be_driven or self._core.freedoms > MOST_FREEDOMS:
+            return None
+        return self.idle()[-1]
 
     def _idle(self) -> list[tuple[str, int, int, int]]:
         """Each such freedom: the core's word, the link, and the joints held and beside it."""
@@ -193,7 +206,7 @@ class GeneralLoop:
         rank = raw.get("rank")
         idle = self.idle()
         finite = raw.get("finite") if rank is not None else None
-        if rank is None and self._core.freedoms > MOST_FREEDOMS:
+        if rank is None and not self._core.can_be_driven:
             # rank six at most
             finite = self._core.freedoms - 6
         return Mobility(
@@ -218,10 +231,10 @@ class GeneralLoop:
         status = np.array(STATUSES)[raw["status"]]
         # the pose of a row may be known where a ball's turns are not
         status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
-        words = (
-            word(kinds[columns[0]], rocks=raw["input"] is not None),
-            word(kinds[columns[1]], rocks=raw["output"] is not None),
-        )
+        words = [
+            word(kinds[column], rocks=span is not None, endless=is_endless(raw, span))
+            for column, span in zip(columns, (raw["input"], raw["output"]), strict=True)
+        ]
         return circuit_from(
             raw,
             linkage=self._linkage,
@@ -294,16 +307,37 @@ def expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[int
     return letters, advances, links, last
 
 
-def word(kind: str, *, rocks: bool) -> str:
-    """What a joint of a kind is called that rocks, or turns fully."""
+def is_endless(circuit: Mapping[str, Any], span: tuple[float, float] | None) -> bool:
+    """Whether a turn with this range goes on without end: over more than a turn, and nothing comes back.
+
+    Such a circuit has no end of its own, but is followed to where a screw or a slide is far out.
+    """
+    open_ended = not circuit["closed"] and not circuit["singular"]
+    return open_ended and span is not None and span[1] - span[0] > math.tau
+
+
+def word(kind: str, *, rocks: bool, endless: bool = False) -> str:
+    """What a joint of a kind is called that rocks, turns fully, or turns on without the loop coming back."""
     if kind == "slide":
         return "slider"
+    if endless:
+        return "spindle"
     return "rocker" if rocks else "crank"
 
 
 def pair(first: str, second: str) -> str:
     """The motion type of an input and an output by what each is called."""
     return f"double-{first}" if first == second else f"{first}-{second}"
+
+
+def words_of(motion_type: str) -> tuple[str, str]:
+    """What input and output are called, read off the motion type of a circuit.
+
+    >>> words_of("double-spindle"), words_of("spindle-slider"), words_of("change-point")
+    (('spindle', 'spindle'), ('spindle', 'slider'), ('change', 'point'))
+    """
+    first, _, second = motion_type.partition("-")
+    return (second, second) if first == "double" else (first, second)
 
 
 def _motion_type(

@@ -122,11 +122,13 @@ def loop_motions(linkages: Sequence[Linkage], input: int, output: int, samples: 
     counts = raw["circuits"]
     linkage, circuit = _numbered(counts)
     kinds = linkages[0].column_kinds
-    rocks = (np.isfinite(raw[f"{end}_range"][:, 0]) for end in ("input", "output"))
-    ends = [
-        np.where(rocking, word(kinds[column], rocks=True), word(kinds[column], rocks=False))
-        for column, rocking in zip((input, output), rocks, strict=True)
-    ]
+    open_ended = (raw["closed"] == 0) & (raw["singular"] == 0)
+    ends = []
+    for column, end in ((input, "input"), (output, "output")):
+        span = raw[f"{end}_range"][:, 1] - raw[f"{end}_range"][:, 0]
+        told = np.where(np.isfinite(span), word(kinds[column], rocks=True), word(kinds[column], rocks=False))
+        endless = open_ended & (span > math.tau)
+        ends.append(np.where(endless, word(kinds[column], rocks=True, endless=True), told))
     own = np.array([pair(*both) for both in zip(*ends, strict=True)], dtype=object)
     own[raw["singular"] != 0] = "change-point"
     types = np.array(["mixed"] * len(counts), dtype=object)

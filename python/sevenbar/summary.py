@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.general import words_of
 from sevenbar.linkage import Linkage
 from sevenbar.mobility import Mobility
 from sevenbar.motion import Circuit, DeadCentre, Extremes, Modes, Motion
@@ -311,7 +312,10 @@ def _quantities(motion: Motion) -> list[_Quantity]:
             return ends(extremes, _plain, "no row within the range")
         return ends(extremes, _plain, "change point" if circuit.goes_round else "no bound at limits")
 
-    def range_of(extent: tuple[float, float] | None, show: _Shown) -> Texts:
+    def range_of(circuit: Circuit, end: int, show: _Shown) -> Texts:
+        extent = circuit.output_range if end else circuit.input_range
+        if extent is not None and words_of(circuit.motion_type)[end] == "spindle":
+            return ("without end",)
         return ("full turns",) if extent is None else (show(extent[0]), show(extent[1]))
 
     def way(circuit: Circuit) -> Texts:
@@ -328,7 +332,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         )
 
     def reach(circuit: Circuit) -> Texts:
-        return ends(circuit.angle, result, "") if circuit.angle else range_of(circuit.output_range, result)
+        return ends(circuit.angle, result, "") if circuit.angle else range_of(circuit, 1, result)
 
     def rate_of(name: str, unit: str, pick: Callable[[Circuit], Extremes | None]) -> _Quantity:
         head = f"{second} {name}\n[{unit}] @ {first}"
@@ -351,13 +355,11 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         _Quantity(
             f"range of {first}",
             f"range of\n{first}",
-            lambda c: range_of(c.input_range, place),
+            lambda c: range_of(c, 0, place),
             between=" to ",
         ),
         *stands_still("input"),
-        _Quantity(
-            f"range of {second}", "", lambda c: range_of(c.output_range, result), between=" to ", only="list"
-        ),
+        _Quantity(f"range of {second}", "", lambda c: range_of(c, 1, result), between=" to ", only="list"),
         _Quantity(f"range of {second}", f"range of\n{second} @ {first}", reach, between=" to ", only="table"),
         _Quantity(f"swing of {second}", "", swing, only="list"),
         *stands_still("output"),

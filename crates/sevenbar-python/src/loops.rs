@@ -93,6 +93,12 @@ impl Loop {
         self.0.freedoms()
     }
 
+    /// Whether no more than one freedom can remain, and every idle one is held.
+    #[getter]
+    fn can_be_driven(&self) -> bool {
+        self.0.can_be_driven()
+    }
+
     /// Idle freedoms: a word, the joint concerned and its neighbour, counted from 0.
     #[getter]
     fn idle(&self) -> Vec<(&'static str, usize, usize)> {
@@ -101,6 +107,7 @@ impl Loop {
             .iter()
             .map(|idle| match *idle {
                 Idle::BetweenBalls(a) => ("between-balls", a, a + 1),
+                Idle::ChainBetweenBalls(a, b) => ("chain-between-balls", a, b),
                 Idle::BallOnAxis(held, ball) => ("ball-on-axis", held, ball),
                 Idle::OneAxis(held, other) => ("one-axis", held, other),
                 Idle::OneDirection(held, other) => ("one-direction", held, other),

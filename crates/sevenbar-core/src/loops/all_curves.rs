@@ -1,7 +1,7 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
 use super::arcs::{Arcs, contains, narrow_places};
-use super::chain::{COLUMNS, Chain, Configuration};
+use super::chain::{COLUMNS, Chain, Configuration, Joint};
 use super::change_points::ChangePoint;
 use super::curve::{Curve, End, Node, dot, length};
 use super::dense::singular_values;
@@ -71,18 +71,34 @@ pub(super) struct Curves {
     ahead: Vec<Curve>,
 }
 
-/// The curves through all modes at the seeds, or the first: seeds are values of the wished joints if they turn, else of the
-/// first joints that do.
-pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
-    let mut seeds: Vec<usize> = Vec::new();
-    for c in wished.iter().copied().chain(0..chain.columns) {
-        if chain.is_turn(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
-            seeds.push(c);
+/// The columns whose values are seeds: the wished ones if they turn, else the first that do; screws where none turns and no
+/// pose is drawn.
+fn seed_columns(chain: &Chain, wished: &[usize], drawn: bool) -> Vec<usize> {
+    let first = |fits: &dyn Fn(usize) -> bool| {
+        let mut seeds: Vec<usize> = Vec::new();
+        for c in wished.iter().copied().chain(0..chain.columns) {
+            if fits(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
+                seeds.push(c);
+            }
         }
+        seeds
+    };
+    let turning = first(&|c| chain.is_turn(c));
+    // where only screws turn, modes come from long searches and again for each turn of a screw: a drawn pose will do
+    if turning.is_empty() && !drawn {
+        first(&|c| matches!(chain.joints[chain.joint_of(c)], Joint::Screw(_)))
+    } else {
+        turning
     }
+}
+
+/// The curves through all modes at the seeds, or the first.
+pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
+    let drawn = chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED;
+    let seeds = seed_columns(chain, wished, drawn);
     let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new(wished) };
     // the pose of a drawing first: the joints are zero there
-    if chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED {
+    if drawn {
         out.take(chain, &[Configuration::ZERO], wished[0]);
     }
     for seed in seeds {

@@ -154,8 +154,8 @@ impl<'a> Passes<'a> {
     /// The passes of a curve on which the input does not rest.
     pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
         // an input that gains turns rises on the whole, though it may turn back on the way
-        let curve = if curve.gained()[input] < 0.0 && curve.goes_round(chain, input) {
-            chain.turned_round(&curve)
+        let curve = if curve.gained()[input] < 0.0 && curve.goes_round(chain, input) && !curve.crosses() {
+            chain.turned_round(&curve, &[])
         } else {
             curve
         };

@@ -12,6 +12,7 @@ mod circuits;
 mod curve;
 mod dense;
 mod extremes;
+mod idle;
 mod lanes;
 mod many;
 mod measures;
@@ -23,6 +24,7 @@ mod polish;
 mod rates;
 mod reduce;
 mod rows;
+mod spun;
 mod starts;
 #[cfg(test)]
 mod tests;
@@ -31,11 +33,12 @@ mod walk;
 
 pub use all_curves::Found;
 pub use extremes::Ends;
+pub use idle::Idle;
 pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
 pub use motion::{ChangePoint, Circuit, Motion, Through};
 pub use polish::AGREE;
-pub use reduce::{Idle, Kind};
+pub use reduce::Kind;
 pub use rows::{ROW_NUMBERS, Rows};
 
 use crate::rigid::{Pose, norm};
@@ -115,7 +118,7 @@ impl Loop {
         self.columns
     }
 
-    /// Freedoms that move one link only.
+    /// Freedoms that no joint elsewhere takes part in.
     pub fn idle(&self) -> &[Idle] {
         &self.reduced.idle
     }
@@ -125,7 +128,7 @@ impl Loop {
         self.reduced.freedoms
     }
 
-    /// Whether no more than one freedom can remain, so that one input may drive it.
+    /// Whether no more than one freedom can remain, and every idle one is held, so that one input may drive it.
     pub fn can_be_driven(&self) -> bool {
         self.reduced.chain.is_some()
     }

@@ -2,7 +2,7 @@
 
 use super::Loop;
 use super::all_curves::{Curves, Found, curves};
-use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
 use super::circuits::{Passes, Row};
 use super::curve::{Curve, End, Node};
 use super::extremes::{Ends, output_extremes};
@@ -361,7 +361,7 @@ impl Loop {
 
 /// Origin and step of the inputs of rows.
 fn grid(chain: &Chain, passes: &[Passes], input: usize, samples: usize) -> (f64, f64) {
-    if chain.is_turn(input) {
+    if chain.joints[chain.joint_of(input)] != Joint::Slide {
         return (0.0, TAU / samples as f64);
     }
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];

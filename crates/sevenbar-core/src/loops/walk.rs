@@ -353,8 +353,11 @@ impl Walk<'_> {
             return Some(End::Singular);
         }
         let curve = &self.curves[walker];
+        let start = &curve.nodes[0].at;
         let far = chain.joints.iter().zip(&chain.first).any(|(joint, &c)| {
-            !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > FARTHEST
+            // a curve that is followed back from its end begins beyond
+            let farthest = FARTHEST.max(start.values[c].abs());
+            !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > farthest
         });
         let most = if self.any { MOST_PIECE_NODES } else { MOST_NODES };
         (far || curve.nodes.len() > most).then_some(End::Far)
