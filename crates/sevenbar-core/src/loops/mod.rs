@@ -10,6 +10,7 @@ mod circuits;
 mod curve;
 mod dense;
 mod extremes;
+mod geometry;
 mod lanes;
 mod many;
 mod measures;
