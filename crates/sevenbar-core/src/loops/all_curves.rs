@@ -1,7 +1,7 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
 use super::chain::{COLUMNS, Chain, Configuration};
-use super::curve::{Curve, End, Node, dot};
+use super::curve::{Curve, End, Node, REACH, dot};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
@@ -265,8 +265,18 @@ fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
 
 /// The node of a curve from which a step leads over a mode.
 fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
-    curve
-        .nodes
-        .iter()
-        .find(|node| chain.may_pass(node, mode) && chain.passes_through(node, mode).is_some())
+    // no nearer to the mode than this, in the turn that is farthest off
+    let mut least = 0.0;
+    for node in &curve.nodes {
+        let reach = REACH * node.step;
+        if least <= reach {
+            least = chain.farthest_turn(&node.at, mode);
+            if least <= reach && chain.passes_through(node, mode).is_some() {
+                return Some(node);
+            }
+        }
+        // a step changes no turn by more than its reach
+        least -= reach;
+    }
+    None
 }
