@@ -170,6 +170,16 @@ impl<'a> ModeFinder<'a> {
         }
     }
 
+    /// One that follows all paths of a general closure, whatever the geometry.
+    #[cfg(test)]
+    pub fn from_general_starts(chain: &'a Chain, input: usize) -> Self {
+        let mut finder = Self::new(chain, input);
+        if let Some(closure) = &mut finder.closure {
+            closure.class = Class::of(&finder.slides, None);
+        }
+        finder
+    }
+
     /// How many solutions there are over the complex numbers at a general input.
     #[cfg(test)]
     pub fn complex_count(&self) -> Option<usize> {

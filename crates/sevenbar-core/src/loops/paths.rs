@@ -59,6 +59,10 @@ pub(super) const SHORTEST_STEP: f64 = 1e-9;
 /// `|e^(i t)|`, or a slide in parts of the size, beyond which a path has left for infinity.
 const INFINITE: f64 = 1e7;
 
+/// The closure is known to this times one to six [rad, or parts of the size]. Added to it, so that no path arrives at a solution that
+/// does not stand alone: where numbers are exact, as in special geometry, nothing else would move one along its continuum.
+const ROUNDING: f64 = 2e-16;
+
 /// Parameters of the closure.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parameters {
@@ -220,7 +224,8 @@ impl Follow<'_> {
             rows[k + 3][UNKNOWNS + 1] = -drift_shift[k];
         }
         for k in 0..6 {
-            rows[k][UNKNOWNS] = -error[k];
+            let unknown = Lanes { re: V::splat(ROUNDING * (k + 1) as f64), im: V::splat(0.0) };
+            rows[k][UNKNOWNS] = unknown - error[k];
         }
         Linear { rows }
     }
