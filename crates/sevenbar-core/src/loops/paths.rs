@@ -59,7 +59,7 @@ pub(super) const SHORTEST_STEP: f64 = 1e-9;
 /// `|e^(i t)|`, or a slide in parts of the size, beyond which a path has left for infinity.
 const INFINITE: f64 = 1e7;
 
-/// The closure is known to this times one to six [rad, or parts of the size]. Added to it, so that no path arrives at a solution that
+/// The closure is known to this times one to six [rad, or parts of the size]. Added to it, so that paths seldom arrive at a solution that
 /// does not stand alone: where numbers are exact, as in special geometry, nothing else would move one along its continuum.
 const ROUNDING: f64 = 2e-16;
 
