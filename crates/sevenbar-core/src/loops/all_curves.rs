@@ -3,7 +3,7 @@
 use super::arcs::{Arcs, contains, narrow_places};
 use super::chain::{COLUMNS, Chain, Configuration, Joint};
 use super::change_points::ChangePoint;
-use super::curve::{Curve, End, Node, dot, length};
+use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
@@ -366,8 +366,18 @@ pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> boo
 
 /// The node of a curve from which a step leads over a mode.
 pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
-    curve
-        .nodes
-        .iter()
-        .find(|node| chain.may_pass(node, mode) && chain.passes_through(node, mode).is_some())
+    // no nearer to the mode than this, in the turn that is farthest off
+    let mut least = 0.0;
+    for node in &curve.nodes {
+        let reach = REACH * node.step;
+        if least <= reach {
+            least = chain.farthest_turn(&node.at, mode);
+            if least <= reach && chain.passes_through(node, mode).is_some() {
+                return Some(node);
+            }
+        }
+        // a step changes no turn by more than its reach
+        least -= reach;
+    }
+    None
 }

@@ -39,6 +39,9 @@ const STILL: f64 = 1e-9;
 /// Guesses of a step's length, each from the one before.
 const GUESSES: usize = 3;
 
+/// A step changes no turn by more than this many times its length.
+pub(super) const REACH: f64 = 2.0;
+
 /// Corrections of a step with the inverse of the node before, each by so many terms of Neumann's series.
 const NEUMANN: usize = 3;
 
@@ -461,7 +464,19 @@ impl Chain {
     /// Whether the turns of a configuration are near enough for [`Self::passes_through`]: it tells most nodes apart at once.
     pub fn may_pass(&self, node: &Node, at: &Configuration) -> bool {
         self.joints.iter().zip(&self.first).all(|(joint, &c)| {
-            *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= 2.0 * node.step
+            *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= REACH * node.step
+        })
+    }
+
+    /// The turn that two configurations differ by most [rad].
+    pub fn farthest_turn(&self, a: &Configuration, b: &Configuration) -> f64 {
+        let turns = self
+            .joints
+            .iter()
+            .zip(&self.first)
+            .filter(|(j, _)| **j == Joint::Turn);
+        turns.fold(0.0, |most, (_, &c)| {
+            most.max(short_way(b.values[c] - a.values[c]).abs())
         })
     }
 

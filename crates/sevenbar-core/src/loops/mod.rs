@@ -12,6 +12,7 @@ mod circuits;
 mod curve;
 mod dense;
 mod extremes;
+mod geometry;
 mod idle;
 mod lanes;
 mod many;

@@ -7,13 +7,15 @@
 
 use super::around::Around;
 use super::chain::{BALLS, Chain, Configuration, Joint, Rotation, product, short_way, squared_up};
+use super::geometry::Form;
 use super::paths::{BRISK, CAREFUL, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
 use super::polish::{Settled, polish};
 use super::reduce::Z_TO_X;
-use super::starts::{Frame, Random, SAME_GENERAL, STARTS, distinct, general_count, start};
+use super::starts::{Class, Random, distinct, general_count};
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::cell::OnceCell;
+use std::sync::Arc;
 
 /// How complete a set of modes is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,9 +53,6 @@ const POLISHED_MOVE: f64 = 1e-3;
 /// Modes nearer than this in every joint [rad, or parts of the size] are one.
 pub(super) const SAME_MODE: f64 = 1e-7;
 
-/// Starts that must find no new solution before a special chain's are believed to be all.
-const CONFIRMING_STARTS: usize = 2;
-
 /// `|e^(i t)|` of the general value of an input that turns: near the real ones, and beside the places on them where solutions
 /// meet.
 const CIRCLE: f64 = 1.1;
@@ -79,9 +78,8 @@ pub(super) struct ModeFinder<'a> {
     input: usize,
     unknowns: Vec<Unknown>,
     slides: Slides,
-    /// The fixed transform after each unknown, the last one before the input, and that after the input.
-    transforms: Vec<Pose>,
-    algebraic: bool,
+    /// The closure and the class of its geometry; `None` where there is no algebraic way.
+    closure: Option<Closure>,
     /// Found when it is first asked for.
     generic: OnceCell<Generic>,
 }
@@ -91,6 +89,12 @@ pub(super) struct ModeFinder<'a> {
 struct Input {
     turn: Complex64,
     slide: Complex64,
+}
+
+/// The links' normal form, and closures of the same geometry.
+struct Closure {
+    form: Form,
+    class: Arc<Class>,
 }
 
 /// All solutions at a general complex value of the input.
@@ -109,8 +113,7 @@ impl<'a> ModeFinder<'a> {
             input,
             unknowns: Vec::new(),
             slides: [false; UNKNOWNS],
-            transforms: Vec::new(),
-            algebraic: false,
+            closure: None,
             generic: OnceCell::new(),
         };
         let input_joint = chain.joint_of(input);
@@ -146,92 +149,62 @@ impl<'a> ModeFinder<'a> {
             lead = added.inverse();
         }
         before.push(lead);
-        finder.transforms = before;
         for (slide, unknown) in finder.slides.iter_mut().zip(&finder.unknowns) {
             *slide =
                 matches!(unknown, Unknown::Column(c) if chain.joints[chain.joint_of(*c)] == Joint::Slide);
         }
-        finder.algebraic =
-            algebraic && finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
+        algebraic &= finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
+        // from the first unknown on; the last transform stands before it
+        before.rotate_left(1);
+        if let (true, Ok(transforms)) = (algebraic, <&[Pose; JOINTS]>::try_from(&before[..])) {
+            finder.closure = Some(Closure::of(transforms, &finder.slides, chain.joints[input_joint]));
+        }
         finder
     }
 
     pub fn completeness(&self) -> Completeness {
-        if self.algebraic {
+        if self.closure.is_some() {
             Completeness::Algebraic
         } else {
             Completeness::Searched
         }
     }
 
+    /// One that follows all paths of a general closure, whatever the geometry.
+    #[cfg(test)]
+    pub fn from_general_starts(chain: &'a Chain, input: usize) -> Self {
+        let mut finder = Self::new(chain, input);
+        if let Some(closure) = &mut finder.closure {
+            closure.class = Class::of(&finder.slides, None);
+        }
+        finder
+    }
+
     /// How many solutions there are over the complex numbers at a general input.
     #[cfg(test)]
     pub fn complex_count(&self) -> Option<usize> {
-        self.algebraic.then(|| self.generic().solutions.len())
+        self.closure.as_ref().map(|c| self.generic(c).solutions.len())
     }
 
-    /// The closure at an input, and what its unknowns differ by from the joints' values.
-    fn parameters(&self, input: Input) -> (Parameters, [Complex64; UNKNOWNS]) {
-        let one = Complex64::ONE;
-        // the transform in front of each joint, in loop order from the first unknown; the last stands before the input
-        let normal: Vec<_> = self.transforms[1..]
-            .iter()
-            .chain(&self.transforms[..1])
-            .map(|t| Frame::from_pose(t).normal_form())
-            .collect();
-        let mut parameters = Parameters {
-            twists: std::array::from_fn(|i| normal[i].twist),
-            shifts: std::array::from_fn(|i| normal[i].shift),
-            turns: [one; JOINTS],
-            slide: Complex64::ZERO,
-        };
-        let shift: [Complex64; JOINTS] =
-            std::array::from_fn(|i| normal[i].before * normal[(i + JOINTS - 1) % JOINTS].after);
-        parameters.turns = shift;
-        parameters.turns[UNKNOWNS] *= input.turn;
-        parameters.slide = input.slide;
-        (parameters, std::array::from_fn(|i| shift[i]))
-    }
-
-    fn generic(&self) -> &Generic {
-        self.generic.get_or_init(|| self.solve_generic())
-    }
-
-    fn solve_generic(&self) -> Generic {
-        let input = self.generic_input(&mut Random(0xa110));
-        let (target, _) = self.parameters(input);
-        let want = general_count(&self.slides);
-        let mut solutions = Vec::new();
-        let mut idle = 0;
-        for n in 0..STARTS {
-            let start = start(&self.slides, n);
-            let ends = follow(&self.slides, &start.parameters, &target, &start.solutions, BRISK);
-            let before = solutions.len();
-            solutions = distinct(
-                &self.slides,
-                solutions.into_iter().chain(ends.into_iter().flatten()),
-                SAME_GENERAL,
-            );
-            idle = if solutions.len() == before { idle + 1 } else { 0 };
-            // a general chain has all; a special one is believed when further starts find nothing new
-            if solutions.len() >= want || idle == CONFIRMING_STARTS {
-                break;
-            }
-        }
-        Generic { input, solutions }
+    fn generic(&self, closure: &Closure) -> &Generic {
+        self.generic.get_or_init(|| {
+            let input = self.generic_input(&mut Random(0xa110));
+            let (target, _) = closure.parameters(input);
+            Generic { input, solutions: closure.class.solutions(&target) }
+        })
     }
 
     /// All modes at the one value that is asked for [rad, or parts of the size].
     pub fn once(&self, value: f64) -> Polished {
-        if !self.algebraic {
+        let Some(closure) = &self.closure else {
             return self.polished(&self.search(value));
-        }
+        };
         // straight there: where as many arrive as there can be, none is missing
-        let (to, shift) = self.parameters(self.input_at(value));
-        let start = start(&self.slides, 0);
+        let (to, shift) = closure.parameters(self.input_at(value));
+        let start = closure.class.start(0);
         let found = follow(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
         let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
-        if ends.len() == general_count(&self.slides) {
+        if ends.len() == closure.class.count() {
             self.polished(&self.real_ones(&ends, &shift, value))
         } else {
             self.at(value)
@@ -245,13 +218,12 @@ impl<'a> ModeFinder<'a> {
 
     /// The same, some of them rough to [`POLISHED_MOVE`].
     fn rough_at(&self, value: f64) -> Vec<Configuration> {
-        if !self.algebraic {
+        let Some(closure) = &self.closure else {
             return self.search(value);
-        }
-        let generic = self.generic();
-        let input = self.input_at(value);
-        let (from, _) = self.parameters(generic.input);
-        let (to, shift) = self.parameters(input);
+        };
+        let generic = self.generic(closure);
+        let (from, _) = closure.parameters(generic.input);
+        let (to, shift) = closure.parameters(self.input_at(value));
         let mut ends: Vec<Solution> = Vec::new();
         let mut random = Random(0xde70);
         for attempt in 0..3 {
@@ -261,7 +233,7 @@ impl<'a> ModeFinder<'a> {
                 1 => follow(&self.slides, &from, &to, &generic.solutions, CAREFUL),
                 // another way round whatever the straight way came too near to
                 _ => {
-                    let (aside, _) = self.parameters(self.generic_input(&mut random));
+                    let (aside, _) = closure.parameters(self.generic_input(&mut random));
                     let first = follow(&self.slides, &from, &aside, &generic.solutions, CAREFUL);
                     let first: Vec<Solution> = first.into_iter().flatten().collect();
                     follow(&self.slides, &aside, &to, &first, CAREFUL)
@@ -282,11 +254,11 @@ impl<'a> ModeFinder<'a> {
     /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`].
     pub fn around(&self, count: usize) -> Vec<Vec<Configuration>> {
         let value = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
-        if !self.algebraic {
+        let Some(closure) = &self.closure else {
             return (0..count).map(|k| self.search(value(k))).collect();
-        }
-        let generic = self.generic();
-        let (parameters, shift) = self.parameters(self.input_at(0.0));
+        };
+        let generic = self.generic(closure);
+        let (parameters, shift) = closure.parameters(self.input_at(0.0));
         let around = Around::new(&self.slides, &parameters);
         let ends = around.values(generic.input.turn, &generic.solutions, count, BRISK);
         ends.into_iter()
@@ -441,6 +413,37 @@ impl<'a> ModeFinder<'a> {
             }
         }
         modes
+    }
+}
+
+impl Closure {
+    /// From the transforms after the joints, the first unknown one's first and the input's last.
+    fn of(transforms: &[Pose; JOINTS], slides: &Slides, input: Joint) -> Self {
+        let form = Form::of(transforms.each_ref());
+        let mut given = [input == Joint::Slide; JOINTS];
+        given[..UNKNOWNS].copy_from_slice(slides);
+        if let Some(form) = form.with_zeros(&given) {
+            let class = Class::of(slides, Some(form.pattern(&given, input != Joint::Turn)));
+            // without solutions that stand alone a class leads nowhere
+            if class.count() > 0 {
+                return Self { form, class };
+            }
+        }
+        Self { form, class: Class::of(slides, None) }
+    }
+
+    /// The closure at an input, and what its unknowns differ by from the joints' values.
+    fn parameters(&self, input: Input) -> (Parameters, [Complex64; UNKNOWNS]) {
+        let zeros = self.form.zeros();
+        let mut turns = zeros;
+        turns[UNKNOWNS] *= input.turn;
+        let parameters = Parameters {
+            twists: self.form.twists,
+            shifts: self.form.shifts.map(|s| s.map(Complex64::from)),
+            turns,
+            slide: input.slide,
+        };
+        (parameters, std::array::from_fn(|i| zeros[i]))
     }
 }
 
