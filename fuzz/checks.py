@@ -119,15 +119,15 @@ def of_motion(motion: sb.Motion) -> None:
     elif kind != "change-point":
         hold(types <= {kind, "change-point"}, f"{kind} of circuits {sorted(types)}")
     if types and "change-point" not in types | {kind}:
-        rocks = any(c.input_range is not None for c in motion)
+        back = any(c.turns_back for c in motion)
         ends = any(d.kind == "input" for c in motion for d in c.dead_centres)
         hold(
             bool(limits.size) == ends,
             f"{limits.size} limits, and circuits with{'' if ends else 'out'} dead centres",
         )
         hold(
-            rocks or not limits.size or any(not c.closed for c in motion),
-            "limits of an input that turns fully",
+            back or not limits.size or any(not c.closed for c in motion),
+            "limits of an input that never turns back",
         )
 
 

@@ -24,8 +24,8 @@ FLAGS = (
     "--no-first-run",
 )
 SIZE = {"width": 1000, "height": 640}
-#: How long anything on a page may take [s].
-PATIENCE = 60.0
+#: What anything on a page may take [s]: a guard against hanging, long enough for a machine with other work.
+PATIENCE = 600.0
 #: Where pictures of pages are kept; ignored by git, removed by `make clean`.
 SCREENSHOTS = Path(__file__).parents[1] / "build" / "screenshots"
 #: Below this spread between the channels (of 1) a pixel is grey.

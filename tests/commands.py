@@ -18,7 +18,7 @@ def sevenbar(*arguments, cwd=None, before=""):
     if before:
         code = f"import sys\n{before}\nfrom sevenbar.cli import main\nmain()"
         command = [sys.executable, "-c", code, *map(str, arguments)]
-        return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
+        return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=600, check=False)
     out, err, argv = io.StringIO(), io.StringIO(), sys.argv
     sys.argv = ["sevenbar", *map(str, arguments)]
     try:

@@ -67,7 +67,7 @@ class TabClient:
             case _ if "name" in message and "props" in message:
                 self.scene[message["name"]] = dict(message["props"])
 
-    def settled(self, quiet=0.15, limit=30.0):
+    def settled(self, quiet=0.15, limit=600.0):
         """Waits until nothing has come for a while [s] from now on."""
         start = time.perf_counter()
         while time.perf_counter() < start + limit:
@@ -75,6 +75,14 @@ class TabClient:
                 return self
             time.sleep(0.01)
         raise AssertionError("the studio does not come to rest")
+
+    def until(self, holds, limit=600.0):
+        """Waits until something holds of what was sent, and then until nothing more comes."""
+        end = time.perf_counter() + limit
+        while not holds():
+            assert time.perf_counter() < end, "it does not come to this"
+            time.sleep(0.02)
+        return self.settled()
 
     def find(self, label, kind=""):
         """The uuids of the controls with a label, in the order in which they were made."""
@@ -108,7 +116,7 @@ class TabClient:
     def close(self):
         """Leaves, as a tab that is closed."""
         self._socket.close()
-        self._reader.join(timeout=5)
+        self._reader.join(timeout=60)
 
 
 def _whole(value, buffers):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import viser
 
-from browser import Pages, canvas_colours, chromium, differs, drawn, settled, tinted
+from browser import PATIENCE, Pages, canvas_colours, chromium, differs, drawn, settled, tinted
 from controls import (
     choose,
     click_button,
@@ -77,8 +77,8 @@ class Desk:
             )
 
     def gets(self, key, value):
-        """Whether the server has received a value, or does within ten seconds."""
-        end = time.monotonic() + 10
+        """Whether the server has received a value, or does if it is given time."""
+        end = time.monotonic() + PATIENCE
         while self.received.get(key) != value and time.monotonic() < end:
             time.sleep(0.02)
         return self.received.get(key) == value
@@ -188,7 +188,9 @@ def test_what_goes_wrong_on_a_page_is_seen(opened, page):
     page.evaluate("console.error('said')")
     page.evaluate("void setTimeout(() => { throw new Error('thrown') })")
     page.evaluate("void fetch('http://127.0.0.1:9/').catch(() => {})")
-    page.wait_for_timeout(500)
+    end = time.monotonic() + PATIENCE
+    while len(opened.wrong) < 4 and time.monotonic() < end:
+        page.wait_for_timeout(100)
     wrong = opened.wrong.copy()
     opened.wrong.clear()
     # what the browser itself says of the address that does not answer comes last
@@ -206,11 +208,11 @@ SERVES = "import time; print('http://127.0.0.1:9', flush=True); time.sleep({seco
 
 def test_a_program_that_ends_by_itself_or_with_a_traceback_does_not_pass(tmp_path):
     short = Served([sys.executable, "-c", SERVES.format(seconds=0)], tmp_path / "short")
-    short.process.wait(20)
+    short.process.wait(PATIENCE)
     with pytest.raises(AssertionError, match="ended by itself"):
         short.stop()
     # Ctrl+C in a sleep is a KeyboardInterrupt that nobody takes
-    long = Served([sys.executable, "-c", SERVES.format(seconds=60)], tmp_path / "long")
+    long = Served([sys.executable, "-c", SERVES.format(seconds=PATIENCE)], tmp_path / "long")
     assert long.runs
     assert long.memory() > 1
     with pytest.raises(AssertionError, match="Traceback"):

@@ -154,13 +154,13 @@ def test_messages_of_one_kind_are_one_family() -> None:
 
 @pytest.mark.slow
 def test_a_worker_that_dies_or_hangs_costs_its_case_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(ways.WAYS, "file", dataclasses.replace(ways.WAYS["file"], limit=1.5))
+    monkeypatch.setitem(ways.WAYS, "file", dataclasses.replace(ways.WAYS["file"], limit=5.0))
     heard: list[tuple[ways.Job, Tally]] = []
     run = watch.Watch(lambda job, tally, _: heard.append((job, tally)), threads=1)
     monkeypatch.setattr(watch, "_work", _faulty_work)
     run.over([ways.Job("file", 1, 0, 20)])
     found = {finding.index: finding.what for _, tally in heard for finding in tally.findings}
-    assert found == {7: "died with 3", 12: "took longer than 1.5 s"}
+    assert found == {7: "died with 3", 12: "took longer than 5 s"}
     # every case came back, and once
     assert sum(tally.cases for _, tally in heard) == 20
     assert sorted(k for job, _ in heard for k in range(job.first, job.last)) == list(range(20))

@@ -68,17 +68,18 @@ def test_the_idle_spin_of_several_links_is_named():
     )
 
 
-def test_a_loop_that_one_input_moves_is_not_told_to_need_two():
-    linkage = sb.from_axes(drawn("RSRS", 1))
+def test_a_screw_among_spinning_links_is_refused_and_moves_from_another_joint_on():
+    screw = drawn("RSHS", 1)
+    screw[2]["pitch"] = 30.0
+    linkage = sb.from_axes(screw)
+    assert linkage.mobility().finite == 1
     for call in (linkage.motion, lambda: linkage.assembly_modes(0.0)):
         with pytest.raises(
-            NotCoveredError, match=r"spin of links 2 and 3 together .* is not followed yet; write one"
+            NotCoveredError, match=r"spin of links 2 and 3 together .* describe the loop from"
         ):
             call()
     # the remedy of the message
-    joints = drawn("RSRS", 1)
-    joints[1] |= {"kind": "U", "axes": [[0, 0, 1], [1, 0, 0]]}
-    assert sb.from_axes(joints).motion(samples=12).circuits
+    assert sb.from_axes(screw[2:] + screw[:2]).motion(samples=12).circuits
 
 
 def test_a_loop_with_two_freedoms_beside_an_idle_spin_needs_two_inputs():

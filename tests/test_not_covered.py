@@ -48,11 +48,11 @@ def test_refusals_read_as_they_do_on_the_page(what):
         with pytest.raises(NotCoveredError) as refused:
             sb.load("seven_r").output([0.0])
     else:
-        places = {"crank": (0, 0, 0), "ball_a": (1, 0, 0), "hinge": (2, 1, 0), "ball_b": (3, 0, 1)}
-        axes = {"crank": (0, 0, 1), "hinge": (0, 1, 1)}
         joints = [
-            {"name": name, "at": at, **({"kind": "R", "axis": axes[name]} if name in axes else {"kind": "S"})}
-            for name, at in places.items()
+            {"kind": "R", "name": "crank", "at": (0, 0, 0), "axis": (0, 0, 1)},
+            {"kind": "S", "name": "ball_a", "at": (1, 0, 0)},
+            {"kind": "H", "name": "screw", "at": (2, 1, 0), "axis": (0, 1, 1), "pitch": 0.1},
+            {"kind": "S", "name": "ball_b", "at": (3, 0, 1)},
         ]
         with pytest.raises(NotCoveredError) as refused:
             sb.from_axes(joints).motion()

@@ -9,7 +9,7 @@ import pytest
 EXAMPLES = Path(__file__).parent.parent / "examples"
 NOTEBOOKS = sorted(EXAMPLES.glob("*.ipynb"))
 #: How long one cell may take [s]; alone on two cores none takes more than fifteen.
-PATIENCE = 180
+PATIENCE = 1800
 #: Packages that the notebooks may import: Sevenbar's own and what its extras bring.
 IMPORTED = {"sevenbar", "numpy", "matplotlib", "pandas", "math"}
 

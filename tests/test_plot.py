@@ -311,7 +311,7 @@ def test_bounded_rates_at_a_change_point_are_not_cut() -> None:
         values = circuit.ddq[:, circuit.output_column]
         assert low <= np.nanmin(values) <= np.nanmax(values) <= high
     marked = [line.get_xdata()[0] for line in lines(figure, 0, plot.CHANGE_POINT)]
-    np.testing.assert_allclose(marked, np.degrees(motion.change_points))
+    np.testing.assert_allclose(marked, np.degrees(motion.change_point_inputs))
 
 
 def test_time_runs_above_a_turning_input_and_beside_a_rocking_one(crank_rocker: sb.Motion) -> None:

@@ -243,7 +243,7 @@ FOLDING = {
 def test_a_planar_linkage_that_folds_flat_is_at_a_change_point(name: str, driver: str) -> None:
     motion = FOLDING[name].linkage().motion(input=driver)
     assert motion.motion_type == "change-point"
-    assert motion.change_points.size > 0
+    assert motion.change_points
     assert motion.circuits
 
 
@@ -306,6 +306,11 @@ def motion_with_coupler(dims: Dimensions, coupler: float, driver: str) -> sb.Mot
     return replace(dims, L2=float(coupler)).linkage().motion(samples=36, input=driver)
 
 
+def places(motion: sb.Motion) -> np.ndarray:
+    """The inputs at change points, isolated poses among them."""
+    return np.array([point.input for point in motion.change_points])
+
+
 @pytest.mark.slow
 def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(
     tuned: list[tuple[Dimensions, str, Meeting]],
@@ -314,7 +319,7 @@ def test_a_linkage_tuned_to_a_change_point_is_said_to_be_there(
         for off in (0.0, 1e-15, -1e-15, 1e-14, -1e-14):
             motion = motion_with_coupler(dims, meeting.coupler * (1 + off), driver)
             assert motion.motion_type == "change-point"
-            assert apart(motion.change_points, meeting.input).min() < 1e-6
+            assert apart(places(motion), meeting.input).min() < 1e-6
 
 
 def test_a_thousandth_from_a_change_point_it_is_not_said_to_be_there(
@@ -348,7 +353,7 @@ def test_two_limits_nearer_than_1e_6_are_a_change_point(
             motion = motion_with_coupler(dims, coupler, driver)
             assert (motion.motion_type == "change-point") == is_one
             if is_one:
-                assert apart(motion.change_points, meeting.input).min() < 1e-6
+                assert apart(places(motion), meeting.input).min() < 1e-6
             else:
                 near = motion.limits[apart(motion.limits, meeting.input) < 1e-3] if motion.limits.size else []
                 assert len(near) in (0, 2)
@@ -361,7 +366,7 @@ def test_change_points_are_told_for_either_input(tuned: list[tuple[Dimensions, s
         for driver in ("crank", "rocker"):
             motion = motion_with_coupler(dims, meeting.coupler, driver)
             assert motion.motion_type == "change-point"
-            assert motion.change_points.size == 1
+            assert len(motion.change_points) == 1
 
 
 def test_a_change_point_is_never_without_its_place() -> None:
@@ -397,4 +402,4 @@ def test_a_change_point_is_never_without_its_place() -> None:
     ):
         motion = sb.rssr(M=M, N=N, L1=L1, L3=L3, D=D, L2=L2).motion(input=driver)
         assert motion.motion_type == "change-point"
-        assert motion.change_points.size > 0
+        assert motion.change_points

@@ -46,16 +46,20 @@ def test_the_command_line_does_not_load_the_studio_without_need(tmp_path):
 def test_it_ends_also_where_the_signal_reaches_another_thread():
     # a wait without end did not notice, and the program went on
     code = """
-import signal, threading, time
+import signal, sys, threading, time
 from sevenbar.studio.server import StudioServer
 
+main = threading.main_thread().ident
+
 def elsewhere():
-    time.sleep(0.5)
+    # once the program waits
+    while sys._current_frames()[main].f_code is not StudioServer.wait.__code__:
+        time.sleep(0.05)
     signal.pthread_kill(threading.get_ident(), signal.SIGINT)
 
 signal.signal(signal.SIGINT, signal.default_int_handler)
 threading.Thread(target=elsewhere, daemon=True).start()
 StudioServer.wait(None)
 """
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=600)
     assert (run.returncode, run.stderr) == (0, "")

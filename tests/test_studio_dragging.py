@@ -31,7 +31,7 @@ def visited(server):
     """A client at a server, and its tab once all of it is there."""
     known = server.tabs
     client = TabClient(server.address)
-    for _ in range(600):
+    for _ in range(12_000):
         if len(server.tabs) > len(known) and "completeness" in client.html():
             break
         time.sleep(0.05)
@@ -52,7 +52,7 @@ def done(tab, action):
         ready.set()
 
     tab.worker.ask(object(), act)
-    assert ready.wait(30)
+    assert ready.wait(600)
     if isinstance(found[0], Exception):
         raise found[0]
     return found[0]
@@ -121,35 +121,33 @@ def restless(client, dice):
 
 @pytest.mark.parametrize("name", ["rssr", "seven_r"])
 @pytest.mark.parametrize(
-    "seconds",
-    [10, pytest.param(600, marks=pytest.mark.proof)],
+    "acts",
+    [40, pytest.param(2400, marks=pytest.mark.proof)],
 )
-def test_random_dragging_never_fails_nor_grows_nor_shows_a_wrong_mode(name, seconds, capsys):
-    dice = random.Random(seconds)
+def test_random_dragging_never_fails_nor_grows_nor_shows_a_wrong_mode(name, acts, capsys):
+    dice = random.Random(acts)
     server = StudioServer(text_of(name), name, "127.0.0.1", 0)
     client, tab = visited(server)
-    end, begun, grown = time.monotonic() + seconds, None, 0.0
-    acts = moved = 0
-    while time.monotonic() < end:
+    moved = 0
+    for act in range(acts):
+        if act == round(0.3 * acts):
+            begun = memory()
         restless(client, dice)
         time.sleep(0.05)
         done(tab, lambda: looked_at(tab.session))
-        acts += 1
         moved += not tab.session.problem
-        if begun is None and time.monotonic() > end - 0.7 * seconds:
-            begun = memory()
     grown = memory() - begun
     assert [told for told in client.told if "fault" in str(told).lower()] == []
     assert "Traceback" not in capsys.readouterr().err
     assert grown < GROWTH, f"{grown:.0f} MB more after {acts} acts"
     assert moved > acts / 4, "most of the time there is something to see"
     client.close()
-    for _ in range(100):
+    for _ in range(12_000):
         if not server.tabs:
             break
         time.sleep(0.05)
     assert server.tabs == ()
-    tab.worker.join(5)
+    tab.worker.join(60)
     assert not tab.worker.is_alive(), "a tab that is closed leaves no thread"
     server.stop()
 
@@ -159,17 +157,14 @@ def test_two_tabs_have_nothing_in_common():
     one, other = (visited(server)[0] for _ in range(2))
     before = other.html()
     one.put("L1 [mm]", "260")
-    time.sleep(1.2)
-    one.settled(0.5)
+    one.until(lambda: one.html() != before)
     assert one.value("L1 [mm]") == "260"
-    assert one.html() != before
     assert other.value("L1 [mm]") == "250"
     assert other.html() == before
     one.close()
     other.put("L3 [mm]", "560")
-    time.sleep(1.2)
-    other.settled(0.5)
-    assert other.html() != before, "the one that stays goes on"
+    # the one that stays goes on
+    other.until(lambda: other.html() != before)
     server.stop()
 
 
@@ -202,15 +197,10 @@ def test_what_never_moved_is_not_drawn_and_can_be_mended():
     assert "stays in grey" not in client.html()
     assert bodies(client) == []
     client.put("L2 [mm]", "997")
-    time.sleep(1.2)
-    client.settled(0.5)
-    assert "crank-rocker" in client.html()
-    assert bodies(client) != []
+    client.until(lambda: "crank-rocker" in client.html() and bodies(client))
+    # another file that does not move is not shown as the one before
     done(tab, lambda: tab.session.open(far, "far"))
-    client.settled(0.5)
-    assert bodies(client) == [], "another file that does not move is not shown as the one before"
+    client.until(lambda: not bodies(client))
     client.put("history", "undo")
-    client.settled(0.5)
-    assert "crank-rocker" in client.html()
-    assert bodies(client) != []
+    client.until(lambda: "crank-rocker" in client.html() and bodies(client))
     server.stop()

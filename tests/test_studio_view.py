@@ -302,9 +302,9 @@ def test_steps_go_from_sample_to_sample_and_over_the_end() -> None:
 
 
 def test_an_open_motion_ends_at_its_ends() -> None:
-    """A parallelogram's arcs end where the linkage may choose its way."""
-    plane = [(0, 0, 0), (0, 100, 0), (200, 100, 0), (200, 0, 0)]
-    session = Session(drawn(*(("R", place, (0, 0, 1)) for place in plane)), "parallelogram")
+    """A pin that slides along a line at a distance: its slide goes with the tangent of the crank's angle, without end."""
+    joints = [("R", (0, 0, 0), (0, 0, 1)), ("P", (0, 0, 0), (1, 0, 0)), ("R", (100, 0, 0), (0, 0, 1))]
+    session = Session(drawn(*joints, ("P", (100, 0, 0), (0, 1, 0))), "tangent")
     view = session.view
     assert view is not None
     assert not view.circuit.closed

@@ -18,9 +18,22 @@ from sevenbar.files import load, loads
 from sevenbar.forms import from_axes, from_dh, rssr
 from sevenbar.law_file import load_law
 from sevenbar.linkage import Drive, Joint, Linkage, Point
-from sevenbar.motion import Circuit, Count, DeadCentre, Extremes, Law, Modes, Motion, OpenRange, Output, Trace
+from sevenbar.motion import (
+    ChangePoint,
+    Circuit,
+    Count,
+    DeadCentre,
+    Extremes,
+    Law,
+    Modes,
+    Motion,
+    OpenRange,
+    Output,
+    Trace,
+)
 
 __all__ = [
+    "ChangePoint",
     "Circuit",
     "Count",
     "DeadCentre",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -19,6 +20,7 @@ from sevenbar.motion import (
     Motion,
     Output,
     Trace,
+    change_points_from,
     circuit_from,
 )
 
@@ -37,6 +39,9 @@ class ClosedForm:
             self._core = _core.Rssr(linkage.base, linkage.ground, linkage.links)
         except _core.CoreError as error:  # beside the longest dimension it vanishes
             raise RequestError(f"linkage: {error}; give it one that is not lost beside the others") from None
+
+    def __reduce__(self) -> tuple[type[ClosedForm], tuple[Linkage]]:
+        return ClosedForm, (self._linkage,)
 
     @property
     def size(self) -> float:
@@ -83,7 +88,7 @@ class ClosedForm:
             samples=samples,
             motion_type=raw["motion_type"],
             limits=raw["limits"],
-            change_points=raw["change_points"],
+            change_points=change_points_from(raw["change_points"], column),
             circuits=tuple(
                 self._circuit(i, c, (column, other), speed, law) for i, c in enumerate(raw["circuits"])
             ),
@@ -115,11 +120,11 @@ class ClosedForm:
             closed=True,
             mode=raw["mode"],
             transmission=Extremes(least, least_at, greatest, greatest_at),
-            _point=lambda link, at: self._trace(link, at, rates),
+            _point=partial(self._trace, rates),
             **own,
         )
 
-    def _trace(self, link: int, at: Floats, rates: Floats) -> Trace:
+    def _trace(self, rates: Floats, link: int, at: Floats) -> Trace:
         """A point, `at` in its link's own frame, along rows of both sides' rates, (n, 2, 4)."""
         crank, rocker = (np.ascontiguousarray(rates[:, end]) for end in (0, 1))
         position, velocity, acceleration, jerk = self._core.point(link, at, crank, rocker)

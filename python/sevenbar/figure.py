@@ -77,17 +77,12 @@ def title(motion: Motion) -> str:
     return f"{short(motion.linkage.name, 60)}: {motion.motion_type}"
 
 
-def rocking(circuit: Circuit) -> bool:
-    """Whether the input has dead centres, where rates grow without bound."""
-    return any(centre.kind == "input" for centre in circuit.dead_centres)
-
-
 def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
     """The ends of drawn values (n,), of rates that grow without bound those of `CUT`; `None` without any."""
     finite = values[np.isfinite(values)]
     if not finite.size:
         return None
-    if quantity not in CUT or not rocking(circuit):
+    if quantity not in CUT or not circuit.turns_back:
         return float(finite.min()), float(finite.max())
     low, high = np.percentile(finite, [CUT[quantity], 100 - CUT[quantity]])
     return float(low), float(high)
@@ -100,7 +95,7 @@ def note(motion: Motion, cut: bool) -> str:
     note = f"{name} at {motion.speed:g} {unit}/s"
     if motion.law is not None:
         note = f"{name} driven by a law"
-    elif any(circuit.input_range is not None for circuit in motion):
+    elif not all(circuit.goes_round for circuit in motion):
         note = f"{name} at ±{abs(motion.speed):g} {unit}/s"
     return note + ("; rates grow without bound at dead centres: axes cut" if cut else "")
 

@@ -127,7 +127,7 @@ def draw(
         if "modes" in kinds:
             chosen = chosen_circuit(motion, circuit)
             # a limit is no place to show modes at: there two are one
-            ends = chosen.input_range
+            ends = chosen.pass_range(0)
             value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
             modes = linkage.assembly_modes(value, input=motion.input)
             yield "modes", plot.modes_overview(linkage, modes, input=motion.input, output=motion.output)

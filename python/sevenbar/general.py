@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from sevenbar.errors import RequestError
 from sevenbar.mobility import Mobility, redundant_constraints
 from sevenbar.motion import (
     STATUSES,
+    ChangePoint,
     Circuit,
     Count,
     Floats,
@@ -23,6 +25,8 @@ from sevenbar.motion import (
     Motion,
     OpenRange,
     Trace,
+    Words,
+    change_points_from,
     circuit_from,
 )
 from sevenbar.written import Freedom
@@ -49,6 +53,9 @@ class GeneralLoop:
         self._core = _core.Loop(letters, np.array(advances), linkage.base, linkage.ground, np.array(links))
         self._found: dict[int, Mobility] = {}
 
+    def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Linkage]]:
+        return GeneralLoop, (self._linkage,)
+
     @property
     def size(self) -> float:
         """The size [length] of which residuals are parts."""
@@ -65,6 +72,10 @@ class GeneralLoop:
                     return f"spin of the coupler (link {link}) about the line of {first} and {second}"
                 case "between-balls":
                     return f"spin of link {link} about the line of {first} and {second}"
+                case "chain-between-balls":
+                    links = [str(i) for i in range(held + 1, other + 1)]
+                    told = f"{', '.join(links[:-1])} and {links[-1]}"
+                    return f"spin of links {told} together about the line of {first} and {second}"
                 case "ball-on-axis":
                     return f"spin of link {link} about the axis of {first}, on which {second} lies"
                 case "one-axis":
@@ -76,7 +87,16 @@ class GeneralLoop:
 
     def idle_links(self) -> frozenset[int]:
         """The links that have such a freedom, counted from 1."""
-        return frozenset(link for _, link, _, _ in self._idle())
+        found: set[int] = set()
+        for word, link, held, other in self._idle():
+            found |= set(range(held + 1, other + 1)) if word == "chain-between-balls" else {link}
+        return frozenset(found)
+
+    def unheld(self) -> str | None:
+        """The idle freedom for which the core has no rule, in words, of a loop that one input moves."""
+        if self._core.can_be_driven or self._core.freedoms > MOST_FREEDOMS:
+            return None
+        return self.idle()[-1]
 
     def _idle(self) -> list[tuple[str, int, int, int]]:
         """Each such freedom: the core's word, the link, and the joints held and beside it."""
@@ -119,6 +139,7 @@ class GeneralLoop:
             self._circuit(i, c, (column, output), speed, law) for i, c in enumerate(raw["circuits"])
         )
         count = _count(raw, linkage.columns)
+        change_points = change_points_from(raw["change_points"], column)
         limits = [d.input for c in circuits for d in c.dead_centres if d.kind == "input"]
         return Motion(
             linkage=linkage,
@@ -126,9 +147,9 @@ class GeneralLoop:
             output=linkage.columns[output],
             speed=math.nan if law is not None else speed,
             samples=samples,
-            motion_type=_motion_type(circuits, mobility),
+            motion_type=_motion_type(circuits, change_points, mobility),
             limits=merged(limits, turns=linkage.column_kinds[column] == "turn", size=self.size),
-            change_points=np.array([]),
+            change_points=change_points,
             circuits=circuits,
             completeness=_completeness(raw, count),
             redundant=mobility.redundant,
@@ -189,7 +210,7 @@ class GeneralLoop:
         rank = raw.get("rank")
         idle = self.idle()
         finite = raw.get("finite") if rank is not None else None
-        if rank is None and self._core.freedoms > MOST_FREEDOMS:
+        if rank is None and not self._core.can_be_driven:
             # rank six at most
             finite = self._core.freedoms - 6
         return Mobility(
@@ -206,18 +227,18 @@ class GeneralLoop:
     ) -> Circuit:
         order = np.arange(len(raw["status"]))
         kinds = self._linkage.column_kinds
-        if speed < 0 and law is None and raw["closed"] and raw["turns"]:
+        turns_back = any(kind == "input" for kind, *_ in raw["dead_centres"])
+        if speed < 0 and law is None and raw["turns"] and not turns_back:
             order = np.append(order[:1], order[:0:-1])
             raw = _run_backwards(raw, order, kinds)
         q = raw["joints"][0]
         status = np.array(STATUSES)[raw["status"]]
         # the pose of a row may be known where a ball's turns are not
         status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
-        rows = raw["rows"]
-        words = (
-            word(kinds[columns[0]], rocks=raw["input"] is not None),
-            word(kinds[columns[1]], rocks=raw["output"] is not None),
-        )
+        words = [
+            word(kinds[column], rocks=span is not None, endless=is_endless(raw, span))
+            for column, span in zip(columns, (raw["input"], raw["output"]), strict=True)
+        ]
         return circuit_from(
             raw,
             linkage=self._linkage,
@@ -231,10 +252,11 @@ class GeneralLoop:
             status=status,
             mode=np.full(len(q), index),
             transmission=None,
-            _point=lambda link, at: self._trace(rows, order, link, at, status),
+            _point=partial(self._trace, raw["rows"], order, status),
         )
 
-    def _trace(self, rows: Any, order: Integers, link: int, at: Floats, status: Any) -> Trace:
+    def _trace(self, rows: _core.Rows, order: Integers, status: Words, link: int, at: Floats) -> Trace:
+        """A point, `at` in its link's own frame, along rows in an order and of a status."""
         count = len(self._linkage.joints)
         if link == count:
             position = np.broadcast_to(at, (len(status), 3)).copy()
@@ -244,7 +266,7 @@ class GeneralLoop:
             velocity, acceleration, jerk = rest, rest.copy(), rest.copy()
         else:
             position, velocity, acceleration, jerk = (
-                np.asarray(part)[order] for part in rows.point(self._link[link - 1], at)
+                np.asarray(part)[order] for part in self._core.point(rows, self._link[link - 1], at)
             )
         own = np.array(status)
         own[own == "turns-undefined"] = "ok"
@@ -289,10 +311,21 @@ def expanded(linkage: Linkage) -> tuple[str, list[float], list[Floats], list[int
     return letters, advances, links, last
 
 
-def word(kind: str, *, rocks: bool) -> str:
-    """What a joint of a kind is called that rocks, or turns fully."""
+def is_endless(circuit: Mapping[str, Any], span: tuple[float, float] | None) -> bool:
+    """Whether a turn with this range goes on without end: over more than a turn, and nothing comes back.
+
+    Such a circuit has no end of its own, but is followed to where a screw or a slide is far out.
+    """
+    open_ended = not circuit["closed"] and not circuit["singular"]
+    return open_ended and span is not None and span[1] - span[0] > math.tau
+
+
+def word(kind: str, *, rocks: bool, endless: bool = False) -> str:
+    """What a joint of a kind is called that rocks, turns fully, or turns on without the loop coming back."""
     if kind == "slide":
         return "slider"
+    if endless:
+        return "spindle"
     return "rocker" if rocks else "crank"
 
 
@@ -301,7 +334,21 @@ def pair(first: str, second: str) -> str:
     return f"double-{first}" if first == second else f"{first}-{second}"
 
 
-def _motion_type(circuits: Sequence[Circuit], mobility: Mobility) -> str:
+def words_of(motion_type: str) -> tuple[str, str]:
+    """What input and output are called, read off the motion type of a circuit.
+
+    >>> words_of("double-spindle"), words_of("spindle-slider"), words_of("change-point")
+    (('spindle', 'spindle'), ('spindle', 'slider'), ('change', 'point'))
+    """
+    first, _, second = motion_type.partition("-")
+    return (second, second) if first == "double" else (first, second)
+
+
+def _motion_type(
+    circuits: Sequence[Circuit], change_points: Sequence[ChangePoint], mobility: Mobility
+) -> str:
+    if any(not point.isolated and point.circuits for point in change_points):
+        return "change-point"
     if circuits:
         types = {c.motion_type for c in circuits}
         return types.pop() if len(types) == 1 else "mixed"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, Literal
 
@@ -13,8 +13,18 @@ import numpy.typing as npt
 from sevenbar.closed_form import ClosedForm
 from sevenbar.errors import NotCoveredError, RequestError, no_joint, shown
 from sevenbar.general import GeneralLoop
-from sevenbar.mobility import Mobility, spins_between_balls
-from sevenbar.motion import Circuit, Floats, Law, Modes, Motion, Output, finite_array
+from sevenbar.mobility import Mobility
+from sevenbar.motion import (
+    Circuit,
+    Floats,
+    Law,
+    Modes,
+    Motion,
+    Output,
+    finite_array,
+    finite_number,
+    real_array,
+)
 from sevenbar.units import sliding_speed, turning_speed
 from sevenbar.written import FREEDOMS, Freedom, column_names
 
@@ -86,6 +96,10 @@ class Linkage:
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):
             array.setflags(write=False)
+
+    def __reduce__(self) -> tuple[type[Linkage], tuple[Any, ...]]:
+        """Copied and pickled by its fields; what was worked out of them is worked out anew when asked for."""
+        return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
     @property
     def transforms(self) -> Floats:
@@ -219,7 +233,7 @@ class Linkage:
         """
         solver = self._rssr("output")
         column = self._input(input)
-        array = np.ascontiguousarray(values, dtype=np.float64).reshape(-1)
+        array = real_array("input", values)
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
             raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
         law = None
@@ -251,7 +265,7 @@ class Linkage:
         Source: docs/theory.md, (6); docs/rssr.md, (4).
         """
         column = self._input(input)
-        (value,) = finite_array("theta", theta)
+        value = finite_number("theta", theta)
         if self._has_closed_form(method):
             return self._closed_form.modes(column, value)
         self._refuse_unheld()
@@ -268,36 +282,29 @@ class Linkage:
 
     @cached_property
     def _mobility(self) -> Mobility:
-        found = self._general.mobility(self.columns.index(self.drive.joint))
-        if found.finite is None or not self._unheld:
-            return found
-        return replace(found, finite=found.finite - len(self._unheld), idle=found.idle + self._unheld)
+        return self._general.mobility(self.columns.index(self.drive.joint))
 
     @property
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
-        return self._general.idle() + self._unheld
+        return self._general.idle()
 
     @property
     def idle_links(self) -> frozenset[int]:
         """Links, counted from 1, with a freedom of their own that moves no other link."""
         return self._general.idle_links()
 
-    @cached_property
-    def _unheld(self) -> tuple[str, ...]:
-        """Idle freedoms that the core does not hold: it knows those of one link only."""
-        return spins_between_balls(self.kind, [joint.name for joint in self.joints])
-
     @property
     def followed_generally(self) -> bool:
         """Whether its motion is that of the general path, with nothing else to be asked of it."""
-        return self.kind != "RSSR" and not self._unheld
+        return self.kind != "RSSR" and self._general.unheld() is None
 
     def _refuse_unheld(self) -> None:
-        if self._unheld and self._mobility.finite == 1:
+        spin = self._general.unheld()
+        if spin is not None:
             raise NotCoveredError(
-                f"linkage: the {self._unheld[0]} moves no other link, and a loop with such a freedom is not "
-                "followed yet; write one of these balls as a joint U, which holds it but may narrow the range"
+                f"linkage: the {spin} moves no other link, and it is not held where a screw or a ball stands "
+                "between these balls; describe the loop from another joint on, so that R or P stands there"
             )
 
     def motion(
@@ -314,11 +321,11 @@ class Linkage:
 
         `samples` inputs in a full turn, or over the range of a sliding input. The input moves at `speed`
         [rad/s, or length/s], the drive's where none is given, or by a `law`, whose samples take the place of
-        the grid: a circuit that rocks holds them once for each of its passes. `input` and `output` name
+        the grid: a circuit that turns back holds them once for each of its passes. `input` and `output` name
         joints. `method` "general" takes the general way for an RSSR too, which has a closed form.
 
-        Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which several
-        links between two balls spin idly.
+        Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which links
+        spin idly between two balls with a screw among them.
 
         Source: docs/theory.md, (7) to (16); docs/rssr.md, (3) to (8).
 

@@ -122,17 +122,22 @@ def loop_motions(linkages: Sequence[Linkage], input: int, output: int, samples: 
     counts = raw["circuits"]
     linkage, circuit = _numbered(counts)
     kinds = linkages[0].column_kinds
-    rocks = (np.isfinite(raw[f"{end}_range"][:, 0]) for end in ("input", "output"))
-    ends = [
-        np.where(rocking, word(kinds[column], rocks=True), word(kinds[column], rocks=False))
-        for column, rocking in zip((input, output), rocks, strict=True)
-    ]
+    open_ended = (raw["closed"] == 0) & (raw["singular"] == 0)
+    ends = []
+    for column, end in ((input, "input"), (output, "output")):
+        span = raw[f"{end}_range"][:, 1] - raw[f"{end}_range"][:, 0]
+        told = np.where(np.isfinite(span), word(kinds[column], rocks=True), word(kinds[column], rocks=False))
+        endless = open_ended & (span > math.tau)
+        ends.append(np.where(endless, word(kinds[column], rocks=True, endless=True), told))
     own = np.array([pair(*both) for both in zip(*ends, strict=True)], dtype=object)
     own[raw["singular"] != 0] = "change-point"
     types = np.array(["mixed"] * len(counts), dtype=object)
     bounds = np.concatenate([[0], np.cumsum(counts)])
     for place, (first, last) in enumerate(pairwise(bounds)):
-        if len(words := set(own[first:last])) == 1:
+        words = set(own[first:last])
+        if "change-point" in words:
+            types[place] = "change-point"
+        elif len(words) == 1:
             types[place] = words.pop()
     speed = np.array([linkage.speed_of(input) for linkage in linkages])
     columns = _columns(raw, speed[linkage], turns=kinds[output] == "turn")
@@ -186,6 +191,8 @@ def _time_ratio(raw: Mapping[str, Any]) -> Floats:
     stroke = (ends[:, 3] - ends[:, 1]) % math.tau
     slower, quicker = np.maximum(stroke, math.tau - stroke), np.minimum(stroke, math.tau - stroke)
     rocks = np.isfinite(raw["output_range"]).all(axis=1) & np.isnan(raw["input_range"][:, 0])
+    # an RSSR's input that turns fully has none
+    rocks &= np.equal(raw.get("input_dead_centre_count", 0), 0)
     ratio = np.full(len(stroke), np.nan)
     np.divide(slower, quicker, out=ratio, where=rocks & (quicker > 0))
     return ratio

@@ -29,6 +29,12 @@ class Measure:
     value: Callable[[Any], float | int | str | None]
     told: str
 
+    def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
+        """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
+        if MEASURES.get(self.name) is self:
+            return _measure, (self.name,)
+        return Measure, (self.name, self.per, self.quantity, self.value, self.told)
+
     def unit(self, linkage: Linkage, output: str) -> str:
         """The unit of its numbers, "" where there is none; `output` is the column whose motion is told."""
         slides = linkage.column_kinds[linkage.columns.index(output)] == "slide"

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -38,35 +36,6 @@ class Mobility:
         if self.finite is not None:
             parts.append(f"moves with {self.finite}")
         return ", ".join(parts)
-
-
-#: With more balls than these links between them also move in other ways than spinning.
-MOST_SPINNING_BALLS = 3
-
-
-def spins_between_balls(kinds: str, names: Sequence[str]) -> tuple[str, ...]:
-    """A line for each idle spin of several links together, in a loop of these joints, in loop order.
-
-    All links between two balls can turn about the line of the balls, whatever joints they have among
-    themselves: no other joint moves. A single link between neighbouring balls is not told of here.
-
-        >>> spins_between_balls("RSRS", ["crank", "ball_a", "hinge", "ball_b"])
-        ('spin of links 2 and 3 together about the line of ball_a and ball_b',)
-    """
-    balls = [place for place, kind in enumerate(kinds) if kind == "S"]
-    if not 2 <= len(balls) <= MOST_SPINNING_BALLS:
-        return ()
-    pairs = [*pairwise(balls), *([(balls[0], balls[-1])] if len(balls) > 2 else [])]
-    lines = []
-    for first, second in pairs:
-        # link i + 1 lies after joint i, counted from 0; the last is the ground, which no such pair encloses
-        links = [str(link) for link in range(first + 1, second + 1)]
-        if len(links) > 1:
-            told = f"{', '.join(links[:-1])} and {links[-1]}"
-            lines.append(
-                f"spin of links {told} together about the line of {names[first]} and {names[second]}"
-            )
-    return tuple(lines)
 
 
 #: Below this share of a wrench's length a part of it is rounding.

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass, field
+from decimal import Decimal
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -53,6 +55,37 @@ class DeadCentre:
     output: float
     branch: int
     condition: float
+
+
+@dataclass(frozen=True, eq=False)
+class ChangePoint:
+    """A pose from which the loop can go on in more than one way, or that stands alone.
+
+    `q` (columns,) are its joint values [rad in (-pi, pi], or length], `input` that of the input; `circuits`
+    the numbers of those that meet there; `ways` how many curves lead out of it, two for each branch that
+    passes. An isolated pose has none.
+
+    Source: docs/theory.md, (19) to (22).
+    """
+
+    input: float
+    q: Floats
+    circuits: tuple[int, ...]
+    ways: int
+
+    @property
+    def isolated(self) -> bool:
+        """Whether no motion leads out of it."""
+        return self.ways == 0
+
+
+def change_points_from(raw: Sequence[tuple[Any, Sequence[int], int]], column: int) -> tuple[ChangePoint, ...]:
+    """Change points from the core's values of all columns, circuits and ways; `column`: the input."""
+    points = (
+        ChangePoint(float(values[column]), np.array(values), tuple(circuits), ways)
+        for values, circuits, ways in raw
+    )
+    return tuple(sorted(points, key=lambda point: point.input % math.tau))
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,15 +182,36 @@ class Trace:
     status: Words
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Law:
-    """An input law: time [s], input [rad] and its derivatives by time, each of shape (n,)."""
+    """An input law: time [s], input [rad] and its derivatives by time, each of shape (n,).
+
+    Laws of the same numbers are equal; its arrays are its own and read-only.
+    """
 
     t: Floats
     q: Floats
     dq: Floats
     ddq: Floats
     dddq: Floats
+
+    def __post_init__(self) -> None:
+        for name in ("t", "q", "dq", "ddq", "dddq"):
+            array = np.array(getattr(self, name), dtype=np.float64)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+    def __reduce__(self) -> tuple[type[Law], tuple[Floats, ...]]:
+        return Law, (self.t, self.q, self.dq, self.ddq, self.dddq)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Law):
+            return NotImplemented
+        return np.array_equal(self.t, other.t) and np.array_equal(self.table, other.table)
+
+    def __hash__(self) -> int:
+        # equal zeros differ in their sign bit, which adding 0 takes away
+        return hash(((self.t + 0.0).tobytes(), (self.table + 0.0).tobytes()))
 
     @staticmethod
     def of(
@@ -184,9 +238,7 @@ class Law:
                 )
         if np.any(np.diff(checked["t"]) <= 0):
             raise RequestError("t: times must rise from sample to sample")
-        return Law(
-            **{name: np.ascontiguousarray(np.broadcast_to(v, (count,))) for name, v in checked.items()}
-        )
+        return Law(**{name: np.broadcast_to(values, (count,)) for name, values in checked.items()})
 
     @property
     def table(self) -> Floats:
@@ -220,7 +272,8 @@ class Circuit:
     residual: Floats
     condition: Floats
     dead_centres: tuple[DeadCentre, ...]
-    #: Ranges [rad, or length] of input and output; `None` for one that turns fully.
+    #: Ranges [rad, or length] of input and output; `None` for one that turns fully, though it may turn back
+    #: on the way.
     input_range: tuple[float, float] | None
     output_range: tuple[float, float] | None
     #: The transmission angle [rad]; `None` where it is not defined.
@@ -250,6 +303,26 @@ class Circuit:
         return self.q[:, self.output_column]
 
     @property
+    def turns_back(self) -> bool:
+        """Whether the input has dead centres: there rates against it grow without bound."""
+        return any(d.kind == "input" for d in self.dead_centres)
+
+    @property
+    def goes_round(self) -> bool:
+        """Whether the input, driven one way, leads all along the circuit: it turns fully and never back."""
+        return self.closed and self.input_range is None and not self.turns_back
+
+    def pass_range(self, branch: int) -> tuple[float, float] | None:
+        """The range of the input [rad, or length] on one of its passes; `None` where it goes round."""
+        if self.goes_round:
+            return None
+        ends = [d.input for d in self.dead_centres if d.kind == "input"]
+        if not self.closed or branch >= len(ends):
+            return self.input_range
+        ends.append(ends[0] + math.tau * self.turns)
+        return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
+
+    @property
     def angle(self) -> Extremes | None:
         """The extremes of the output angle [rad]: its dead centres; `None` for an output that turns fully."""
         ends = [d for d in self.dead_centres if d.kind == "output"]
@@ -267,9 +340,10 @@ class Circuit:
     def time_ratio(self) -> float | None:
         """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
 
-        `None` also at a change point where both ends of the output are at one input: a stroke without time.
+        `None` also for a crank that turns back on the way, and at a change point where both ends of the
+        output are at one input: a stroke without time.
         """
-        if self.angle is None or self.input_range is not None:
+        if self.angle is None or self.input_range is not None or self.turns_back:
             return None
         stroke = (self.angle.highest_at - self.angle.lowest_at) % math.tau
         slower, quicker = max(stroke, math.tau - stroke), min(stroke, math.tau - stroke)
@@ -361,8 +435,8 @@ class Motion:
     motion_type: str
     #: Input dead centres [rad] in [0, 2 pi), rising.
     limits: Floats
-    #: Inputs [rad] where two limits meet, or come nearer than 1e-6 rad.
-    change_points: Floats
+    #: Poses at which branches meet, or would by a change of some 1e-12 of a dimension; isolated poses too.
+    change_points: tuple[ChangePoint, ...]
     circuits: tuple[Circuit, ...]
     completeness: Literal["closed-form", "counted", "algebraic", "searched"]
     #: How the set of circuits was established.
@@ -374,6 +448,13 @@ class Motion:
     misfits: Floats = field(default_factory=_none)
     #: How the circuits were counted; `None` where they were not.
     count: Count | None = None
+
+    @property
+    def change_point_inputs(self) -> Floats:
+        """The input at the change points [rad in [0, 2 pi), or length], rising; isolated poses aside."""
+        values = np.array([point.input for point in self.change_points if not point.isolated])
+        turns = self.linkage.column_kinds[self.linkage.columns.index(self.input)] == "turn"
+        return np.sort(np.mod(values, math.tau) if turns else values)
 
     @property
     def idle(self) -> tuple[str, ...]:
@@ -538,14 +619,47 @@ def chosen_circuit(motion: Motion, index: int) -> Circuit:
 
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
-    try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise RequestError(f"{name}: not an array of numbers") from None
-    if array.ndim > 1:
-        raise RequestError(f"{name}: an array of shape {array.shape} does not fit; give one dimension")
-    array = array.reshape(-1)
+    array = real_array(name, values)
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
         raise RequestError(f"{name}[{bad[0]}]: {array[bad[0]]} is not a finite number")
     return array
+
+
+def finite_number(name: str, value: npt.ArrayLike) -> float:
+    """One finite number, or `RequestError`."""
+    array = real_array(name, value)
+    if array.size != 1:
+        raise RequestError(f"{name}: {array.size} values where one belongs; give one number")
+    number = float(array[0])
+    if not math.isfinite(number):
+        raise RequestError(f"{name}: {number} is not a finite number")
+    return number
+
+
+def real_array(name: str, values: npt.ArrayLike) -> Floats:
+    """A one-dimensional array of real numbers, finite or not, or `RequestError`; a number is an array of one.
+
+    NumPy alone would take texts, truth values and `None` for numbers.
+    """
+    try:
+        given = np.asarray(values)
+        array = np.ascontiguousarray(given, dtype=np.float64) if _is_real(given) else None
+    except (TypeError, ValueError, OverflowError):
+        array = None
+    if array is None:
+        wanted = (
+            "an array of numbers" if isinstance(values, Sized) and not isinstance(values, str) else "a number"
+        )
+        raise RequestError(f"{name}: {shown(values)} is not {wanted}; give {wanted}")
+    if given.ndim > 1:
+        raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give one dimension")
+    return array.reshape(-1)
+
+
+def _is_real(array: npt.NDArray[Any]) -> bool:
+    # integers beyond 64 bits come as objects, as do a caller's own kinds of numbers
+    return array.dtype.kind in "iuf" or (
+        array.dtype.kind == "O"
+        and all(isinstance(x, Real | Decimal) and not isinstance(x, bool) for x in array.flat)
+    )

@@ -21,7 +21,6 @@ from sevenbar.figure import (
     input_label,
     new_figure,
     note,
-    rocking,
     shown_value,
     slides,
     title,
@@ -161,7 +160,7 @@ def point_path(
         if not slides(motion, motion.input):
             below.xaxis.set_major_locator(MaxNLocator(12, steps=[1, 1.5, 3, 4.5, 6, 9, 10]))
         bounded = speed[np.isfinite(speed)]
-        if rocking(chosen) and bounded.size:
+        if chosen.turns_back and bounded.size:
             below.set_ylim(0, 1.1 * np.percentile(bounded, 100 - CUT["velocity"]))
         elif bounded.size:
             below.set_ylim(0, 1.08 * (bounded.max() or 1.0))

@@ -26,7 +26,6 @@ from sevenbar.figure import (
     input_label,
     new_figure,
     note,
-    rocking,
     save,
     shown_value,
     slides,
@@ -110,7 +109,7 @@ def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -
     scaled = [v * math.pi / (np.ptp(v) or 1.0) if slides(motion, column) else v for column, v in ends]
     steps = np.hypot(*(np.diff(values) for values in scaled))
     travel = np.concatenate([[0.0], np.cumsum(steps)])
-    start = 0.0 if circuit.input_range is None else 0.5
+    start = 0.0 if circuit.goes_round else 0.5
     if motion.linkage.kind != "RSSR":
         start = 0.35  # many a loop lies flat, or folded, at zero
     wanted = (np.arange(positions) + start) / positions * travel[-1]
@@ -177,7 +176,7 @@ def curves(motion: Motion, against: Literal["both", "input", "time"] = "both") -
     chosen_circuit(motion, 0)
     if against not in ("both", "input", "time"):
         raise RequestError(f"against: {shown(against)} is not offered; give both, input or time")
-    turning = motion.law is None and all(circuit.input_range is None for circuit in motion)
+    turning = motion.law is None and all(circuit.goes_round for circuit in motion)
     columns = [against] if against != "both" else ["input"] if turning else ["input", "time"]
     drawn = passes(motion)
     with rc_context(STYLE):
@@ -235,7 +234,10 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over
     if over == "input":
         if not slides(motion, motion.input):
             axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
-        for inputs, style, name in ((motion.limits, "--", LIMIT), (motion.change_points, ":", CHANGE_POINT)):
+        for inputs, style, name in (
+            (motion.limits, "--", LIMIT),
+            (motion.change_point_inputs, ":", CHANGE_POINT),
+        ):
             for place in inputs_between(motion, inputs, ends.min(), ends.max()):
                 axes.axvline(place, color="#505050", lw=1.0, ls=style, zorder=1, label=name)
     axes.set_xlabel(input_label(motion) if over == "input" else "time [s]")
@@ -272,7 +274,7 @@ def _cut(axes: Axes, drawn: Sequence[Pass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; tells whether it did."""
     told = [(line, told_range(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
     spans = [span for _, span in told if span is not None]
-    if quantity == "angle" or not any(span is not None and rocking(line.circuit) for line, span in told):
+    if quantity == "angle" or not any(span is not None and line.circuit.turns_back for line, span in told):
         return False
     low, high = np.min(spans), np.max(spans)
     axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))

@@ -87,7 +87,10 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "samples": motion.samples,
         "motion_type": motion.motion_type,
         "limits": motion.limits.tolist(),
-        "change_points": motion.change_points.tolist(),
+        "change_points": [
+            {"input": p.input, "q": p.q.tolist(), "circuits": list(p.circuits), "ways": p.ways}
+            for p in motion.change_points
+        ],
         "mobility": {
             "gruebler": motion.mobility.gruebler,
             "freedoms": motion.mobility.freedoms,
@@ -105,7 +108,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
 
 
 def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
-    unbounded = "unbounded" if circuit.input_range is not None else "change-point"
+    unbounded = "change-point" if circuit.goes_round else "unbounded"
     return {
         "motion_type": circuit.motion_type,
         "closed": circuit.closed,

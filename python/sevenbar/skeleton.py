@@ -48,7 +48,8 @@ def walk(motion: Motion, circuit: Circuit) -> Walk:
         passes = tuple(slice(a, b) for a, b in pairwise(starts))
         ways = _ways(motion, circuit.input, passes)
         return Walk(rows, circuit.input, circuit.output, circuit.time, passes, ways)
-    way = math.copysign(circuit.turns * math.tau, motion.speed)
+    # one that turns back on the way is walked as it rises
+    way = circuit.turns * math.copysign(math.tau, motion.speed if circuit.goes_round else 1.0)
     gained = 0.0 if circuit.output_range is not None else _turns_gained(circuit.output)
     last = circuit.input[0] + way
     period = circuit.time[-1] + abs(last - circuit.input[-1]) / abs(motion.speed)

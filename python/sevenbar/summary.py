@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.general import words_of
 from sevenbar.linkage import Linkage
 from sevenbar.mobility import Mobility
 from sevenbar.motion import Circuit, DeadCentre, Extremes, Modes, Motion
@@ -138,10 +139,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits or motion.limits.size:
         show = _Shown(_units(motion)[0])
         facts.append(("input limits", "  ".join(show(x) for x in motion.limits) or _no_limits(motion)))
-    if motion.change_points.size:
-        where = "  ".join(_degrees(x) for x in motion.change_points)
-        what = "two limits lie within 1e-6 rad; the least change of a dimension decides"
-        facts.append(("change point", f"input {where}: {what}"))
+    facts.extend(_change_points(motion))
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
     if motion.completeness != "closed-form":
         facts.append(("established", motion.established))
@@ -152,6 +150,21 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
     return facts
+
+
+def _change_points(motion: Motion) -> list[tuple[str, str]]:
+    """Lines for the poses at which branches meet, and for those that stand alone."""
+    show = _Shown(_units(motion)[0])
+    lines = []
+    meeting = [point for point in motion.change_points if not point.isolated]
+    if meeting:
+        where = "  ".join(show(x) for x in motion.change_point_inputs)
+        what = "branches meet there; the least change of a dimension decides how it goes on"
+        lines.append(("change point", f"input {where}: {what}"))
+    alone = [show(point.input) for point in motion.change_points if point.isolated]
+    if alone:
+        lines.append(("isolated pose", f"input {'  '.join(alone)}: no motion leads out of it"))
+    return lines
 
 
 def _units(motion: Motion) -> tuple[str, str]:
@@ -239,7 +252,7 @@ def _no_limits(motion: Motion) -> str:
 
 def _circuit_count(motion: Motion) -> str:
     if not motion.circuits:
-        return "none: it closes only at the change point" if motion.change_points.size else "none"
+        return "none: it closes only in isolated poses" if motion.change_points else "none"
     turning = sorted({c.turns for c in motion if c.closed and c.turns})
     ways = {
         f"{{}} after {_turns(k)} of the input": sum(c.closed and c.turns == k for c in motion)
@@ -298,9 +311,12 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
             return ends(extremes, _plain, "no row within the range")
-        return ends(extremes, _plain, "no bound at limits" if circuit.input_range else "change point")
+        return ends(extremes, _plain, "change point" if circuit.goes_round else "no bound at limits")
 
-    def range_of(extent: tuple[float, float] | None, show: _Shown) -> Texts:
+    def range_of(circuit: Circuit, end: int, show: _Shown) -> Texts:
+        extent = circuit.output_range if end else circuit.input_range
+        if extent is not None and words_of(circuit.motion_type)[end] == "spindle":
+            return ("without end",)
         return ("full turns",) if extent is None else (show(extent[0]), show(extent[1]))
 
     def way(circuit: Circuit) -> Texts:
@@ -317,15 +333,18 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         )
 
     def reach(circuit: Circuit) -> Texts:
-        return ends(circuit.angle, result, "") if circuit.angle else range_of(circuit.output_range, result)
+        return ends(circuit.angle, result, "") if circuit.angle else range_of(circuit, 1, result)
 
     def rate_of(name: str, unit: str, pick: Callable[[Circuit], Extremes | None]) -> _Quantity:
         head = f"{second} {name}\n[{unit}] @ {first}"
         return _Quantity(f"{second} {name}", head, lambda c: rate(pick(c), c), f"[{unit}]", ends=True)
 
     def stands_still(end: str) -> list[_Quantity]:
-        told, others = f"dead centres of the {end}", f"other dead centres of the {end}"
-        head = f"other dead\ncentres of\nthe {end}"
+        # a table tells the ends of a range as that
+        ranged = end == "output" or any(c.input_range is not None for c in motion)
+        other = "other " if ranged else ""
+        told, others = f"dead centres of the {end}", f"{other}dead centres of the {end}"
+        head = f"{other}dead\ncentres of\nthe {end}"
         return [
             _Quantity(told, "", lambda c: _dead_centres(c, end, place), only="list"),
             _Quantity(others, head, lambda c: _dead_centres(c, end, place, within=True), only="table"),
@@ -337,13 +356,11 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         _Quantity(
             f"range of {first}",
             f"range of\n{first}",
-            lambda c: range_of(c.input_range, place),
+            lambda c: range_of(c, 0, place),
             between=" to ",
         ),
         *stands_still("input"),
-        _Quantity(
-            f"range of {second}", "", lambda c: range_of(c.output_range, result), between=" to ", only="list"
-        ),
+        _Quantity(f"range of {second}", "", lambda c: range_of(c, 1, result), between=" to ", only="list"),
         _Quantity(f"range of {second}", f"range of\n{second} @ {first}", reach, between=" to ", only="table"),
         _Quantity(f"swing of {second}", "", swing, only="list"),
         *stands_still("output"),

@@ -16,6 +16,21 @@ pub enum RowStatus {
     TurnsUndefined = 4,
 }
 
+impl RowStatus {
+    /// The status of a number.
+    pub fn numbered(number: f64) -> Option<Self> {
+        [
+            Self::Ok,
+            Self::DeadCentre,
+            Self::ChangePoint,
+            Self::NoSolution,
+            Self::TurnsUndefined,
+        ]
+        .into_iter()
+        .find(|&status| f64::from(status as u8) == number)
+    }
+}
+
 /// Which joint stands still at a dead centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeadCentreKind {

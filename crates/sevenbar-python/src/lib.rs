@@ -160,8 +160,18 @@ impl Rssr {
             .collect::<PyResult<Vec<_>>>()?;
         let result = PyDict::new(py);
         result.set_item("motion_type", motion.motion_type.name())?;
-        result.set_item("limits", motion.limits.into_pyarray(py))?;
-        result.set_item("change_points", motion.change_points.into_pyarray(py))?;
+        result.set_item("limits", motion.limits.clone().into_pyarray(py))?;
+        let change_points: Vec<_> = motion
+            .change_points
+            .iter()
+            .map(|&at| {
+                let (values, circuits) = self.0.change_point(&motion, at);
+                // two branches cross
+                let ways = if circuits.is_empty() { 0 } else { 4 };
+                (values, circuits, ways)
+            })
+            .collect();
+        result.set_item("change_points", change_points)?;
         result.set_item("circuits", circuits)?;
         Ok(result)
     }

@@ -4,13 +4,12 @@ use crate::{CoreError, dead_centre_rows, flat, law_rows};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyReadonlyArray3,
+    PyReadonlyArray3, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyType};
 use sevenbar_core::loops::{self, Circuit, Idle, Kind, Through};
 use sevenbar_core::rigid::Pose;
-use std::sync::Arc;
 
 pub(crate) fn pose(m: ArrayView2<'_, f64>) -> Pose {
     Pose::from_rows(std::array::from_fn(|i| std::array::from_fn(|j| m[[i, j]])))
@@ -18,14 +17,11 @@ pub(crate) fn pose(m: ArrayView2<'_, f64>) -> Pose {
 
 /// A single closed loop of R, P, H and S joints.
 #[pyclass(frozen, module = "sevenbar._core")]
-pub(crate) struct Loop(Arc<loops::Loop>);
+pub(crate) struct Loop(loops::Loop);
 
-/// Rows of a circuit: of them any link can be asked.
+/// Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers.
 #[pyclass(frozen, module = "sevenbar._core")]
-pub(crate) struct Rows {
-    owner: Arc<loops::Loop>,
-    rows: loops::Rows,
-}
+pub(crate) struct Rows(loops::Rows);
 
 /// Joints by their letters, screws with their advance for a radian.
 pub(crate) fn kinds(letters: &str, advances: &[f64]) -> PyResult<Vec<Kind>> {
@@ -50,6 +46,8 @@ type Modes<'py> = (
     &'static str,
     Vec<f64>,
 );
+
+type RowNumbers<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, f64);
 
 fn no_input(column: usize) -> PyErr {
     CoreError::new_err(format!("column {column} has no freedom of its own"))
@@ -80,12 +78,7 @@ impl Loop {
             ));
         }
         let links: Vec<Pose> = links.axis_iter(Axis(0)).map(pose).collect();
-        Ok(Self(Arc::new(loops::Loop::new(
-            &kinds,
-            pose(base),
-            pose(ground),
-            &links,
-        ))))
+        Ok(Self(loops::Loop::new(&kinds, pose(base), pose(ground), &links)))
     }
 
     /// The size of which residuals are parts.
@@ -100,6 +93,12 @@ impl Loop {
         self.0.freedoms()
     }
 
+    /// Whether no more than one freedom can remain, and every idle one is held.
+    #[getter]
+    fn can_be_driven(&self) -> bool {
+        self.0.can_be_driven()
+    }
+
     /// Idle freedoms: a word, the joint concerned and its neighbour, counted from 0.
     #[getter]
     fn idle(&self) -> Vec<(&'static str, usize, usize)> {
@@ -108,6 +107,7 @@ impl Loop {
             .iter()
             .map(|idle| match *idle {
                 Idle::BetweenBalls(a) => ("between-balls", a, a + 1),
+                Idle::ChainBetweenBalls(a, b) => ("chain-between-balls", a, b),
                 Idle::BallOnAxis(held, ball) => ("ball-on-axis", held, ball),
                 Idle::OneAxis(held, other) => ("one-axis", held, other),
                 Idle::OneDirection(held, other) => ("one-direction", held, other),
@@ -187,6 +187,12 @@ impl Loop {
             .map(|c| self.circuit_dict(py, c))
             .collect::<PyResult<Vec<_>>>()?;
         result.set_item("circuits", circuits)?;
+        let change_points: Vec<_> = motion
+            .change_points
+            .into_iter()
+            .map(|p| (p.values, p.circuits, p.ways))
+            .collect();
+        result.set_item("change_points", change_points)?;
         Ok(result)
     }
 
@@ -223,6 +229,19 @@ impl Loop {
         }
         Ok(result)
     }
+
+    /// A point of a link along rows of a circuit with three derivatives by time, (4, n, 3), in the report frame; `link` counts from 0,
+    /// `at` is in the frame after that link's joint.
+    fn point<'py>(
+        &self,
+        py: Python<'py>,
+        rows: &Rows,
+        link: usize,
+        at: [f64; 3],
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let out = py.detach(|| self.0.point(&rows.0, link, at));
+        PyArray1::from_vec(py, out).reshape([4, rows.0.len(), 3])
+    }
 }
 
 fn write_found(result: &Bound<'_, PyDict>, found: &loops::Found) -> PyResult<()> {
@@ -254,17 +273,34 @@ impl Loop {
         result.set_item("velocity", ends(circuit.extremes[0]))?;
         result.set_item("acceleration", ends(circuit.extremes[1]))?;
         result.set_item("jerk", ends(circuit.extremes[2]))?;
-        result.set_item("rows", Rows { owner: self.0.clone(), rows })?;
+        result.set_item("rows", Rows(rows))?;
         Ok(result)
     }
 }
 
 #[pymethods]
 impl Rows {
-    /// A point of a link with three derivatives by time, (4, n, 3), in the report frame; `link` counts from 0, `at` is in the
-    /// frame after that link's joint.
-    fn point<'py>(&self, py: Python<'py>, link: usize, at: [f64; 3]) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let out = py.detach(|| self.owner.point(&self.rows, link, at));
-        PyArray1::from_vec(py, out).reshape([4, self.rows.len(), 3])
+    /// From numbers (n, numbers of a row), turns to be added to each column, and the speed.
+    #[new]
+    fn new(
+        numbers: PyReadonlyArray2<'_, f64>,
+        offsets: PyReadonlyArray1<'_, f64>,
+        speed: f64,
+    ) -> PyResult<Self> {
+        let numbers = numbers
+            .as_slice()
+            .ok()
+            .filter(|_| numbers.shape()[1] == loops::ROW_NUMBERS)
+            .ok_or_else(|| CoreError::new_err(format!("rows need {} numbers each", loops::ROW_NUMBERS)))?;
+        loops::Rows::from_numbers(numbers, flat("offsets", &offsets)?.to_vec(), speed)
+            .map(Self)
+            .ok_or_else(|| CoreError::new_err("no rows of a circuit have these numbers"))
+    }
+
+    /// The class and what it makes these rows of again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyType>, RowNumbers<'py>)> {
+        let numbers = PyArray1::from_vec(py, self.0.numbers()).reshape([self.0.len(), loops::ROW_NUMBERS])?;
+        let offsets = PyArray1::from_slice(py, self.0.offsets());
+        Ok((py.get_type::<Self>(), (numbers, offsets, self.0.speed())))
     }
 }

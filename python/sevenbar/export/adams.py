@@ -80,10 +80,11 @@ class _Commands:
             raise RequestError(
                 "cmd: a motion driven by a law has no constant speed; give one that is driven at a speed"
             )
-        if circuit.input_range is None:
+        ends = circuit.pass_range(self.pose.branch)
+        if ends is None:
             turns = max(1, circuit.turns)
             return motion.speed, turns * math.tau / abs(motion.speed), turns * motion.samples
-        low, high = circuit.input_range
+        low, high = ends
         way = (high - self.pose.input) if motion.speed > 0 else (self.pose.input - low)
         return motion.speed, DRIVEN_SHARE * way / abs(motion.speed), motion.samples
 

@@ -57,13 +57,13 @@ class Pose:
 def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int | None = None) -> Pose:
     """The pose of a circuit at an input `at` [rad, or length] on its pass `branch`, the first by default.
 
-    Without `at`: the first row of a circuit whose input turns fully, the middle of the input's range for
-    one that rocks. Raises `RequestError` where the circuit has no pose there.
+    Without `at`: the first row of a circuit whose input goes round, the middle of the pass where it turns
+    back. Raises `RequestError` where the circuit has no pose there.
     """
     chosen = chosen_circuit(motion, circuit)
     linkage = motion.linkage
     if at is None:
-        ends = chosen.input_range
+        ends = chosen.pass_range(branch or 0)
         at = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
     passes = sorted({int(b) for b in chosen.branch})
     if branch is not None and branch not in passes:

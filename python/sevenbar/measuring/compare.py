@@ -308,7 +308,7 @@ class _Problem:
                 f"linkage: {motion.motion_type}, so there is no motion to compare {self.source} with"
             )
         self.turns = {circuit.index: max(circuit.turns, 1) for circuit in motion.circuits}
-        self.full = all(circuit.input_range is None for circuit in motion.circuits)
+        self.full = all(circuit.goes_round for circuit in motion.circuits)
         found: dict[tuple[int, int], list[Floats]] = {}
         for circuit in motion.circuits:
             for branch in range(len(circuit.time) // inputs.size):

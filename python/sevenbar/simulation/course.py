@@ -89,7 +89,7 @@ def course(motion: Motion, index: int) -> Course:
     forward = 1.0 if motion.speed > 0 else -1.0
     count = len(circuit.time)
     solved = (circuit.status == "ok") | (circuit.status == "turns-undefined")
-    if circuit.closed and circuit.input_range is None and solved.all() and count >= LEAST_ROWS:
+    if circuit.goes_round and solved.all() and count >= LEAST_ROWS:
         rows = np.arange(count)
         if forward * (circuit.input[1] - circuit.input[0]) < 0:
             rows = rows[::-1]

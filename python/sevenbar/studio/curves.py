@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.figure import CIRCUIT_COLOURS, input_label, rocking, shown_value, slides, told_range
+from sevenbar.figure import CIRCUIT_COLOURS, input_label, shown_value, slides, told_range
 from sevenbar.motion import Extremes, Floats, Motion, chosen_circuit
 from sevenbar.plot import inputs_between, place_of
 from sevenbar.studio.axis import Axis, axis
@@ -229,7 +229,7 @@ def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) 
 
 def _keys(quantity: Quantity, own: Curve) -> list[tuple[str, str]]:
     """Short words, with their dashes, that tell the passes apart and that rates are cut."""
-    keys = [("axis cut", "")] if quantity.order and rocking(own.walked.circuit) else []
+    keys = [("axis cut", "")] if quantity.order and own.walked.circuit.turns_back else []
     if len(own.passes) > 1 and own.walked.motion.law is None:
         keys += [("rising", "20 0"), ("falling", "5 3")]
     return keys
@@ -239,10 +239,12 @@ def _limits(walked: Walked, frame: Frame, below: Axis, unit: str) -> str:
     """Dashed lines with values at input limits, paler for other circuits; dotted ones at change points."""
     motion = walked.motion
     left, top, _, bottom = frame.box
-    own = shown_value(motion, motion.input, np.array(walked.circuit.input_range or ()))
+    own = shown_value(
+        motion, motion.input, np.array([d.input for d in walked.circuit.dead_centres if d.kind == "input"])
+    )
     parts: list[str] = []
     free = 0.0
-    sorts = ((motion.limits, "4 3", "input limit"), (motion.change_points, "1 3", "change point"))
+    sorts = ((motion.limits, "4 3", "input limit"), (motion.change_point_inputs, "1 3", "change point"))
     for inputs, dashes, name in sorts:
         values = np.sort(inputs_between(motion, inputs, below.low, below.high))
         for value, x in zip(values.tolist(), frame.x(below, values).tolist(), strict=True):

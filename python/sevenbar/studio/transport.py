@@ -135,7 +135,7 @@ class Transport:
         self._travel.max = view.period * abs(_shown_speed(view)) or 1.0
         self._travel.step = self._travel.max / 720
         unit = view.linkage.length_unit if _slides(view) else "deg"
-        there = "" if view.circuit.input_range is None else ", there and back"
+        there = "" if view.circuit.goes_round else ", there and back"
         self._travel.label = f"input{there} [{unit}]"
 
 
@@ -153,7 +153,7 @@ def _reading(session: Session, view: View) -> str:
     circuit = view.circuit
     second = float(view.along(view.path.output, session.row))
     way = ""
-    if circuit.input_range is not None:
+    if not circuit.goes_round:
         way = " rising" if view.way[int(session.row)] * view.motion.speed > 0 else " falling"
     modes = session.modes()
     lines = [

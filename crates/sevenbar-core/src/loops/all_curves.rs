@@ -1,9 +1,11 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
+use super::arcs::{Arcs, contains, narrow_places};
 use super::around::Circle;
-use super::chain::{COLUMNS, Chain, Configuration};
+use super::chain::{COLUMNS, Chain, Configuration, Joint};
+use super::change_points::ChangePoint;
 use super::counting::{Count, Uncounted};
-use super::curve::{Curve, End, Node, dot};
+use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
@@ -27,10 +29,20 @@ const MOST_MODES: usize = 16;
 const SEED_JOINTS: usize = 2;
 
 /// An open range narrower than this [rad] is that of one singular pose, or of solutions infinite at a real input, and open with any joint.
-const NARROW: f64 = 1e-3;
+const WIDE_RANGE: f64 = 1e-3;
+
+/// Dead centres whose inputs differ by less [rad] are one.
+const SAME_INPUT: f64 = 1e-9;
 
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
+
+/// A mode whose screws have a singular value below this part of the greatest lies at a sharp bend.
+const NARROW: f64 = 1e-5;
+
+/// Norm of the screws' inverse at a sharp bend, and how many of its radii from a node of it a mode may be that lies there.
+const SHARP: f64 = 1e4;
+const BESIDE_BEND: f64 = 30.0;
 
 /// How freely a loop moves, as found in its poses.
 #[derive(Clone, Debug)]
@@ -56,22 +68,48 @@ pub(super) struct Curves {
     pub misfits: Vec<f64>,
     /// Modes at the zero of the first of the wished joints.
     pub modes_at_zero: Option<usize>,
+    /// Poses at which curves are not smooth, or that stand alone, once all curves are known.
+    pub change_points: Vec<ChangePoint>,
+    /// Freedoms of a pose out of which more than one leads.
+    surface: usize,
+    arcs: Arcs,
+    /// Modes at sharp bends, left for the last; and whether it has come to that.
+    unfollowed: Vec<Configuration>,
+    last: bool,
+    /// Columns whose limits say what is a change point.
+    wished: Vec<usize>,
     /// Curves through some of the modes to come.
     ahead: Vec<Curve>,
 }
 
-/// The curves through all modes at the seeds, or the first: seeds are values of the wished joints if they turn, else of the
-/// first joints that do.
-pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
-    let mut seeds: Vec<usize> = Vec::new();
-    for c in wished.iter().copied().chain(0..chain.columns) {
-        if chain.is_turn(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
-            seeds.push(c);
+/// The columns whose values are seeds: the wished ones if they turn, else the first that do; screws where none turns and no
+/// pose is drawn.
+fn seed_columns(chain: &Chain, wished: &[usize], drawn: bool) -> Vec<usize> {
+    let first = |fits: &dyn Fn(usize) -> bool| {
+        let mut seeds: Vec<usize> = Vec::new();
+        for c in wished.iter().copied().chain(0..chain.columns) {
+            if fits(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
+                seeds.push(c);
+            }
         }
+        seeds
+    };
+    let turning = first(&|c| chain.is_turn(c));
+    // where only screws turn, modes come from long searches and again for each turn of a screw: a drawn pose will do
+    if turning.is_empty() && !drawn {
+        first(&|c| matches!(chain.joints[chain.joint_of(c)], Joint::Screw(_)))
+    } else {
+        turning
     }
-    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new() };
+}
+
+/// The curves through all modes at the seeds, or the first.
+pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
+    let drawn = chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED;
+    let seeds = seed_columns(chain, wished, drawn);
+    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new(wished) };
     // the pose of a drawing first: the joints are zero there
-    if chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED {
+    if drawn {
         out.take(chain, &[Configuration::ZERO], wished[0]);
     }
     for seed in seeds {
@@ -84,7 +122,7 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         out.seeds = count;
         if first_only {
             for k in 0..count {
-                if out.curves.is_empty() {
+                if out.is_empty() {
                     out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, wished[0]);
                 }
             }
@@ -124,22 +162,17 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             }
         }
     }
-    out.forget_parts(chain);
+    out.finish(chain);
     out.misfits.sort_by(f64::total_cmp);
     if out.seed_columns.is_empty() {
         out.completeness = Completeness::Searched;
-    }
-    if out.curves.is_empty()
-        && let Some(found) = &mut out.found
-        && found.finite == 1
-    {
-        found.finite = 0;
     }
     out
 }
 
 impl Curves {
-    pub fn new() -> Self {
+    /// None yet; limits of the wished columns say what is a change point.
+    pub fn new(wished: &[usize]) -> Self {
         Self {
             curves: Vec::new(),
             found: None,
@@ -150,6 +183,12 @@ impl Curves {
             still: 0,
             misfits: Vec::new(),
             modes_at_zero: None,
+            change_points: Vec::new(),
+            surface: 0,
+            arcs: Arcs::default(),
+            unfollowed: Vec::new(),
+            last: false,
+            wished: wished.to_vec(),
             ahead: Vec::new(),
         }
     }
@@ -162,7 +201,7 @@ impl Curves {
     /// Whether nothing was counted yet, or so wide a range is left open that another joint may have an account of it.
     fn is_doubtful(&self) -> bool {
         match &self.count {
-            Ok(count) => count.open.iter().any(|o| o.to - o.from > NARROW),
+            Ok(count) => count.open.iter().any(|o| o.to - o.from > WIDE_RANGE),
             Err(why) => *why != Uncounted::Still,
         }
     }
@@ -175,33 +214,45 @@ impl Curves {
         circle: Circle,
         (column, rising): (usize, usize),
     ) -> Result<Count, Uncounted> {
-        let inputs = |curves: &[Curve]| -> Vec<f64> {
-            let turnings = curves.iter().flat_map(|c| c.turnings(chain, column));
-            turnings.map(|t| t.node.at.values[column]).collect()
-        };
-        let known = inputs(&self.curves);
-        survey.count(circle, known, &[], &mut |pose| {
-            let before = self.curves.len();
+        let singular: Vec<f64> = self.arcs.points.iter().map(|p| p.at.values[column]).collect();
+        let mut known = self.dead_centres(chain, column);
+        survey.count(circle, known.clone(), &singular, &mut |pose| {
             // the same pose with an idle link turned over does not count
             if chain.counts(pose) {
                 self.take(chain, &[*pose], rising);
             }
-            // beside a singular pose a place of a known curve may lie outside its tubes, but not the whole curve
-            let (old, new) = self.curves.split_at(before);
-            if new
-                .iter()
-                .any(|n| old.iter().any(|c| lies_on(chain, c, middle(n))))
-            {
-                self.curves.truncate(before);
-            }
-            inputs(&self.curves[before..])
+            let now = self.dead_centres(chain, column);
+            let told = |at: &&f64| known.iter().all(|k| (k - **at).abs() > SAME_INPUT);
+            let new: Vec<f64> = now.iter().filter(told).copied().collect();
+            known = now;
+            new
         })
+    }
+
+    /// The values of a column at which it turns back on any curve.
+    fn dead_centres(&self, chain: &Chain, column: usize) -> Vec<f64> {
+        let joined = self.arcs.joined(chain, self.wished[0]);
+        let curves = self.curves.iter().chain(&joined);
+        let turnings = curves.flat_map(|c| c.turnings(chain, column));
+        turnings
+            .filter(|t| !t.node.is_crossing())
+            .map(|t| t.node.at.values[column])
+            .collect()
+    }
+
+    /// Whether some motion is known.
+    fn is_empty(&self) -> bool {
+        self.curves.is_empty() && self.arcs.is_empty()
     }
 
     /// Those modes that lie on no curve yet.
     fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
-        let known = |m: &&Configuration| self.curves.iter().any(|c| lies_on(chain, c, m));
-        modes.iter().filter(|m| !known(m)).copied().collect()
+        modes.iter().filter(|m| !self.holds(chain, m)).copied().collect()
+    }
+
+    /// Whether a mode is a place of a known curve.
+    fn holds(&self, chain: &Chain, mode: &Configuration) -> bool {
+        self.curves.iter().any(|c| lies_on(chain, c, mode)) || self.arcs.hold(chain, mode)
     }
 
     /// The curve ahead on which a mode lies, if there is one, in this direction there.
@@ -214,7 +265,7 @@ impl Curves {
         let backwards = dot(&node.rates[0], direction) < 0.0;
         let curve = self.ahead.swap_remove(k);
         Some(if backwards {
-            chain.turned_round(&curve)
+            chain.turned_round(&curve, &[])
         } else {
             curve
         })
@@ -227,12 +278,48 @@ impl Curves {
         }
     }
 
+    /// Follows what leads out of a pose at which the motion may not be smooth; tells whether it is a change point or stands alone.
+    fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
+        let Some(point) = self.arcs.learn(chain, pose, &self.wished, stuck) else {
+            return false;
+        };
+        self.surface = self.surface.max(self.arcs.points[point].finite);
+        let passing = self.arcs.complete(chain, &self.wished);
+        // what was followed over the point by rounding is known by its arcs
+        self.curves.retain(|c| !contains(chain, c, &self.arcs));
+        for curve in passing {
+            if !lies_on_any(chain, &self.curves, curve.plainest()) {
+                self.curves.push(curve);
+            }
+        }
+        true
+    }
+
+    /// Follows what was left for the last, joins the arcs between change points, and says how freely the loop moves.
+    pub fn finish(&mut self, chain: &Chain) {
+        self.last = true;
+        for mode in std::mem::take(&mut self.unfollowed) {
+            let near = |n: &Node| length(&chain.difference(&n.at, &mode)) * n.inverse_norm < BESIDE_BEND;
+            let beside_bend = |c: &Curve| c.nodes.iter().any(|n| n.inverse_norm > SHARP && near(n));
+            if !self.curves.iter().any(beside_bend) {
+                self.take_together(chain, &[mode], self.wished[0]);
+            }
+        }
+        self.forget_parts(chain);
+        self.curves.extend(self.arcs.joined(chain, self.wished[0]));
+        self.change_points = std::mem::take(&mut self.arcs.points);
+        let finite = if self.curves.is_empty() { self.surface } else { 1 };
+        if let Some(found) = &mut self.found {
+            found.finite = found.finite.min(finite);
+        }
+    }
+
     fn take_together(&mut self, chain: &Chain, modes: &[Configuration], rising: usize) {
         let mut starts: Vec<Start> = Vec::new();
         let mut curves: Vec<Option<Curve>> = Vec::new();
         for mode in modes {
             let known = |c: &Curve| lies_on(chain, c, mode);
-            if self.curves.iter().any(known) || curves.iter().flatten().any(known) {
+            if self.holds(chain, mode) || curves.iter().flatten().any(known) {
                 continue;
             }
             let columns = chain.screws(mode);
@@ -246,7 +333,17 @@ impl Curves {
                 });
             }
             if chain.columns - rank != 1 {
-                self.still += 1;
+                // on a surface every pose is like this one
+                let isolated =
+                    chain.columns > rank + 1 && self.surface < 2 && self.branches(chain, mode, false);
+                self.still += usize::from(!isolated);
+                continue;
+            }
+            if values[rank - 1] < NARROW * values[0] && !self.last {
+                // where a curve bends sharply a start is not known well enough to be met again: from elsewhere first
+                if !self.branches(chain, mode, false) {
+                    self.unfollowed.push(*mode);
+                }
                 continue;
             }
             let mut direction = [0.0; COLUMNS];
@@ -263,38 +360,52 @@ impl Curves {
             .filter(|(_, c)| c.is_none())
             .map(|(s, _)| *s)
             .collect();
-        let mut followed = chain.follow(&left).into_iter();
-        let before = self.curves.len();
+        let mut followed = chain.follow(&left, &self.arcs.stops()).into_iter();
+        let mut fresh: Vec<Curve> = Vec::new();
         for (curve, start) in curves.into_iter().zip(&starts) {
             let Some(curve) = curve.or_else(|| followed.next()) else {
                 unreachable!()
             };
             // two modes may lie on one circuit
-            if self.curves[before..].iter().any(|c| lies_on(chain, c, &start.0)) {
+            if lies_on_any(chain, &fresh, &start.0)
+                || lies_on_any(chain, &fresh, curve.plainest())
+                || self.arcs.hold(chain, &start.0)
+            {
+                continue;
+            }
+            // one that could not be begun may lie on a curve that can be followed
+            let stuck = curve.end == End::Singular && curve.nodes.len() > 2;
+            let mut places = narrow_places(&curve);
+            if curve.end == End::Singular {
+                places.extend(curve.ends());
+            }
+            let mut branches = false;
+            for place in places {
+                branches |= self.branches(chain, &place, stuck);
+            }
+            if branches && (stuck || contains(chain, &curve, &self.arcs)) {
                 continue;
             }
             let lost = curve.end == End::Singular && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
             if curve.nodes.len() < 3 || curve.end == End::Open || lost {
                 self.still += 1;
             } else if !self.is_known(chain, &curve) {
-                self.curves.push(curve);
+                fresh.push(curve);
             }
         }
+        self.curves.extend(fresh);
     }
 
     /// Whether a curve with ends is known, though its start was not seen on one that is: beside a change point no step of a curve
     /// tells that a mode is on it, and a curve of too many nodes is known in part.
     fn is_known(&self, chain: &Chain, curve: &Curve) -> bool {
-        match curve.end {
-            End::Singular => self.curves.iter().any(|c| lies_on(chain, c, middle(curve))),
-            End::Far => {
-                let overlap =
-                    |one: &Curve, other: &Curve| ends(other).iter().any(|at| lies_on(chain, one, at));
-                let mut far = self.curves.iter().filter(|c| c.end == End::Far);
-                far.any(|c| overlap(c, curve) || overlap(curve, c))
-            }
-            _ => false,
+        if curve.end == End::Far {
+            let overlap =
+                |one: &Curve, other: &Curve| other.ends().into_iter().any(|at| lies_on(chain, one, at));
+            let mut far = self.curves.iter().filter(|c| c.end == End::Far);
+            return far.any(|c| overlap(c, curve) || overlap(curve, c));
         }
+        lies_on_any(chain, &self.curves, curve.plainest())
     }
 
     /// Forgets the curves between change points that are parts of later ones: those led on where these ended, within rounding.
@@ -302,21 +413,13 @@ impl Curves {
         let mut k = 0;
         while k < self.curves.len() {
             let (curve, later) = (&self.curves[k], &self.curves[k + 1..]);
-            if curve.end == End::Singular && later.iter().any(|c| lies_on(chain, c, middle(curve))) {
+            if curve.end == End::Singular && later.iter().any(|c| lies_on(chain, c, curve.plainest())) {
                 self.curves.remove(k);
             } else {
                 k += 1;
             }
         }
     }
-}
-
-fn ends(curve: &Curve) -> [&Configuration; 2] {
-    [&curve.nodes[0].at, &curve.nodes[curve.nodes.len() - 1].at]
-}
-
-fn middle(curve: &Curve) -> &Configuration {
-    &curve.nodes[curve.nodes.len() / 2].at
 }
 
 /// A basis of the wrenches that no joint yields to: force and moment with zero power on every screw.
@@ -328,15 +431,29 @@ fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
         .collect()
 }
 
+fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
+    curves.iter().any(|c| lies_on(chain, c, mode))
+}
+
 /// Whether a mode is a place of a curve.
-fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
+pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
     place_on(chain, curve, mode).is_some()
 }
 
 /// The node of a curve from which a step leads over a mode.
-fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
-    curve
-        .nodes
-        .iter()
-        .find(|node| chain.may_pass(node, mode) && chain.passes_through(node, mode).is_some())
+pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
+    // no nearer to the mode than this, in the turn that is farthest off
+    let mut least = 0.0;
+    for node in &curve.nodes {
+        let reach = REACH * node.step;
+        if least <= reach {
+            least = chain.farthest_turn(&node.at, mode);
+            if least <= reach && chain.passes_through(node, mode).is_some() {
+                return Some(node);
+            }
+        }
+        // a step changes no turn by more than its reach
+        least -= reach;
+    }
+    None
 }

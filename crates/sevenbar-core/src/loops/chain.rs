@@ -2,6 +2,7 @@
 //!
 //! Source: docs/theory.md, (1) to (5).
 
+use super::spun::Flat;
 use crate::rigid::{Pose, Vec3, dot, norm, scale};
 use crate::vector_math::ROUNDER;
 use crate::vectors::{LANES, Number, Vector};
@@ -51,9 +52,18 @@ pub(super) struct Chain {
     pub columns: usize,
     /// The sum of the links' lengths.
     pub around: f64,
-    /// Columns of turns that must stay within a quarter turn of an angle [rad]: the others are the same pose with a link that
-    /// spins idly turned over.
-    pub halves: Vec<(usize, f64)>,
+    /// Turns of which one half counts: in the other stand the same poses, with links that spin idly turned over.
+    pub halves: Vec<Half>,
+}
+
+/// The half turn of a joint that counts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Half {
+    pub joint: usize,
+    /// Its middle [rad].
+    pub middle: f64,
+    /// The joint by which the line of two balls turns besides, and how.
+    pub line: Option<(usize, Flat)>,
 }
 
 /// Where the joints stand: a value for each column but a ball's, a rotation for each ball.
@@ -200,9 +210,11 @@ impl Chain {
 
     /// Whether a configuration is the one of its pose that counts.
     pub fn counts(&self, at: &Configuration) -> bool {
-        self.halves
-            .iter()
-            .all(|&(c, middle)| (at.values[c] - middle).cos() > 0.0)
+        let value = |joint: usize| at.values[self.first[joint]];
+        self.halves.iter().all(|half| {
+            let more = half.line.map_or(0.0, |(joint, flat)| flat.angle(value(joint)));
+            (value(half.joint) + more - half.middle).cos() > 0.0
+        })
     }
 
     /// Whether joints that move with one freedom leave constraints that say what others say: seven columns with rank six do not.

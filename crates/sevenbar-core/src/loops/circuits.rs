@@ -66,7 +66,7 @@ pub(super) struct Passes<'a> {
     pub curve: Curve,
     pub input: usize,
     pub passes: Vec<Pass>,
-    /// The dead centres at the passes' ends; the first and last are one where the circuit rocks and is closed.
+    /// The dead centres at the passes' ends; the first and last are one where the circuit is closed.
     pub limits: Vec<Node>,
 }
 
@@ -153,11 +153,18 @@ pub(super) fn input_row<N: Number>(input: usize) -> Columns<N> {
 impl<'a> Passes<'a> {
     /// The passes of a curve on which the input does not rest.
     pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
+        // an input that gains turns rises on the whole, though it may turn back on the way
+        let curve = if curve.gained()[input] < 0.0 && curve.goes_round(chain, input) && !curve.crosses() {
+            chain.turned_round(&curve, &[])
+        } else {
+            curve
+        };
         let passes = Self::of(chain, curve.clone(), input)?;
-        if passes.passes[0].end > passes.passes[0].start {
+        // a curve over change points was joined in the direction it is to have
+        if passes.passes[0].end > passes.passes[0].start || curve.crosses() {
             return Some(passes);
         }
-        Some(Self::of(chain, chain.turned_round(&curve), input).unwrap_or(passes))
+        Some(Self::of(chain, chain.turned_round(&curve, &[]), input).unwrap_or(passes))
     }
 
     fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {
@@ -169,12 +176,18 @@ impl<'a> Passes<'a> {
         insert(chain, &mut curve, &turnings, input);
         let is_turning = |n: &Node| turns_at(n, input);
         if curve.end == End::Closed && !turnings.is_empty() {
+            let value = |k: usize| curve.nodes[k].at.values[input];
+            let goes_round = curve.goes_round(chain, input);
+            // which is the lowest of an input that gains turns depends on where the round begins: of its low ends that in the turn's
+            // first part is taken
+            let height = |k: usize| match goes_round {
+                true if value(k) < value(k + 1) => value(k).rem_euclid(TAU),
+                true => TAU + value(k).rem_euclid(TAU),
+                false => value(k),
+            };
             let lowest = (0..curve.nodes.len() - 1)
                 .filter(|&k| is_turning(&curve.nodes[k]))
-                .min_by(|&a, &b| {
-                    let value = |k: usize| curve.nodes[k].at.values[input];
-                    value(a).total_cmp(&value(b))
-                })?;
+                .min_by(|&a, &b| height(a).total_cmp(&height(b)))?;
             curve = begun_at(chain, &curve, lowest);
         }
         let last = curve.nodes.len() - 1;
@@ -192,7 +205,11 @@ impl<'a> Passes<'a> {
 
     /// The row of a pass at an input, which lies in it.
     pub fn row(&self, pass: usize, value: f64, rates: &[f64; ORDERS]) -> Option<Row> {
-        let rough = self.rough(pass, value);
+        let segment = self.segment(pass, value);
+        if let Some(row) = self.crossing_row(pass, segment, value) {
+            return Some(row);
+        }
+        let rough = self.rough_in(segment, value);
         let node = &self.curve.nodes[rough.node];
         self.chain
             .solved(self.input, &self.start(&rough), value, rates)
@@ -237,8 +254,26 @@ impl<'a> Passes<'a> {
         })
     }
 
-    /// Where a pass nearly has an input: the nearest node, and the length from it.
-    fn rough(&self, pass: usize, value: f64) -> Rough {
+    /// The row beside or at a change point, between the nodes where curves are cut: the pose, and no rates.
+    fn crossing_row(&self, pass: usize, segment: usize, value: f64) -> Option<Row> {
+        let chain = self.chain;
+        let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
+        let (crossing, other) = match (a.is_crossing(), b.is_crossing()) {
+            (true, _) => (a, b),
+            (_, true) => (b, a),
+            _ => return None,
+        };
+        let (here, there) = (crossing.at.values[self.input], other.at.values[self.input]);
+        let part = (value - here) / (there - here);
+        let part = if part.is_finite() { part } else { 0.0 };
+        let by = chain.difference(&crossing.at, &other.at).map(|x| x * part);
+        let mut at = chain.moved(&crossing.at, &by);
+        at.values[self.input] = value;
+        Some(self.pose_row(pass, at, RowStatus::ChangePoint))
+    }
+
+    /// The segment of a pass in which it has an input.
+    fn segment(&self, pass: usize, value: f64) -> usize {
         let p = &self.passes[pass];
         let nodes = &self.curve.nodes[p.from..=p.to];
         let rising = p.end > p.start;
@@ -246,10 +281,10 @@ impl<'a> Passes<'a> {
             let v = n.at.values[self.input];
             if rising { v <= value } else { v >= value }
         });
-        self.rough_in(p.from + past.saturating_sub(1).min(nodes.len() - 2), value)
+        p.from + past.saturating_sub(1).min(nodes.len() - 2)
     }
 
-    /// The same where the segment is known.
+    /// Where a segment nearly has an input: the nearest node, and the length from it.
     fn rough_in(&self, segment: usize, value: f64) -> Rough {
         let input = self.input;
         let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
@@ -263,6 +298,10 @@ impl<'a> Passes<'a> {
         } else {
             (segment + 1, -reach, 0.0)
         };
+        if a.is_crossing() || b.is_crossing() {
+            // left to the single row
+            return Rough { node, along: 0.0, tube: -1.0 };
+        }
         let n = &self.curve.nodes[node];
         let target = value - n.at.values[input];
         let (mut low, mut high) = (low, high);
@@ -303,19 +342,29 @@ impl<'a> Passes<'a> {
 
     /// The row at a dead centre.
     pub fn limit_row(&self, pass: usize, node: &Node) -> Row {
+        let status = if node.is_crossing() {
+            RowStatus::ChangePoint
+        } else {
+            RowStatus::DeadCentre
+        };
+        self.pose_row(pass, node.at, status)
+    }
+
+    /// A row without rates.
+    fn pose_row(&self, pass: usize, at: Configuration, status: RowStatus) -> Row {
         let chain = self.chain;
         Row {
-            at: node.at,
+            at,
             rates: [[f64::NAN; COLUMNS]; ORDERS],
-            status: RowStatus::DeadCentre,
+            status,
             pass,
-            residual: chain.residual(&chain.place(&node.at)),
+            residual: chain.residual(&chain.place(&at)),
             condition: f64::INFINITY,
         }
     }
 
-    /// Whether the circuit comes back with the input as it was.
-    pub fn rocks(&self) -> bool {
+    /// Whether the input has dead centres.
+    pub fn turns_back(&self) -> bool {
         !self.limits.is_empty()
     }
 
@@ -369,7 +418,10 @@ impl<'a> Passes<'a> {
     }
 
     /// Rows at the inputs of a law, once for each pass.
-    pub fn law_rows(&self, law: &[[f64; 4]], turns: bool) -> Vec<Row> {
+    ///
+    /// An input that turns may be met a turn on or back; one that lies in the pass with `shift` taken off it, as the circuit's
+    /// rows are told, is met there, for a pass may be longer than a turn.
+    pub fn law_rows(&self, law: &[[f64; 4]], turns: bool, shift: f64) -> Vec<Row> {
         let mut rows = Vec::new();
         for (n, pass) in self.passes.iter().enumerate() {
             let (low, high) = (pass.start.min(pass.end), pass.start.max(pass.end));
@@ -377,6 +429,8 @@ impl<'a> Passes<'a> {
                 let span = high - low;
                 let value = if self.limits.is_empty() && turns {
                     low + (q[0] - low).rem_euclid(span)
+                } else if turns && q[0] - shift >= low && q[0] - shift <= high {
+                    q[0] - shift
                 } else if turns {
                     q[0] - TAU * ((q[0] - 0.5 * (low + high)) / TAU).round()
                 } else {

@@ -151,8 +151,8 @@ impl Survey<'_> {
         if self.still {
             return Err(Uncounted::Still);
         }
-        let closure = self.finder.closure(Some(&self.watch));
-        let own = self.finder.own();
+        let closure = self.algebraic.closure(Some(&self.watch));
+        let own = self.algebraic.own();
         let places = circle.count;
         let mut account = Account {
             survey: self,
@@ -169,7 +169,7 @@ impl Survey<'_> {
         for &radius in &RADII {
             let circle = followed
                 .take()
-                .unwrap_or_else(|| self.finder.circle(&closure, radius, places, CAREFUL));
+                .unwrap_or_else(|| self.algebraic.circle(&closure, radius, places, CAREFUL));
             let Some(poles) = account.balance(&circle, &own) else {
                 continue;
             };
@@ -476,7 +476,7 @@ impl Account<'_> {
                 continue;
             }
             let pose = (found.tau.im.abs() < REAL)
-                .then(|| finder.configuration(&found.at, &finder.zeros(), found.tau.re))
+                .then(|| finder.configuration(&found.at, &self.survey.algebraic.zeros, found.tau.re))
                 .flatten();
             self.located.push(Branching { real: pose.is_some(), ..found });
             if let Some(pose) = pose {
@@ -506,9 +506,9 @@ mod tests {
     use crate::rigid::Pose;
 
     /// What is counted between the places of the first circle.
-    fn numbers(finder: &ModeFinder, survey: &Survey) -> Vec<(f64, (i64, i64))> {
-        let closure = finder.closure(Some(&survey.watch));
-        let circle = finder.circle(&closure, CIRCLE, 24, CAREFUL);
+    fn numbers(survey: &Survey) -> Vec<(f64, (i64, i64))> {
+        let closure = survey.algebraic.closure(Some(&survey.watch));
+        let circle = survey.algebraic.circle(&closure, CIRCLE, 24, CAREFUL);
         let account = Account {
             survey,
             closure: &closure,
@@ -519,7 +519,7 @@ mod tests {
             ranges: 0,
             seed: &mut |_| Vec::new(),
         };
-        let sectors = account.sectors(&circle, &finder.own()).unwrap();
+        let sectors = account.sectors(&circle, &survey.algebraic.own()).unwrap();
         sectors.iter().map(|s| (s.borders[0].angle, s.numbers)).collect()
     }
 
@@ -535,8 +535,8 @@ mod tests {
             let finder = ModeFinder::new(&chain, 0);
             let closed = Survey::new(&finder).unwrap();
             assert!(matches!(closed.infinite, Infinite::At(_)));
-            let watched = Survey::watching_all(&finder, closed.watch.clone());
-            let (a, b) = (numbers(&finder, &closed), numbers(&finder, &watched));
+            let watched = Survey::watching_all(&finder, finder.algebraic().unwrap(), closed.watch.clone());
+            let (a, b) = (numbers(&closed), numbers(&watched));
             assert_eq!(a, b);
             seen += a.iter().map(|(_, n)| n.1).sum::<i64>();
         }

@@ -39,6 +39,9 @@ const STILL: f64 = 1e-9;
 /// Guesses of a step's length, each from the one before.
 const GUESSES: usize = 3;
 
+/// A step changes no turn by more than this many times its length.
+pub(super) const REACH: f64 = 2.0;
+
 /// Corrections of a step with the inverse of the node before, each by so many terms of Neumann's series.
 const NEUMANN: usize = 3;
 
@@ -55,7 +58,7 @@ pub(super) struct Node<N = f64> {
     pub step: N,
     /// Radius about the predicted places of the step within which the curve is alone.
     pub tube: N,
-    /// Norm of the pseudo-inverse of the screws.
+    /// Norm of the pseudo-inverse of the screws; zero in the node of a change point, which has none.
     pub inverse_norm: N,
     /// Norms of the first and second coefficient of the screws' series, seen through the pseudo-inverse.
     pub slopes: [N; 2],
@@ -170,6 +173,23 @@ pub(super) fn correction<N: Number>(
 }
 
 impl Curve {
+    /// Its first place and its last.
+    pub fn ends(&self) -> [&Configuration; 2] {
+        [&self.nodes[0].at, &self.nodes[self.nodes.len() - 1].at]
+    }
+
+    /// The place at which it is told from others best: the farthest from any where it is not smooth.
+    pub fn plainest(&self) -> &Configuration {
+        let regular = self.nodes.iter().filter(|n| !n.is_crossing());
+        let best = regular.min_by(|a, b| a.inverse_norm.total_cmp(&b.inverse_norm));
+        &best.unwrap_or(&self.nodes[0]).at
+    }
+
+    /// Whether it passes change points.
+    pub fn crosses(&self) -> bool {
+        self.nodes.iter().any(Node::is_crossing)
+    }
+
     /// Whether a column stands still, but for rounding, all along.
     pub fn rests(&self, column: usize) -> bool {
         let (mut low, mut high, mut long) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
@@ -180,9 +200,46 @@ impl Curve {
         }
         high - low < STILL * long
     }
+
+    /// What each column gains from the first node to the last.
+    pub fn gained(&self) -> Columns {
+        let (first, last) = (&self.nodes[0], &self.nodes[self.nodes.len() - 1]);
+        combined(&last.at.values, 1.0, &first.at.values, -1.0)
+    }
+
+    /// Whether a column comes back whole turns on, be it with dead centres on the way.
+    pub fn goes_round(&self, chain: &Chain, column: usize) -> bool {
+        self.end == End::Closed && chain.is_turn(column) && self.gained()[column].abs() > 1.0
+    }
 }
 
 impl Node {
+    /// The change point between two arcs that pass it smoothly: the tangent is known, and how the curve bends is not.
+    pub fn crossing(at: Configuration, tangent: Columns, reach: f64) -> Self {
+        let still = [0.0; COLUMNS];
+        Self {
+            at,
+            // a rate that is zero is that of a column that turns back, and is set where this is known
+            rates: [
+                tangent.map(|t| if t == 0.0 { f64::MIN_POSITIVE } else { t }),
+                still,
+                still,
+            ],
+            step: 0.0,
+            tube: reach,
+            inverse_norm: 0.0,
+            slopes: [0.0; 2],
+            across: ALONE / reach,
+            far: 0.0,
+            open: 0.0,
+        }
+    }
+
+    /// Whether it is a change point.
+    pub fn is_crossing(&self) -> bool {
+        self.inverse_norm == 0.0
+    }
+
     /// The rate of a column by the distance along the tangent.
     #[inline(always)]
     pub fn rate(&self, column: usize, s: f64) -> f64 {
@@ -407,7 +464,19 @@ impl Chain {
     /// Whether the turns of a configuration are near enough for [`Self::passes_through`]: it tells most nodes apart at once.
     pub fn may_pass(&self, node: &Node, at: &Configuration) -> bool {
         self.joints.iter().zip(&self.first).all(|(joint, &c)| {
-            *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= 2.0 * node.step
+            *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= REACH * node.step
+        })
+    }
+
+    /// The turn that two configurations differ by most [rad].
+    pub fn farthest_turn(&self, a: &Configuration, b: &Configuration) -> f64 {
+        let turns = self
+            .joints
+            .iter()
+            .zip(&self.first)
+            .filter(|(j, _)| **j == Joint::Turn);
+        turns.fold(0.0, |most, (_, &c)| {
+            most.max(short_way(b.values[c] - a.values[c]).abs())
         })
     }
 

@@ -222,6 +222,26 @@ pub(super) fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>)
     )
 }
 
+/// The shortest least-squares solution of a matrix given column by column; singular values below a part of the greatest are zero.
+pub(super) fn least_squares(columns: &[Vec<f64>], right: &[f64], zero: f64) -> Vec<f64> {
+    let (values, vectors) = singular_values(columns);
+    let mut out = vec![0.0; columns.len()];
+    for (value, vector) in values.iter().zip(&vectors) {
+        if *value <= zero * values[0] {
+            break;
+        }
+        let seen: f64 = columns
+            .iter()
+            .zip(vector)
+            .map(|(column, v)| v * column.iter().zip(right).map(|(a, b)| a * b).sum::<f64>())
+            .sum();
+        for (x, v) in out.iter_mut().zip(vector) {
+            *x += seen / (value * value) * v;
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -46,7 +46,7 @@ pub struct CircuitMeasures {
     pub closed: bool,
     /// Whether it ends where it is not smooth.
     pub singular: bool,
-    /// Turns of the input after which it closes; none where the input rocks.
+    /// Turns that the input gains until it closes, be it with dead centres on the way; none where it rocks.
     pub turns: usize,
     /// Ranges of input and output; NaN for a joint that turns fully.
     pub input: [f64; 2],

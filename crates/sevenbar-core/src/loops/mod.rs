@@ -4,13 +4,17 @@
 #![allow(clippy::needless_range_loop)]
 
 mod all_curves;
+mod arcs;
 mod around;
 mod chain;
+mod change_points;
 mod circuits;
 mod counting;
 mod curve;
 mod dense;
 mod extremes;
+mod geometry;
+mod idle;
 mod lanes;
 mod locating;
 mod many;
@@ -25,6 +29,7 @@ mod polish;
 mod rates;
 mod reduce;
 mod rows;
+mod spun;
 mod starts;
 mod survey;
 #[cfg(test)]
@@ -35,12 +40,13 @@ mod walk;
 pub use all_curves::Found;
 pub use counting::{Count, Open, Uncounted};
 pub use extremes::Ends;
+pub use idle::Idle;
 pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
-pub use motion::{Circuit, Motion, Through};
+pub use motion::{ChangePoint, Circuit, Motion, Through};
 pub use polish::AGREE;
-pub use reduce::{Idle, Kind};
-pub use rows::Rows;
+pub use reduce::Kind;
+pub use rows::{ROW_NUMBERS, Rows};
 
 use crate::rigid::{Pose, norm};
 use reduce::{Reduced, Source, reduce};
@@ -119,7 +125,7 @@ impl Loop {
         self.columns
     }
 
-    /// Freedoms that move one link only.
+    /// Freedoms that no joint elsewhere takes part in.
     pub fn idle(&self) -> &[Idle] {
         &self.reduced.idle
     }
@@ -129,7 +135,7 @@ impl Loop {
         self.reduced.freedoms
     }
 
-    /// Whether no more than one freedom can remain, so that one input may drive it.
+    /// Whether no more than one freedom can remain, and every idle one is held, so that one input may drive it.
     pub fn can_be_driven(&self) -> bool {
         self.reduced.chain.is_some()
     }

@@ -7,15 +7,17 @@
 
 use super::around::{Around, Circle};
 use super::chain::{BALLS, Chain, Configuration, Joint, Rotation, product, short_way, squared_up};
+use super::geometry::Form;
 use super::paths::{BRISK, CAREFUL, JOINTS, Pace, Parameters, Slides, Solution, UNKNOWNS, follow};
 use super::phases::Watch;
 use super::poles::poles;
 use super::polish::{Settled, polish};
 use super::reduce::Z_TO_X;
-use super::starts::{Frame, Random, SAME_GENERAL, STARTS, distinct, general_count, start};
+use super::starts::{Class, Random, distinct, general_count};
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::cell::OnceCell;
+use std::sync::Arc;
 
 /// How complete a set of modes is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,9 +55,6 @@ const POLISHED_MOVE: f64 = 1e-3;
 /// Modes nearer than this in every joint [rad, or parts of the size] are one.
 pub(super) const SAME_MODE: f64 = 1e-7;
 
-/// Starts that must find no new solution before a special chain's are believed to be all.
-const CONFIRMING_STARTS: usize = 2;
-
 /// `|e^(i t)|` of the general value of an input that turns: near the real ones, and beside the places on them where solutions
 /// meet.
 pub(super) const CIRCLE: f64 = 1.05;
@@ -83,7 +82,8 @@ pub(super) struct ModeFinder<'a> {
     pub slides: Slides,
     /// The fixed transforms: after the input, and after each unknown.
     pub transforms: Vec<Pose>,
-    algebraic: bool,
+    /// The closure and the class of its geometry; `None` where there is no algebraic way.
+    closure: Option<Closure>,
     /// Found when it is first asked for.
     generic: OnceCell<Generic>,
 }
@@ -93,6 +93,12 @@ pub(super) struct ModeFinder<'a> {
 struct Input {
     turn: Complex64,
     slide: Complex64,
+}
+
+/// The links' normal form, and closures of the same geometry.
+struct Closure {
+    form: Form,
+    class: Arc<Class>,
 }
 
 /// All solutions at a general complex value of the input.
@@ -112,7 +118,7 @@ impl<'a> ModeFinder<'a> {
             unknowns: Vec::new(),
             slides: [false; UNKNOWNS],
             transforms: Vec::new(),
-            algebraic: false,
+            closure: None,
             generic: OnceCell::new(),
         };
         let input_joint = chain.joint_of(input);
@@ -148,115 +154,82 @@ impl<'a> ModeFinder<'a> {
             lead = added.inverse();
         }
         before.push(lead);
-        finder.transforms = before;
         for (slide, unknown) in finder.slides.iter_mut().zip(&finder.unknowns) {
             *slide =
                 matches!(unknown, Unknown::Column(c) if chain.joints[chain.joint_of(*c)] == Joint::Slide);
         }
-        finder.algebraic =
-            algebraic && finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
+        algebraic &= finder.unknowns.len() == UNKNOWNS && general_count(&finder.slides) > 0;
+        finder.transforms = before.clone();
+        // from the first unknown on; the last transform stands before it
+        before.rotate_left(1);
+        if let (true, Ok(transforms)) = (algebraic, <&[Pose; JOINTS]>::try_from(&before[..])) {
+            finder.closure = Some(Closure::of(transforms, &finder.slides, chain.joints[input_joint]));
+        }
         finder
     }
 
-    pub fn is_algebraic(&self) -> bool {
-        self.algebraic
-    }
-
     pub fn completeness(&self) -> Completeness {
-        if self.algebraic {
+        if self.closure.is_some() {
             Completeness::Algebraic
         } else {
             Completeness::Searched
         }
     }
 
+    /// One that follows all paths of a general closure, whatever the geometry.
+    #[cfg(test)]
+    pub fn from_general_starts(chain: &'a Chain, input: usize) -> Self {
+        let mut finder = Self::new(chain, input);
+        if let Some(closure) = &mut finder.closure {
+            closure.class = Class::of(&finder.slides, None);
+        }
+        finder
+    }
+
     /// How many solutions there are over the complex numbers at a general input.
     #[cfg(test)]
     pub fn complex_count(&self) -> Option<usize> {
-        self.algebraic.then(|| self.generic().solutions.len())
+        self.closure.as_ref().map(|c| self.generic(c).solutions.len())
     }
 
-    /// The closure at an input, and what its unknowns differ by from the joints' values.
-    fn parameters(&self, input: Input) -> (Parameters, [Complex64; UNKNOWNS]) {
-        let one = Complex64::ONE;
-        // the transform in front of each joint, in loop order from the first unknown; the last stands before the input
-        let normal: Vec<_> = self.transforms[1..]
-            .iter()
-            .chain(&self.transforms[..1])
-            .map(|t| Frame::from_pose(t).normal_form())
-            .collect();
-        let mut parameters = Parameters {
-            twists: std::array::from_fn(|i| normal[i].twist),
-            shifts: std::array::from_fn(|i| normal[i].shift),
-            turns: [one; JOINTS],
-            slide: Complex64::ZERO,
-        };
-        let shift: [Complex64; JOINTS] =
-            std::array::from_fn(|i| normal[i].before * normal[(i + JOINTS - 1) % JOINTS].after);
-        parameters.turns = shift;
-        parameters.turns[UNKNOWNS] *= input.turn;
-        parameters.slide = input.slide;
-        (parameters, std::array::from_fn(|i| shift[i]))
+    fn generic(&self, closure: &Closure) -> &Generic {
+        self.generic.get_or_init(|| {
+            let input = self.generic_input(&mut Random(0xa110));
+            let (target, _) = closure.parameters(input);
+            Generic { input, solutions: closure.class.solutions(&target) }
+        })
     }
 
-    fn generic(&self) -> &Generic {
-        self.generic.get_or_init(|| self.solve_generic())
-    }
-
-    fn solve_generic(&self) -> Generic {
-        let input = self.generic_input(&mut Random(0xa110));
-        Generic { input, solutions: self.solve(input) }
-    }
-
-    /// All solutions at one general complex value of an input that turns (`e^(i t)`) or slides, and `e^(i t)` of the unknowns' zeros.
-    pub fn solutions_at(&self, value: Complex64) -> (Vec<Solution>, [Complex64; UNKNOWNS]) {
+    /// All solutions at one general complex value of an input that turns (`e^(i t)`) or slides, and `e^(i t)` of the unknowns' zeros;
+    /// `None` where there is no algebraic way.
+    pub fn solutions_at(&self, value: Complex64) -> Option<(Vec<Solution>, [Complex64; UNKNOWNS])> {
+        let closure = self.closure.as_ref()?;
         let input = match self.chain.joints[self.chain.joint_of(self.input)] {
             Joint::Slide => Input { turn: Complex64::ONE, slide: value },
             _ => Input { turn: value, slide: Complex64::ZERO },
         };
-        (self.solve(input), self.parameters(input).1)
+        let (target, zeros) = closure.parameters(input);
+        Some((closure.class.solutions(&target), zeros))
     }
 
-    /// All solutions at a general complex input.
-    fn solve(&self, input: Input) -> Vec<Solution> {
-        let (target, _) = self.parameters(input);
-        let want = general_count(&self.slides);
-        let mut solutions = Vec::new();
-        let mut idle = 0;
-        for n in 0..STARTS {
-            let start = start(&self.slides, n);
-            let ends = follow(&self.slides, &start.parameters, &target, &start.solutions, BRISK);
-            let before = solutions.len();
-            solutions = distinct(
-                &self.slides,
-                solutions.into_iter().chain(ends.into_iter().flatten()),
-                SAME_GENERAL,
-            );
-            idle = if solutions.len() == before { idle + 1 } else { 0 };
-            // a general chain has all; a special one is believed when further starts find nothing new
-            if solutions.len() >= want || idle == CONFIRMING_STARTS {
-                break;
-            }
-        }
-        solutions
-    }
-
-    /// Whether the closure has all the solutions that a general one has.
-    pub fn is_general(&self) -> bool {
-        self.algebraic && self.generic().solutions.len() == general_count(&self.slides)
+    /// What the count asks of a closure that is algebraic.
+    pub fn algebraic(&self) -> Option<Algebraic<'_>> {
+        let closure = self.closure.as_ref()?;
+        let (parameters, zeros) = closure.parameters(self.input_at(0.0));
+        Some(Algebraic { finder: self, generic: self.generic(closure), parameters, zeros })
     }
 
     /// All modes at the one value that is asked for [rad, or parts of the size].
     pub fn once(&self, value: f64) -> Polished {
-        if !self.algebraic {
+        let Some(closure) = &self.closure else {
             return self.polished(&self.search(value));
-        }
+        };
         // straight there: where as many arrive as there can be, none is missing
-        let (to, shift) = self.parameters(self.input_at(value));
-        let start = start(&self.slides, 0);
+        let (to, shift) = closure.parameters(self.input_at(value));
+        let start = closure.class.start(0);
         let found = follow(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
         let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
-        if ends.len() == general_count(&self.slides) {
+        if ends.len() == closure.class.count() {
             self.polished(&self.real_ones(&ends, &shift, value))
         } else {
             self.at(value)
@@ -270,13 +243,12 @@ impl<'a> ModeFinder<'a> {
 
     /// The same, some of them rough to [`POLISHED_MOVE`].
     fn rough_at(&self, value: f64) -> Vec<Configuration> {
-        if !self.algebraic {
+        let Some(closure) = &self.closure else {
             return self.search(value);
-        }
-        let generic = self.generic();
-        let input = self.input_at(value);
-        let (from, _) = self.parameters(generic.input);
-        let (to, shift) = self.parameters(input);
+        };
+        let generic = self.generic(closure);
+        let (from, _) = closure.parameters(generic.input);
+        let (to, shift) = closure.parameters(self.input_at(value));
         let mut ends: Vec<Solution> = Vec::new();
         let mut random = Random(0xde70);
         for attempt in 0..3 {
@@ -286,7 +258,7 @@ impl<'a> ModeFinder<'a> {
                 1 => follow(&self.slides, &from, &to, &generic.solutions, CAREFUL),
                 // another way round whatever the straight way came too near to
                 _ => {
-                    let (aside, _) = self.parameters(self.generic_input(&mut random));
+                    let (aside, _) = closure.parameters(self.generic_input(&mut random));
                     let first = follow(&self.slides, &from, &aside, &generic.solutions, CAREFUL);
                     let first: Vec<Solution> = first.into_iter().flatten().collect();
                     follow(&self.slides, &aside, &to, &first, CAREFUL)
@@ -308,12 +280,12 @@ impl<'a> ModeFinder<'a> {
     /// which they were found, if they are algebraic.
     pub fn around(&self, count: usize, watch: Option<&Watch>) -> (Vec<Vec<Configuration>>, Option<Circle>) {
         let value = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
-        if !self.algebraic {
+        let Some(algebraic) = self.algebraic() else {
             return ((0..count).map(|k| self.search(value(k))).collect(), None);
-        }
-        let want = self.generic().solutions.len();
-        let shift = self.zeros();
-        let circle = self.circle(&self.closure(watch), CIRCLE, count, BRISK);
+        };
+        let want = algebraic.generic.solutions.len();
+        let shift = algebraic.zeros;
+        let circle = algebraic.circle(&algebraic.closure(watch), CIRCLE, count, BRISK);
         let first = (circle.first * count as f64 / std::f64::consts::TAU).round() as i64;
         let modes = (0..count)
             .map(|k| {
@@ -328,48 +300,6 @@ impl<'a> ModeFinder<'a> {
             })
             .collect();
         (modes, Some(circle))
-    }
-
-    /// The closure with everything but the input fixed.
-    pub fn closure(&self, watch: Option<&Watch>) -> Around<'_> {
-        Around::new(
-            &self.slides,
-            &self.parameters(self.input_at(0.0)).0,
-            watch.cloned(),
-        )
-    }
-
-    /// `e^(i tau)` of the inputs at which solutions run to infinity, if the geometry is general.
-    pub fn poles(&self) -> Option<Vec<Complex64>> {
-        let (parameters, _) = self.parameters(self.input_at(0.0));
-        let zero = parameters.turns[UNKNOWNS];
-        Some(poles(&parameters)?.into_iter().map(|z| z / zero).collect())
-    }
-
-    /// `e^(i t)` of the unknowns' zeros.
-    pub fn zeros(&self) -> [Complex64; UNKNOWNS] {
-        self.parameters(self.input_at(0.0)).1
-    }
-
-    /// All solutions followed round a circle and down to the real values beneath.
-    pub fn circle(&self, closure: &Around, radius: f64, count: usize, pace: Pace) -> Circle {
-        let generic = self.generic();
-        closure.circle(generic.input.turn, &generic.solutions, (radius, count), pace)
-    }
-
-    /// Which of the solutions leave the added joints at zero.
-    pub fn own(&self) -> Vec<usize> {
-        let shift = self.zeros();
-        let own = |x: &Solution| {
-            let mut added = self
-                .unknowns
-                .iter()
-                .enumerate()
-                .filter(|(_, u)| matches!(u, Unknown::Added));
-            added.all(|(i, _)| (x[i] / shift[i] - 1.0).norm() < REAL)
-        };
-        let solutions = &self.generic().solutions;
-        (0..solutions.len()).filter(|&k| own(&solutions[k])).collect()
     }
 
     /// The modes among solutions, rough to [`POLISHED_MOVE`].
@@ -510,6 +440,86 @@ impl<'a> ModeFinder<'a> {
             }
         }
         modes
+    }
+}
+
+/// A closure that is algebraic, with its solutions at a general input.
+pub(super) struct Algebraic<'a> {
+    finder: &'a ModeFinder<'a>,
+    generic: &'a Generic,
+    /// At the input zero.
+    parameters: Parameters,
+    /// `e^(i t)` of the unknowns' zeros.
+    pub zeros: [Complex64; UNKNOWNS],
+}
+
+impl<'a> Algebraic<'a> {
+    /// Whether it has all the solutions that a general one has.
+    pub fn is_general(&self) -> bool {
+        self.generic.solutions.len() == general_count(&self.finder.slides)
+    }
+
+    /// The closure with everything but the input fixed.
+    pub fn closure(&self, watch: Option<&Watch>) -> Around<'a> {
+        Around::new(&self.finder.slides, &self.parameters, watch.cloned())
+    }
+
+    /// `e^(i tau)` of the inputs at which solutions run to infinity, if the geometry is general.
+    pub fn poles(&self) -> Option<Vec<Complex64>> {
+        let zero = self.parameters.turns[UNKNOWNS];
+        Some(poles(&self.parameters)?.into_iter().map(|z| z / zero).collect())
+    }
+
+    /// All solutions followed round a circle and down to the real values beneath.
+    pub fn circle(&self, closure: &Around, radius: f64, count: usize, pace: Pace) -> Circle {
+        closure.circle(
+            self.generic.input.turn,
+            &self.generic.solutions,
+            (radius, count),
+            pace,
+        )
+    }
+
+    /// Which of the solutions leave the added joints at zero.
+    pub fn own(&self) -> Vec<usize> {
+        let own = |x: &Solution| {
+            let unknowns = self.finder.unknowns.iter().enumerate();
+            let mut added = unknowns.filter(|(_, u)| matches!(u, Unknown::Added));
+            added.all(|(i, _)| (x[i] / self.zeros[i] - 1.0).norm() < REAL)
+        };
+        let solutions = &self.generic.solutions;
+        (0..solutions.len()).filter(|&k| own(&solutions[k])).collect()
+    }
+}
+
+impl Closure {
+    /// From the transforms after the joints, the first unknown one's first and the input's last.
+    fn of(transforms: &[Pose; JOINTS], slides: &Slides, input: Joint) -> Self {
+        let form = Form::of(transforms.each_ref());
+        let mut given = [input == Joint::Slide; JOINTS];
+        given[..UNKNOWNS].copy_from_slice(slides);
+        if let Some(form) = form.with_zeros(&given) {
+            let class = Class::of(slides, Some(form.pattern(&given, input != Joint::Turn)));
+            // without solutions that stand alone a class leads nowhere
+            if class.count() > 0 {
+                return Self { form, class };
+            }
+        }
+        Self { form, class: Class::of(slides, None) }
+    }
+
+    /// The closure at an input, and what its unknowns differ by from the joints' values.
+    fn parameters(&self, input: Input) -> (Parameters, [Complex64; UNKNOWNS]) {
+        let zeros = self.form.zeros();
+        let mut turns = zeros;
+        turns[UNKNOWNS] *= input.turn;
+        let parameters = Parameters {
+            twists: self.form.twists,
+            shifts: self.form.shifts.map(|s| s.map(Complex64::from)),
+            turns,
+            slide: input.slide,
+        };
+        (parameters, std::array::from_fn(|i| zeros[i]))
     }
 }
 

@@ -2,10 +2,10 @@
 
 use super::Loop;
 use super::all_curves::{Curves, Found, curves};
-use super::chain::{COLUMNS, Chain, Columns, Configuration, short_way};
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
 use super::circuits::{Passes, Row};
 use super::counting::{Count, Uncounted};
-use super::curve::{Curve, End, Node, combined};
+use super::curve::{Curve, End, Node};
 use super::extremes::{Ends, output_extremes};
 use super::modes::Completeness;
 use super::polish::{Settled, polish};
@@ -26,7 +26,7 @@ pub struct Circuit {
     pub closed: bool,
     /// Whether it ends where it is not smooth.
     pub singular: bool,
-    /// Turns of the input after which it closes; none where the input rocks.
+    /// Turns that the input gains until it closes, be it with dead centres on the way; none where it rocks.
     pub turns: usize,
     /// Ranges of input and output; `None` for a joint that turns fully.
     pub input: Option<[f64; 2]>,
@@ -36,6 +36,17 @@ pub struct Circuit {
     pub dead_centres: Vec<DeadCentre>,
     /// Lowest and highest velocity, acceleration and jerk of the output at unit speed of the input, each with the input.
     pub extremes: [Option<Ends>; ORDERS],
+}
+
+/// A pose at which curves meet, or one that stands alone.
+#[derive(Clone, Debug)]
+pub struct ChangePoint {
+    /// The value of each column.
+    pub values: Vec<f64>,
+    /// The circuits that pass it or end there, by their number; none where it stands alone.
+    pub circuits: Vec<usize>,
+    /// How many ways lead out of it.
+    pub ways: usize,
 }
 
 /// What a loop does.
@@ -59,6 +70,8 @@ pub struct Motion {
     pub modes_at_zero: Option<usize>,
     /// The circuits.
     pub circuits: Vec<Circuit>,
+    /// Poses at which the motion is not smooth.
+    pub change_points: Vec<ChangePoint>,
     /// Whether the loop moves somewhere with the input at rest.
     pub input_rests: bool,
     /// Columns that move with it at rest.
@@ -101,6 +114,7 @@ impl Loop {
                 misfits: Vec::new(),
                 modes_at_zero: None,
                 circuits: Vec::new(),
+                change_points: Vec::new(),
                 input_rests: false,
                 moving: Vec::new(),
             });
@@ -120,11 +134,27 @@ impl Loop {
             .filter_map(|c| Passes::new(chain, c, a))
             .collect();
         let (origin, step) = grid(chain, &passes, a, samples);
-        let circuits = passes
+        // a pose so far out that the loop hardly closes leaves nothing to tell
+        let (passes, circuits): (Vec<&Passes>, Vec<Circuit>) = passes
             .iter()
-            .map(|p| self.circuit(p, (input, output), (a, b), (origin, step), speed, law))
-            // a pose so far out that the loop hardly closes leaves nothing to tell
-            .filter(|c| !c.rows.is_empty())
+            .map(|p| {
+                (
+                    p,
+                    self.circuit(p, (input, output), (a, b), (origin, step), speed, law),
+                )
+            })
+            .filter(|(_, c)| !c.rows.is_empty())
+            .unzip();
+        let change_points = curves
+            .change_points
+            .iter()
+            .map(|point| ChangePoint {
+                values: self.joint_values(&point.at),
+                circuits: (0..passes.len())
+                    .filter(|&k| point.is_on(chain, &passes[k].curve))
+                    .collect(),
+                ways: point.rays.len(),
+            })
             .collect();
         let outer = |inner: usize| (0..self.columns).find(|&c| self.chain_column(c) == Some(inner));
         let mut seed_columns: Vec<usize> = curves.seed_columns.iter().filter_map(|&c| outer(c)).collect();
@@ -143,6 +173,7 @@ impl Loop {
             misfits: curves.misfits,
             modes_at_zero: curves.modes_at_zero,
             circuits,
+            change_points,
             input_rests,
             moving,
         })
@@ -167,8 +198,9 @@ impl Loop {
         else {
             return Some(Through::Apart(chain.residual(&chain.place(&rough))));
         };
-        let mut curves = Curves::new();
+        let mut curves = Curves::new(&[a, b]);
         curves.take(chain, &[pose], a);
+        curves.finish(chain);
         let Some(curve) = curves.curves.pop() else {
             return Some(Through::Still);
         };
@@ -212,10 +244,11 @@ impl Loop {
             &passes.curve.nodes[0],
             &passes.curve.nodes[passes.curve.nodes.len() - 1],
         );
-        let gained: Columns = combined(&last.at.values, 1.0, &first.at.values, -1.0);
+        let gained = passes.curve.gained();
         let closed = passes.curve.end == End::Closed;
-        let turning = |c: usize| closed && chain.is_turn(c) && gained[c].abs() > 1.0;
-        let rocks = passes.rocks() || !turning(a);
+        let turning = |c: usize| passes.curve.goes_round(chain, c);
+        // never stopped by a dead centre
+        let driven_round = turning(a) && !passes.turns_back();
         let mut rows = passes.rows(grid.0, grid.1);
         if !closed {
             // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
@@ -223,13 +256,14 @@ impl Loop {
             rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
             rows.drain(..rows.iter().take_while(|r| lost(r)).count());
         }
-        if !rocks {
+        if driven_round {
             begin_at_zero(chain, &mut rows, a, &gained, grid.1);
         }
-        let extremes = if rocks || !closed || law.is_some() {
-            [None; ORDERS]
-        } else {
+        let crosses = passes.curve.crosses();
+        let extremes = if driven_round && !crosses && law.is_none() {
             output_extremes(passes, &rows, b, &gained)
+        } else {
+            [None; ORDERS]
         };
         // whole turns that bring the first row into (-pi, pi]
         let mut shift = [0.0; COLUMNS];
@@ -288,7 +322,7 @@ impl Loop {
         } else {
             &ends[..]
         };
-        let input_range = rocks.then(|| range(a, columns.0, &mut passes.limits.iter().chain(ends)));
+        let input_range = (!turning(a)).then(|| range(a, columns.0, &mut passes.limits.iter().chain(ends)));
         let output_range = (!turning(b)).then(|| {
             let turned = turnings.iter().map(|t| &t.node);
             range(b, columns.1, &mut turned.chain(open_ends.iter().copied()))
@@ -298,7 +332,7 @@ impl Loop {
                 .iter()
                 .map(|q| q.map(|x| x * self.inward(columns.0)))
                 .collect();
-            rows = passes.law_rows(&inner_law, chain.is_turn(a));
+            rows = passes.law_rows(&inner_law, chain.is_turn(a), shift[a]);
         }
         let mut offsets = vec![0.0; self.columns];
         for (column, offset) in offsets.iter_mut().enumerate() {
@@ -317,11 +351,11 @@ impl Loop {
                 },
             },
             closed,
-            singular: passes.curve.end == End::Singular,
-            turns: if rocks {
-                0
-            } else {
+            singular: passes.curve.end == End::Singular || crosses,
+            turns: if turning(a) {
                 (gained[a] / TAU).abs().round() as usize
+            } else {
+                0
             },
             input: input_range,
             output: output_range,
@@ -334,7 +368,7 @@ impl Loop {
 
 /// Origin and step of the inputs of rows.
 fn grid(chain: &Chain, passes: &[Passes], input: usize, samples: usize) -> (f64, f64) {
-    if chain.is_turn(input) {
+    if chain.joints[chain.joint_of(input)] != Joint::Slide {
         return (0.0, TAU / samples as f64);
     }
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];

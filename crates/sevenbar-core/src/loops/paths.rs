@@ -59,6 +59,10 @@ pub(super) const SHORTEST_STEP: f64 = 1e-9;
 /// `|e^(i t)|`, or a slide in parts of the size, beyond which a path has left for infinity.
 const INFINITE: f64 = 1e7;
 
+/// The closure is known to this times one to six [rad, or parts of the size]. Added to it, so that paths seldom arrive at a solution that
+/// does not stand alone: where numbers are exact, as in special geometry, nothing else would move one along its continuum.
+const ROUNDING: f64 = 2e-16;
+
 /// Parameters of the closure.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parameters {
@@ -139,8 +143,9 @@ pub(super) fn cosine_sine<V: Vector>(z: Lanes<V>) -> (Lanes<V>, Lanes<V>, Lanes<
 }
 
 impl Follow<'_> {
+    /// Without the drift where no rate is asked for; what stands still or is zero is left out.
     #[inline(always)]
-    fn linearise<V: Vector>(&self, x: &[Lanes<V>; UNKNOWNS], t: V) -> Linear<V> {
+    fn linearise<V: Vector, const DRIFT: bool>(&self, x: &[Lanes<V>; UNKNOWNS], t: V) -> Linear<V> {
         let zero = Lanes::<V>::zero();
         let one = Lanes::<V>::one();
         let mut rows = [[zero; UNKNOWNS + 2]; 6];
@@ -164,10 +169,12 @@ impl Follow<'_> {
                     }
                 }
                 let (z, rate) = moving(self.from.turns[i], self.to.turns[i]);
-                let angular = (rate * z.recip()).times_i();
-                for k in 0..3 {
-                    drift_turn[k] = drift_turn[k].minus_product(ez[k], angular);
-                    drift_shift[k] = drift_shift[k].minus_product(moment[k], angular);
+                if DRIFT && self.from.turns[i] != self.to.turns[i] {
+                    let angular = (rate * z.recip()).times_i();
+                    for k in 0..3 {
+                        drift_turn[k] = drift_turn[k].minus_product(ez[k], angular);
+                        drift_shift[k] = drift_shift[k].minus_product(moment[k], angular);
+                    }
                 }
                 z
             } else {
@@ -191,19 +198,29 @@ impl Follow<'_> {
                 }
             }
             for (j, axis) in [&ex, &ey, &ez].into_iter().enumerate() {
-                let (shift, rate) = moving(self.from.shifts[i][j], self.to.shifts[i][j]);
+                let (from, to) = (self.from.shifts[i][j], self.to.shifts[i][j]);
+                if from == to && from == Complex64::ZERO {
+                    continue;
+                }
+                let (shift, rate) = moving(from, to);
                 for k in 0..3 {
                     place[k] = place[k].plus_product(axis[k], shift);
-                    drift_shift[k] = drift_shift[k].plus_product(axis[k], rate);
+                }
+                if DRIFT && from != to {
+                    for k in 0..3 {
+                        drift_shift[k] = drift_shift[k].plus_product(axis[k], rate);
+                    }
                 }
             }
             let (w, rate) = moving(self.from.twists[i], self.to.twists[i]);
             let (cosine, sine, inverse) = cosine_sine(w);
-            let angular = (rate * inverse).times_i();
-            let moment = cross(&place, &ex);
-            for k in 0..3 {
-                drift_turn[k] = drift_turn[k].minus_product(ex[k], angular);
-                drift_shift[k] = drift_shift[k].minus_product(moment[k], angular);
+            if DRIFT && self.from.twists[i] != self.to.twists[i] {
+                let angular = (rate * inverse).times_i();
+                let moment = cross(&place, &ex);
+                for k in 0..3 {
+                    drift_turn[k] = drift_turn[k].minus_product(ex[k], angular);
+                    drift_shift[k] = drift_shift[k].minus_product(moment[k], angular);
+                }
             }
             turn(&mut ey, &mut ez, cosine, sine);
         }
@@ -220,7 +237,8 @@ impl Follow<'_> {
             rows[k + 3][UNKNOWNS + 1] = -drift_shift[k];
         }
         for k in 0..6 {
-            rows[k][UNKNOWNS] = -error[k];
+            let unknown = Lanes { re: V::splat(ROUNDING * (k + 1) as f64), im: V::splat(0.0) };
+            rows[k][UNKNOWNS] = unknown - error[k];
         }
         Linear { rows }
     }
@@ -431,10 +449,10 @@ impl Follow<'_> {
         }
         let reach = size(self.slides, &walk.x, &predicted);
         let x1 = moved(self.slides, &walk.x, &predicted);
-        let (first_correction, ..) = self.linearise(&x1, now).solve();
+        let (first_correction, ..) = self.linearise::<V, false>(&x1, now).solve();
         let first = size(self.slides, &x1, &first_correction);
         let x2 = moved(self.slides, &x1, &first_correction);
-        let (second_correction, rate, _) = self.linearise(&x2, now).solve();
+        let (second_correction, rate, _) = self.linearise::<V, true>(&x2, now).solve();
         let last = size(self.slides, &x2, &second_correction);
         let x3 = moved(self.slides, &x2, &second_correction);
 

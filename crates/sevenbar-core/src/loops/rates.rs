@@ -7,11 +7,12 @@
 //! Source: docs/theory.md, (13) to (16).
 
 use super::chain::{
-    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket, twist_of,
+    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket, transposed, twist_of,
 };
 use super::circuits::input_row;
 use super::curve::bordered_inverse;
 use super::dense::{Inverse, ROWS};
+use super::reduce::Z_TO_X;
 use crate::rigid::{Pose, Vec3};
 use crate::taylor::Taylor;
 use crate::vectors::Number;
@@ -153,15 +154,34 @@ impl Chain {
             let spin = std::array::from_fn(|order| std::array::from_fn(|k| rates[order][first + k]));
             return rotation_series(&at.balls[b], &spin);
         }
-        let angle = Taylor([
+        let (s, c) = self.value_series(joint, at, rates).sin_cos();
+        let (zero, one) = (Taylor::constant(0.0), Taylor::constant(1.0));
+        [[c, -s, zero], [s, c, zero], [zero, zero, one]]
+    }
+
+    /// The value of a joint that is no ball.
+    pub fn value_series(&self, joint: usize, at: &Configuration, rates: &Rates) -> Taylor<4> {
+        let first = self.first[joint];
+        Taylor([
             at.values[first],
             rates[0][first],
             rates[1][first] / 2.0,
             rates[2][first] / 3.0,
-        ]);
-        let (s, c) = angle.sin_cos();
-        let (zero, one) = (Taylor::constant(0.0), Taylor::constant(1.0));
-        [[c, -s, zero], [s, c, zero], [zero, zero, one]]
+        ])
+    }
+
+    /// The rotation by the two turns of a ball that holds a spin, the first of which is this joint, in their frame.
+    pub fn universal_series(
+        &self,
+        joint: usize,
+        frame: &Rotation,
+        at: &Configuration,
+        rates: &Rates,
+    ) -> [[Taylor<4>; 3]; 3] {
+        let a = self.joint_series(joint, at, rates);
+        let b = self.joint_series(joint + 1, at, rates);
+        let b = turned_series(&Z_TO_X, &b, &transposed(&Z_TO_X));
+        turned_series(frame, &product_series(&a, &b), &transposed(frame))
     }
 }
 
@@ -218,15 +238,22 @@ pub(super) fn point_rates(place: Vec3, twist: &[Twist; ORDERS]) -> [Vec3; 4] {
 }
 
 /// `a b c` of a fixed, a moving and a fixed rotation.
-pub(super) fn turned_series(a: &Rotation, b: &[[Taylor<4>; 3]; 3], c: &Rotation) -> [[Taylor<4>; 3]; 3] {
-    let sum = |f: &dyn Fn(usize) -> Taylor<4>| f(0) + f(1) + f(2);
-    let left: [[Taylor<4>; 3]; 3] =
+pub(super) fn turned_series<const N: usize>(
+    a: &Rotation,
+    b: &[[Taylor<N>; 3]; 3],
+    c: &Rotation,
+) -> [[Taylor<N>; 3]; 3] {
+    let sum = |f: &dyn Fn(usize) -> Taylor<N>| f(0) + f(1) + f(2);
+    let left: [[Taylor<N>; 3]; 3] =
         std::array::from_fn(|i| std::array::from_fn(|j| sum(&|k| b[k][j].scale(a[i][k]))));
     std::array::from_fn(|i| std::array::from_fn(|j| sum(&|k| left[i][k].scale(c[k][j]))))
 }
 
 /// `a b` of two moving rotations.
-pub(super) fn product_series(a: &[[Taylor<4>; 3]; 3], b: &[[Taylor<4>; 3]; 3]) -> [[Taylor<4>; 3]; 3] {
+pub(super) fn product_series<const N: usize>(
+    a: &[[Taylor<N>; 3]; 3],
+    b: &[[Taylor<N>; 3]; 3],
+) -> [[Taylor<N>; 3]; 3] {
     std::array::from_fn(|i| {
         std::array::from_fn(|j| a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j])
     })

@@ -1,14 +1,18 @@
 //! Rows of a circuit as the description's joints and links have them.
 
 use super::Loop;
-use super::chain::{Configuration, Joint, product, short_way, transposed};
+use super::chain::{BALLS, COLUMNS, Chain, Configuration, Joint, product, short_way, transposed};
 use super::circuits::Row;
 use super::modes::ball_rotation;
-use super::rates::{ORDERS, point_rates, product_series, turned_series};
-use super::reduce::{Kind, Source, Z_TO_X};
+use super::rates::{ORDERS, Rates, point_rates, product_series};
+use super::reduce::{Carrier, Kind, Source, SpunLinks};
+use super::spun::first_terms;
 use crate::outcome::RowStatus;
-use crate::rigid::{Vec3, scale, turns_zyx};
+use crate::rigid::{Pose, Vec3, Vec3Taylor, scale, turns_zyx};
 use crate::taylor::Taylor;
+
+/// Numbers that a row is kept as: joint values, balls, rates, and status, pass, residual and condition.
+pub const ROW_NUMBERS: usize = COLUMNS + 9 * BALLS + ORDERS * COLUMNS + 4;
 
 /// The rows of one circuit, kept as the chain has them, so that any point of any link can be asked for later.
 #[derive(Clone, Debug)]
@@ -51,8 +55,61 @@ impl Rows {
         self.rows.iter().map(|r| r.condition).collect()
     }
 
+    /// Turns to be added to each column of the description.
+    pub fn offsets(&self) -> &[f64] {
+        &self.offsets
+    }
+
+    /// d(input)/dt at which rates are given.
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Every row as `ROW_NUMBERS` numbers, from which `from_numbers` makes it again to the last bit.
+    pub fn numbers(&self) -> Vec<f64> {
+        let mut out = Vec::with_capacity(self.len() * ROW_NUMBERS);
+        for row in &self.rows {
+            out.extend(row.at.values);
+            out.extend(row.at.balls.as_flattened().as_flattened());
+            out.extend(row.rates.as_flattened());
+            out.extend([
+                f64::from(row.status as u8),
+                row.pass as f64,
+                row.residual,
+                row.condition,
+            ]);
+        }
+        out
+    }
+
+    /// Rows of what `numbers`, `offsets` and `speed` told; `None` where these are no such numbers.
+    pub fn from_numbers(numbers: &[f64], offsets: Vec<f64>, speed: f64) -> Option<Self> {
+        let rows = numbers.chunks(ROW_NUMBERS).map(|row| {
+            let (values, rest) = row.split_first_chunk::<COLUMNS>()?;
+            let (balls, rest) = rest.split_at_checked(9 * BALLS)?;
+            let (rates, rest) = rest.split_at_checked(ORDERS * COLUMNS)?;
+            let &[status, pass, residual, condition] = rest else {
+                return None;
+            };
+            Some(Row {
+                at: Configuration {
+                    values: *values,
+                    balls: std::array::from_fn(|b| {
+                        std::array::from_fn(|i| std::array::from_fn(|j| balls[9 * b + 3 * i + j]))
+                    }),
+                },
+                rates: std::array::from_fn(|order| std::array::from_fn(|c| rates[order * COLUMNS + c])),
+                status: RowStatus::numbered(status)?,
+                pass: pass as usize,
+                residual,
+                condition,
+            })
+        });
+        Some(Self { rows: rows.collect::<Option<_>>()?, offsets, speed })
+    }
+
     /// The row's rates at the speed asked for.
-    fn rates(&self, row: &Row) -> super::rates::Rates {
+    fn rates(&self, row: &Row) -> Rates {
         let mut rates = row.rates;
         let mut factor = 1.0;
         for order in &mut rates {
@@ -68,7 +125,7 @@ impl Rows {
 impl Loop {
     /// Joint values of a configuration; angles as they come, a ball's turns NaN where they are undefined.
     pub(super) fn joint_values(&self, at: &Configuration) -> Vec<f64> {
-        let still = [[0.0; super::chain::COLUMNS]; ORDERS];
+        let still = [[0.0; COLUMNS]; ORDERS];
         self.joint_rates(at, &still)
             .iter()
             .enumerate()
@@ -82,7 +139,7 @@ impl Loop {
             .collect()
     }
 
-    /// The configuration with these joint values; a link's idle spin is left out.
+    /// The configuration with these joint values; the idle spin of links is left out.
     pub(super) fn configuration(&self, values: &[f64]) -> Configuration {
         let mut out = Configuration::ZERO;
         let Some(chain) = &self.reduced.chain else {
@@ -106,9 +163,52 @@ impl Loop {
                     out.values[chain.first[joint]] = turn[1][0].atan2(turn[0][0]);
                     out.values[chain.first[joint + 1]] = turn[2][1].atan2(turn[2][2]);
                 }
+                // both below, for they need the joint between them
+                (Source::BeforeSpun(..) | Source::AfterSpun(_), _) => {}
             }
         }
+        if let Some(links) = &self.reduced.spun {
+            self.configure_spun(links, values, &mut out);
+        }
         out
+    }
+
+    /// The turns of the balls of links that spin together.
+    fn configure_spun(&self, links: &SpunLinks, values: &[f64], out: &mut Configuration) {
+        let Some(chain) = &self.reduced.chain else {
+            return;
+        };
+        let turns = |first: usize| ball_rotation(&[values[first], values[first + 1], values[first + 2]]);
+        let value = Taylor::<1>::constant(out.values[chain.first[links.joint]]);
+        let mut spun = Pose::STILL.rotation;
+        for (part, &first) in self.reduced.parts.iter().zip(&self.first) {
+            match part.source {
+                Source::BeforeSpun(joint, frame) => {
+                    let back = transposed(&frame);
+                    let [own, flat] = links.spun.directions(value.value());
+                    // the line in the frame of the two turns, z the first axis and x the second, before and after these
+                    let flat = Pose::turning(back).turn(flat);
+                    let to = Pose::turning(product(&back, &turns(first))).turn(own);
+                    let second = to[2].atan2(-to[0].hypot(to[1])) - flat[2].atan2(flat[1]);
+                    out.values[chain.first[joint]] = to[0].atan2(-to[1]);
+                    out.values[chain.first[joint + 1]] = short_way(second);
+                    let still = [[0.0; super::chain::COLUMNS]; ORDERS];
+                    let two = chain.universal_series(joint, &frame, out, &still);
+                    let held = product(&first_terms(&two), &first_terms(&links.spun.lie(value)));
+                    // what is left out of the spin
+                    spun = product(&transposed(&held), &turns(first));
+                }
+                Source::AfterSpun(joint) => {
+                    if let Joint::Ball(b) = chain.joints[joint] {
+                        let before = first_terms(&links.spun.through(value));
+                        let own = product(&product(&transposed(&before), &spun), &before);
+                        let lie = transposed(&first_terms(&links.spun.lie_beyond(value)));
+                        out.balls[b] = product(&lie, &product(&own, &turns(first)));
+                    }
+                }
+                _ => {}
+            }
+        }
     }
 
     fn wrapped(&self, column: usize, angle: f64) -> f64 {
@@ -121,13 +221,13 @@ impl Loop {
     }
 
     /// Value and three derivatives of each column of the description, lengths in its unit.
-    fn joint_rates(&self, at: &Configuration, rates: &super::rates::Rates) -> Vec<[f64; 4]> {
+    fn joint_rates(&self, at: &Configuration, rates: &Rates) -> Vec<[f64; 4]> {
         let mut out = vec![[0.0; 4]; self.columns];
         self.write_joint_rates(at, rates, &mut out);
         out
     }
 
-    fn write_joint_rates(&self, at: &Configuration, rates: &super::rates::Rates, out: &mut [[f64; 4]]) {
+    fn write_joint_rates(&self, at: &Configuration, rates: &Rates, out: &mut [[f64; 4]]) {
         let Some(chain) = &self.reduced.chain else {
             return;
         };
@@ -149,10 +249,19 @@ impl Loop {
                     ];
                 }
                 (Source::Universal(joint, frame), _) => {
-                    let a = chain.joint_series(joint, at, rates);
-                    let b = chain.joint_series(joint + 1, at, rates);
-                    let b = turned_series(&Z_TO_X, &b, &transposed(&Z_TO_X));
-                    let series = turned_series(&frame, &product_series(&a, &b), &transposed(&frame));
+                    let series = chain.universal_series(joint, &frame, at, rates);
+                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
+                }
+                (Source::BeforeSpun(joint, frame), _) => {
+                    let Some(links) = &self.reduced.spun else { continue };
+                    let lie = links.spun.lie(chain.value_series(links.joint, at, rates));
+                    let series = product_series(&chain.universal_series(joint, &frame, at, rates), &lie);
+                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
+                }
+                (Source::AfterSpun(joint), _) => {
+                    let Some(links) = &self.reduced.spun else { continue };
+                    let lie = links.spun.lie_beyond(chain.value_series(links.joint, at, rates));
+                    let series = product_series(&lie, &chain.joint_series(joint, at, rates));
                     write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
                 }
             }
@@ -201,11 +310,10 @@ impl Loop {
         let count = rows.len();
         let mut out = vec![f64::NAN; 12 * count];
         for (n, row) in rows.rows.iter().enumerate() {
-            let Some((place, twist)) = self.carried_point(rows, row, link, scale(at, 1.0 / self.size)) else {
+            let Some(moved) = self.carried_point(rows, row, link, scale(at, 1.0 / self.size)) else {
                 continue;
             };
-            let moved = point_rates(place, &twist);
-            let placed = super::rates::in_report_frame(&self.reduced.base, place, moved);
+            let placed = super::rates::in_report_frame(&self.reduced.base, moved[0], moved);
             for (order, value) in placed.iter().enumerate() {
                 for k in 0..3 {
                     out[(order * count + n) * 3 + k] = value[k] * self.size;
@@ -215,27 +323,66 @@ impl Loop {
         out
     }
 
-    /// A point of a link in the chain's frame, and the link's twist.
-    fn carried_point(
-        &self,
-        rows: &Rows,
-        row: &Row,
-        link: usize,
-        at: Vec3,
-    ) -> Option<(Vec3, [super::chain::Twist; ORDERS])> {
+    /// A point of a link in the chain's frame, with three derivatives.
+    fn carried_point(&self, rows: &Rows, row: &Row, link: usize, at: Vec3) -> Option<[Vec3; 4]> {
         let chain = self.reduced.chain.as_ref()?;
         if row.status == RowStatus::NoSolution {
             return None;
         }
-        let (joint, pose) = self.reduced.parts[link].link;
-        let Some(joint) = joint else {
-            let fixed = self.reduced.base.inverse().carry(pose.carry(at));
-            return Some((fixed, [[0.0; 6]; ORDERS]));
+        let rates = rows.rates(row);
+        let carried = |joint: usize, pose: &Pose, at: Vec3| {
+            let frame = chain.frames(&row.at)[joint];
+            let twist = chain.link_twist(&chain.place(&row.at), &rates, joint);
+            point_rates(frame.carry(pose.carry(at)), &twist)
         };
-        let frame = chain.frames(&row.at)[joint];
-        let place = frame.carry(pose.carry(at));
-        let placed = chain.place(&row.at);
-        Some((place, chain.link_twist(&placed, &rows.rates(row), joint)))
+        match self.reduced.parts[link].link {
+            Carrier::Ground(pose) => {
+                let fixed = self.reduced.base.inverse().carry(pose.carry(at));
+                Some([fixed, [0.0; 3], [0.0; 3], [0.0; 3]])
+            }
+            Carrier::Joint(joint, pose) => Some(carried(joint, &pose, at)),
+            Carrier::Spun(pose) => {
+                let links = self.reduced.spun.as_ref()?;
+                Some(links.moved(chain, row, &rates, pose.carry(at).map(Taylor::constant), carried))
+            }
+            Carrier::SpunBeyond(pose) => {
+                let links = self.reduced.spun.as_ref()?;
+                let value = chain.value_series(links.joint, &row.at, &rates);
+                let place = links.spun.beyond(value, pose.carry(at));
+                Some(links.moved(chain, row, &rates, place, carried))
+            }
+        }
+    }
+}
+
+impl SpunLinks {
+    /// A point that moves against the first of the links, carried on by the chain.
+    fn moved(
+        &self,
+        chain: &Chain,
+        row: &Row,
+        rates: &Rates,
+        place: Vec3Taylor<4>,
+        carried: impl Fn(usize, &Pose, Vec3) -> [Vec3; 4],
+    ) -> [Vec3; 4] {
+        let (joint, pose) = &self.carrier;
+        let lie = self.spun.lie(chain.value_series(self.joint, &row.at, rates));
+        // the chain's frame as three points that it carries, and the point in that frame
+        let origin = carried(*joint, pose, [0.0; 3]);
+        let series = |v: &[Vec3; 4], i: usize| Taylor::<4>::from_derivatives(&v.map(|order| order[i]));
+        let mut out: Vec3Taylor<4> = std::array::from_fn(|i| series(&origin, i));
+        for k in 0..3 {
+            let own = lie[k][0] * place[0] + lie[k][1] * place[1] + lie[k][2] * place[2];
+            let axis = carried(
+                *joint,
+                pose,
+                std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }),
+            );
+            for i in 0..3 {
+                out[i] = out[i] + own * (series(&axis, i) - series(&origin, i));
+            }
+        }
+        std::array::from_fn(|order| out.map(|x| x.derivative(order)))
     }
 }
 

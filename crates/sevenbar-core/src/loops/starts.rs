@@ -5,10 +5,12 @@
 //! carried round loops in the space of the parameters, the solutions are exchanged until all have been seen. The numbers
 //! come from a fixed seed, so every machine has the same starts.
 
+use super::geometry::Pattern;
 use super::paths::{BRISK, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
 use crate::rigid::Pose;
 use num_complex::Complex64;
-use std::sync::OnceLock;
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 /// A closure with general parameters, and all its solutions.
 pub(super) struct Start {
@@ -16,11 +18,8 @@ pub(super) struct Start {
     pub solutions: Vec<Solution>,
 }
 
-/// Different starts of one pattern; their paths meet trouble, if at all, in different places.
+/// Different starts of one class; their paths meet trouble, if at all, in different places.
 pub(super) const STARTS: usize = 6;
-
-/// Patterns of turning and sliding joints.
-const PATTERNS: usize = 1 << UNKNOWNS;
 
 /// How many solutions a general closure has; none where more than three joints slide, since it then has none that stand alone.
 pub(super) fn general_count(slides: &Slides) -> usize {
@@ -32,30 +31,115 @@ pub(super) fn general_count(slides: &Slides) -> usize {
     }
 }
 
-/// The `n`-th start of a pattern. Kept once found: a constant that is computed, not written down.
-pub(super) fn start(slides: &Slides, n: usize) -> &'static Start {
-    static FOUND: [[OnceLock<Start>; STARTS]; PATTERNS] =
-        [const { [const { OnceLock::new() }; STARTS] }; PATTERNS];
-    let pattern = slides
-        .iter()
-        .enumerate()
-        .map(|(i, &s)| usize::from(s) << i)
-        .sum::<usize>();
-    FOUND[pattern][n].get_or_init(|| {
-        let mut random = Random(1 + (pattern * STARTS + n) as u64);
-        if n == 0 {
-            return by_monodromy(slides, &mut random);
+/// Classes that are kept; there are seldom more than a few. The starts of others are found anew each time.
+const MOST_CLASSES: usize = 2000;
+
+/// Members of a special class that are tried until all solutions arrive.
+const TRIES: usize = 8;
+
+/// Starts that must find no new solution before a special closure's are believed to be all.
+const CONFIRMING_STARTS: usize = 2;
+
+/// Closures of one geometry, with the starts that lead to any of them. General ones have no pattern.
+pub(super) struct Class {
+    slides: Slides,
+    pattern: Option<Pattern>,
+    starts: [OnceLock<Start>; STARTS],
+}
+
+impl Class {
+    /// A class of closures. Its starts are kept once found: constants that are computed, not written down.
+    pub fn of(slides: &Slides, pattern: Option<Pattern>) -> Arc<Self> {
+        type Known = HashMap<(Slides, Option<Pattern>), Arc<Class>>;
+        static KNOWN: LazyLock<Mutex<Known>> = LazyLock::new(Mutex::default);
+        // nothing can go wrong while it is held
+        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = (*slides, pattern);
+        if let Some(class) = known.get(&key) {
+            return class.clone();
         }
-        let first = start(slides, 0);
-        loop {
+        let starts = [const { OnceLock::new() }; STARTS];
+        let class = Arc::new(Self { slides: *slides, pattern, starts });
+        if known.len() < MOST_CLASSES {
+            known.insert(key, class.clone());
+        }
+        class
+    }
+
+    /// How many solutions a general member has.
+    pub fn count(&self) -> usize {
+        self.start(0).solutions.len()
+    }
+
+    /// The `n`-th start. The numbers do not hang on what was asked for before.
+    pub fn start(&self, n: usize) -> &Start {
+        self.starts[n].get_or_init(|| {
+            let slides = &self.slides;
+            let index = slides
+                .iter()
+                .enumerate()
+                .map(|(i, &s)| usize::from(s) << i)
+                .sum::<usize>();
+            let mut random = Random(1 + (index * STARTS + n) as u64);
+            match &self.pattern {
+                None if n == 0 => by_monodromy(slides, &mut random),
+                Some(pattern) if n == 0 => {
+                    let parameters = pattern.imposed_on(random.parameters());
+                    let solutions = Self::of(slides, None).solutions(&parameters);
+                    Start { parameters, solutions }
+                }
+                _ => self.another(&mut random),
+            }
+        })
+    }
+
+    /// Another member to which all solutions of the first lead.
+    fn another(&self, random: &mut Random) -> Start {
+        let first = self.start(0);
+        let mut best: Option<Start> = None;
+        for _ in 0..TRIES {
             let parameters = random.parameters();
-            let ends = follow(slides, &first.parameters, &parameters, &first.solutions, BRISK);
-            let solutions = distinct(slides, ends.into_iter().flatten(), SAME_GENERAL);
-            if solutions.len() == first.solutions.len() {
-                return Start { parameters, solutions };
+            let parameters = self.pattern.map_or(parameters, |p| p.imposed_on(parameters));
+            let ends = follow(
+                &self.slides,
+                &first.parameters,
+                &parameters,
+                &first.solutions,
+                BRISK,
+            );
+            let solutions = distinct(&self.slides, ends.into_iter().flatten(), SAME_GENERAL);
+            let all = solutions.len() == first.solutions.len();
+            if best.as_ref().is_none_or(|b| solutions.len() > b.solutions.len()) {
+                best = Some(Start { parameters, solutions });
+            }
+            if all {
+                break;
             }
         }
-    })
+        best.unwrap_or_else(|| unreachable!())
+    }
+
+    /// All solutions of a closure of the class at general values of its input, or of another class within it.
+    pub fn solutions(&self, target: &Parameters) -> Vec<Solution> {
+        let mut solutions = Vec::new();
+        let mut idle = 0;
+        for n in 0..STARTS {
+            let start = self.start(n);
+            let ends = follow(&self.slides, &start.parameters, target, &start.solutions, BRISK);
+            let before = solutions.len();
+            solutions = distinct(
+                &self.slides,
+                solutions.into_iter().chain(ends.into_iter().flatten()),
+                SAME_GENERAL,
+            );
+            idle = if solutions.len() == before { idle + 1 } else { 0 };
+            // most have all; a more special one is believed when further starts find nothing new
+            if solutions.len() >= self.count() || idle == CONFIRMING_STARTS {
+                break;
+            }
+        }
+        solutions
+    }
 }
 
 fn by_monodromy(slides: &Slides, random: &mut Random) -> Start {
@@ -204,7 +288,7 @@ pub(super) struct NormalForm {
 }
 
 /// Below this sine of its twist a transform counts as a turn about z; the rest is rounding.
-const NO_TWIST: f64 = 1e-13;
+pub(super) const NO_TWIST: f64 = 1e-13;
 
 fn cosine_sine(z: Complex64) -> (Complex64, Complex64) {
     let inverse = z.inv();

@@ -4,7 +4,7 @@
 
 use super::chain::{Chain, Joint};
 use super::locating::still;
-use super::modes::{ModeFinder, Unknown};
+use super::modes::{Algebraic, ModeFinder, Unknown};
 use super::paths::{Solution, UNKNOWNS};
 use super::phases::Watch;
 use super::starts::Random;
@@ -17,6 +17,7 @@ const REAL_INPUT: f64 = 1e-6;
 /// What is watched on the way round, and where the watched joints have their values.
 pub(super) struct Survey<'a> {
     pub finder: &'a ModeFinder<'a>,
+    pub algebraic: Algebraic<'a>,
     pub watch: Watch,
     pub infinite: Infinite,
     /// Of how many solutions each pose has one: those with a ball's turns, or an idle coupler, turned over.
@@ -36,17 +37,23 @@ pub(super) enum Infinite {
 impl<'a> Survey<'a> {
     /// For an input that turns; `None` where its modes are not algebraic.
     pub fn new(finder: &'a ModeFinder<'a>) -> Option<Self> {
-        if !finder.is_algebraic() {
+        let algebraic = finder.algebraic()?;
+        // the middle of links that spin together moves with the joints among them
+        if finder.chain.halves.iter().any(|h| h.line.is_some()) {
             return None;
         }
-        let zeros = finder.zeros();
+        let zeros = algebraic.zeros;
         let mut watch = Watch { values: [None; UNKNOWNS], middles: Vec::new() };
         for (i, unknown) in finder.unknowns.iter().enumerate() {
             match *unknown {
                 Unknown::BallTurn(_, 1) => watch.middles.push((i, zeros[i])),
                 Unknown::Column(c) => {
-                    let half = finder.chain.halves.iter().find(|h| h.0 == c);
-                    let middle = half.map(|h| (i, zeros[i] * Complex64::from_polar(1.0, h.1)));
+                    let half = finder
+                        .chain
+                        .halves
+                        .iter()
+                        .find(|h| finder.chain.first[h.joint] == c);
+                    let middle = half.map(|h| (i, zeros[i] * Complex64::from_polar(1.0, h.middle)));
                     watch.middles.extend(middle);
                 }
                 _ => {}
@@ -57,30 +64,30 @@ impl<'a> Survey<'a> {
         let general = watch.middles.is_empty()
             && !finder.slides.contains(&true)
             && finder.unknowns.iter().all(|u| matches!(u, Unknown::Column(_)))
-            && finder.is_general();
-        let known = if general { finder.poles() } else { None };
+            && algebraic.is_general();
+        let known = if general { algebraic.poles() } else { None };
         if let Some(at) = known {
             // solutions infinite at a real input may be those of a motion with the input at rest
             let still = at.iter().any(|x| x.norm().ln().abs() < REAL_INPUT);
-            return Some(Self { finder, watch, infinite: Infinite::At(at), flips, still });
+            return Some(Self { finder, algebraic, watch, infinite: Infinite::At(at), flips, still });
         }
-        Some(Self::watching_all(finder, watch))
+        Some(Self::watching_all(finder, algebraic, watch))
     }
 
     /// With every passive joint watched, as special geometry asks for.
-    pub fn watching_all(finder: &'a ModeFinder<'a>, mut watch: Watch) -> Self {
-        let zeros = finder.zeros();
+    pub fn watching_all(finder: &'a ModeFinder<'a>, algebraic: Algebraic<'a>, mut watch: Watch) -> Self {
+        let zeros = algebraic.zeros;
         let mut random = Random(0xb0b);
         let mut met: [Vec<Complex64>; UNKNOWNS] = Default::default();
         let mut rests = false;
         let chain = turned_out(finder);
-        let closure = finder.closure(None);
+        let closure = algebraic.closure(None);
         for i in 0..UNKNOWNS {
             if matches!(finder.unknowns[i], Unknown::Added) {
                 continue;
             }
             let value = Complex64::from_polar(0.45 + 0.35 * random.uniform(), TAU * random.uniform());
-            let solutions = solutions_with(&chain, finder, i, value);
+            let solutions = solutions_with(&chain, finder, &zeros, (i, value));
             let at: Vec<(Solution, Complex64)> = solutions
                 .iter()
                 .map(|(x, input)| (*x, closure.zero() * input))
@@ -100,7 +107,14 @@ impl<'a> Survey<'a> {
             watch.values[i] = Some(value * zero);
         }
         let flips = 1 << watch.middles.len();
-        Self { finder, watch, infinite: Infinite::Watched(met), flips, still: rests }
+        Self {
+            finder,
+            algebraic,
+            watch,
+            infinite: Infinite::Watched(met),
+            flips,
+            still: rests,
+        }
     }
 }
 
@@ -129,12 +143,13 @@ fn turned_out(finder: &ModeFinder) -> Chain {
 fn solutions_with(
     chain: &Chain,
     finder: &ModeFinder,
-    unknown: usize,
-    value: Complex64,
+    zeros: &[Complex64; UNKNOWNS],
+    (unknown, value): (usize, Complex64),
 ) -> Vec<(Solution, Complex64)> {
-    let zeros = finder.zeros();
     let other = ModeFinder::new(chain, unknown + 1);
-    let (solutions, shift) = other.solutions_at(value);
+    let Some((solutions, shift)) = other.solutions_at(value) else {
+        return Vec::new();
+    };
     let mut out = Vec::with_capacity(solutions.len());
     'solutions: for solution in solutions {
         let mut values = [Complex64::ONE; 1 + UNKNOWNS];

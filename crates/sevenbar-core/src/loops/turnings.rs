@@ -1,7 +1,7 @@
 //! Where a column changes direction along a followed curve, and the curve with these places among its nodes.
 
-use super::chain::{COLUMNS, Chain, Columns};
-use super::curve::{Curve, End, Node, combined, dot, length, measure};
+use super::chain::{COLUMNS, Chain};
+use super::curve::{Curve, End, Node, dot, length, measure};
 
 /// A rate of a column below this part of the curve's is zero.
 const AT_REST: f64 = 1e-13;
@@ -11,6 +11,14 @@ const STILL: f64 = 1e-9;
 
 /// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
 const SAME_PLACE: f64 = 1e-6;
+
+/// Near a change point, where the norm of the screws' inverse is greater, a rate below its square times this is rounding: the place,
+/// and so the tangent, is not known better.
+const NEAR: f64 = 1e3;
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// How far [rad, or parts of the size] from a change point a column's direction is looked at to see whether it turns back there.
+const BESIDE: f64 = 1e-3;
 
 /// Places looked at within a step for a change of a column's direction.
 const LOOKS: usize = 6;
@@ -28,8 +36,42 @@ impl Curve {
     pub fn turnings(&self, chain: &Chain, column: usize) -> Vec<Turning> {
         let mut found = Vec::new();
         let mut marks: Vec<(f64, f64)> = Vec::new();
+        let rounded =
+            |n: &Node| n.inverse_norm > NEAR && n.rates[0][column].abs() <= ROUNDED * n.inverse_norm.powi(2);
+        // the last rate before nodes at which rounding hides it, and the node of these where it is least
+        let mut blurred: Option<(f64, usize)> = None;
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
+            if a.is_crossing() || b.is_crossing() {
+                if a.is_crossing() && self.turns_back_over(segment, column) {
+                    found.push(Turning { segment, node: *a });
+                }
+                blurred = None;
+                continue;
+            }
+            match (rounded(a), rounded(b)) {
+                (false, false) => {}
+                (false, true) => {
+                    blurred = Some((a.rates[0][column], segment + 1));
+                    continue;
+                }
+                (true, true) => {
+                    if let Some((_, least)) = &mut blurred
+                        && b.rates[0][column].abs() < self.nodes[*least].rates[0][column].abs()
+                    {
+                        *least = segment + 1;
+                    }
+                    continue;
+                }
+                (true, false) => {
+                    if let Some((before, least)) = blurred.take()
+                        && before * b.rates[0][column] < 0.0
+                    {
+                        found.push(self.turning_beside(chain, column, least));
+                    }
+                    continue;
+                }
+            }
             // a rate that is zero to the last digit at a node, as where another column turns back there, has no sign beside it
             if turns_at(a, column) && a.rates[1][column] != 0.0 {
                 found.push(Turning { segment, node: *a });
@@ -79,6 +121,46 @@ impl Curve {
         }
         found
     }
+
+    /// Where a column turns back beside a node at which its rate is rounding: there, or in a step next to it where its sign changes.
+    fn turning_beside(&self, chain: &Chain, column: usize, least: usize) -> Turning {
+        let rate = |k: usize| self.nodes[k].rates[0][column];
+        [least.wrapping_sub(1), least]
+            .into_iter()
+            .filter(|&k| k + 1 < self.nodes.len() && rate(k) * rate(k + 1) < 0.0)
+            .find_map(|segment| {
+                let a = &self.nodes[segment];
+                let ends = ((0.0, rate(segment)), (a.step, rate(segment + 1)));
+                let node = turning_between(chain, a, column, ends.0, ends.1)?;
+                Some(Turning { segment, node })
+            })
+            .unwrap_or(Turning { segment: least, node: self.nodes[least] })
+    }
+
+    /// Whether a column turns back at the node of a change point, as its rates at a distance have it.
+    fn turns_back_over(&self, node: usize, column: usize) -> bool {
+        let last = self.nodes.len() - 1;
+        let beside = |ahead: bool| {
+            let mut gone = 0.0;
+            let mut k = node;
+            loop {
+                let ends = if ahead { k == last } else { k == 0 };
+                k = match (ends, ahead) {
+                    (true, _) if self.end != End::Closed => return 0.0,
+                    (true, true) => 1,
+                    (true, false) => last - 1,
+                    (false, true) => k + 1,
+                    (false, false) => k - 1,
+                };
+                gone += self.nodes[if ahead { k.max(1) - 1 } else { k }].step;
+                if gone > BESIDE || k == node {
+                    return self.nodes[k].rates[0][column];
+                }
+            }
+        };
+        let (before, after) = (beside(false), beside(true));
+        before * after < 0.0 && before.abs().min(after.abs()) > STILL
+    }
 }
 
 /// The place in a step where a column's rate is zero, between two where its sign differs.
@@ -127,7 +209,9 @@ pub(super) fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], col
     let known = |t: &Turning| {
         (t.segment..=t.segment + 1).find(|&k| {
             let n = &curve.nodes[k];
-            n.rates[0][column].abs() < STILL && length(&chain.difference(&n.at, &t.node.at)) < SAME_PLACE
+            let off = length(&chain.difference(&n.at, &t.node.at));
+            let still = n.is_crossing() || n.rates[0][column].abs() < STILL;
+            off == 0.0 || (still && off < SAME_PLACE)
         })
     };
     let places: Vec<Option<usize>> = turnings.iter().map(known).collect();
@@ -164,8 +248,7 @@ pub(super) fn turns_at(node: &Node, column: usize) -> bool {
 /// A closed curve begun at another of its nodes, turns counted on.
 pub(super) fn begun_at(chain: &Chain, curve: &Curve, start: usize) -> Curve {
     let last = curve.nodes.len() - 1;
-    let (first, end) = (curve.nodes[0].at.values, curve.nodes[last].at.values);
-    let gained: Columns = combined(&end, 1.0, &first, -1.0);
+    let gained = curve.gained();
     let mut nodes: Vec<Node> = curve.nodes[start..last].to_vec();
     nodes.extend(curve.nodes[..=start].iter().map(|n| {
         let mut n = *n;

@@ -1,13 +1,16 @@
 //! Curves walked eight side by side in vector lanes, each until it comes back or cannot go on.
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint};
-use super::curve::{Curve, End, Node, Stand, dot};
+use super::curve::{Curve, End, Node, Stand, dot, length};
 use super::polish::AGREE;
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};
 
 /// Shorter steps mean a place where the curve is not smooth: a change point.
 const SHORTEST: f64 = 1e-10;
+
+/// Norm of the screws' inverse beyond which rounding moves a place by more than its distance from where the curve is not smooth.
+const BLIND: f64 = 3e7;
 
 /// Most nodes of a curve, 43 MB; an ordinary circuit has some hundreds, three screws over 50 rad 70,000.
 const MOST_NODES: usize = 100_000;
@@ -21,10 +24,17 @@ const FARTHEST: f64 = 50.0;
 /// A closed configuration and the direction in which to leave it.
 pub(super) type Start = (Configuration, Columns);
 
+/// A pose at which walks end, and how near to it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stop {
+    pub at: Configuration,
+    pub radius: f64,
+}
+
 impl Chain {
     /// Follows the motions through closed configurations until they come back; those that do not, from end to end.
-    pub fn follow(&self, starts: &[Start]) -> Vec<Curve> {
-        let mut curves = self.walk(starts);
+    pub fn follow(&self, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
+        let mut curves = self.walk(starts, stops);
         let open: Vec<usize> = (0..curves.len())
             .filter(|&k| !matches!(curves[k].end, End::Closed | End::Open))
             .collect();
@@ -33,31 +43,38 @@ impl Chain {
         for &k in &open {
             curves[k].nodes = Vec::new();
         }
-        for (k, curve) in open.into_iter().zip(self.walk(&ends)) {
+        for (k, curve) in open.into_iter().zip(self.walk(&ends, stops)) {
             curves[k] = curve;
         }
         curves
     }
 
     /// The curve walked the other way: its own nodes where each step is certain that way too.
-    pub fn turned_round(&self, curve: &Curve) -> Curve {
+    pub fn turned_round(&self, curve: &Curve, stops: &[Stop]) -> Curve {
         self.reversed(curve)
-            .unwrap_or_else(|| self.walk(&[back_from_end(curve)]).swap_remove(0))
+            .unwrap_or_else(|| self.walk(&[back_from_end(curve)], stops).swap_remove(0))
     }
 
-    fn walk(&self, starts: &[Start]) -> Vec<Curve> {
-        self.walk_until(starts, false).0
+    fn walk(&self, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
+        self.walk_until(starts, stops, false).0
     }
 
     /// Each motion until it comes to the next of the starts, its own or another, and which that is.
     pub fn pieces(&self, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
-        self.walk_until(starts, true)
+        self.walk_until(starts, &[], true)
     }
 
-    fn walk_until(&self, starts: &[Start], any: bool) -> (Vec<Curve>, Vec<Option<usize>>) {
+    fn walk_until(&self, starts: &[Start], stops: &[Stop], any: bool) -> (Vec<Curve>, Vec<Option<usize>>) {
         let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
         let mut reached = vec![None; starts.len()];
-        let walk = Walk { chain: self, starts, any, curves: &mut curves, reached: &mut reached };
+        let walk = Walk {
+            chain: self,
+            starts,
+            stops,
+            any,
+            curves: &mut curves,
+            reached: &mut reached,
+        };
         match starts.len() {
             0 => {}
             // one curve has nothing beside it, and vector code would be slower
@@ -95,6 +112,7 @@ fn back_from_end(curve: &Curve) -> Start {
 struct Walk<'a> {
     chain: &'a Chain,
     starts: &'a [Start],
+    stops: &'a [Stop],
     /// Whether any start ends a curve, or its own only.
     any: bool,
     curves: &'a mut [Curve],
@@ -326,8 +344,20 @@ impl Walk<'_> {
             return Some(End::Closed);
         }
         curve.nodes.push(next);
+        let stopped = |s: &Stop| {
+            let off = chain.difference(&next.at, &s.at);
+            // one that it has just left lies behind
+            length(&off) < s.radius && dot(&off, &next.rates[0]) > 0.0
+        };
+        if next.inverse_norm > BLIND || self.stops.iter().any(stopped) {
+            return Some(End::Singular);
+        }
+        let curve = &self.curves[walker];
+        let start = &curve.nodes[0].at;
         let far = chain.joints.iter().zip(&chain.first).any(|(joint, &c)| {
-            !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > FARTHEST
+            // a curve that is followed back from its end begins beyond
+            let farthest = FARTHEST.max(start.values[c].abs());
+            !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > farthest
         });
         let most = if self.any { MOST_PIECE_NODES } else { MOST_NODES };
         (far || curve.nodes.len() > most).then_some(End::Far)

@@ -5,7 +5,7 @@ use super::frames::JOINT_COLUMNS;
 use super::motion::{Circuit, branch_at};
 use super::pair::Pair;
 use super::{Input, Motion, MotionType, Rssr};
-use crate::outcome::RowStatus;
+use crate::outcome::{DeadCentreKind, RowStatus};
 use crate::taylor::Taylor;
 use std::f64::consts::TAU;
 
@@ -28,6 +28,9 @@ pub struct Row {
     /// How much a relative error of the squared lengths is magnified in what all rates rest on.
     pub condition: f64,
 }
+
+/// A limit nearer than this [rad] to a change point is one of the two that meet there: they lie within 1e-6 rad of each other.
+const MEETING: f64 = 2e-6;
 
 /// A place along a circuit before it is solved.
 #[derive(Clone, Copy)]
@@ -98,6 +101,27 @@ impl Rssr {
                 (wrapped, self.residual(crank, rocker))
             })
             .collect()
+    }
+
+    /// Joint values at a change point, an input of those of a motion, angles in (-pi, pi]; and the circuits that meet there, by their
+    /// number: none where the loop closes in that pose only.
+    pub fn change_point(&self, motion: &Motion, driver: f64) -> ([f64; JOINT_COLUMNS], Vec<usize>) {
+        let pair = self.pair(motion.input);
+        let follower = pair.angle(&pair.reach(driver), 0.0, 0);
+        let (crank, rocker) = Self::in_loop_order(motion.input, driver, follower);
+        let joints = self.joints(Taylor::<1>::constant(crank), Taylor::constant(rocker));
+        let meets = |circuit: &Circuit| {
+            let near = |a: f64, b: f64| turn_between(a, b).abs() < MEETING;
+            circuit.touches.iter().any(|&t| near(t, driver))
+                || circuit.dead_centres.iter().any(|d| match d.kind {
+                    DeadCentreKind::Input => near(d.input, driver),
+                    DeadCentreKind::Output => near(d.output, follower),
+                })
+        };
+        let circuits = (0..motion.circuits.len())
+            .filter(|&k| meets(&motion.circuits[k]))
+            .collect();
+        (joints.map(|q| -turn_between(q.value(), 0.0)), circuits)
     }
 
     fn walk(&self, motion: &Motion, circuit: &Circuit, drivers: &[(Stop, Taylor<4>)]) -> Vec<Row> {

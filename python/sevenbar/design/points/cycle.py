@@ -67,7 +67,7 @@ class Cycle:
     @property
     def closed(self) -> bool:
         """Whether the rows go round at constant speed, so that what lies between them can be computed."""
-        return self.motion.law is None and _goes_round(self.circuit)
+        return self.motion.law is None and self.circuit.goes_round
 
     @property
     def step(self) -> float:
@@ -151,13 +151,13 @@ def cycle_of(
     """
     chosen = chosen_circuit(motion, circuit)
     _refuse_link(motion, link)
-    if motion.law is None and order != "position" and not _goes_round(chosen):
+    if motion.law is None and order != "position" and not chosen.goes_round:
         raise RequestError(_unbounded(motion, chosen))
     branches = int(chosen.branch.max(initial=0)) + 1
     if isinstance(branch, bool) or not isinstance(branch, (int, np.integer)) or not 0 <= branch < branches:
         allowed = f"0 to {branches - 1}" if branches > 1 else "0"
         raise RequestError(f"branch: {shown(branch)} is not a pass of circuit {circuit}; give {allowed}")
-    if motion.law is None and _goes_round(chosen):
+    if motion.law is None and chosen.goes_round:
         turn = math.copysign(math.tau * chosen.turns, motion.speed)
         inputs = chosen.input[0] + turn * np.arange(rows * chosen.turns) / (rows * chosen.turns)
         time = np.abs(inputs - inputs[0]) / abs(motion.speed)
@@ -173,7 +173,7 @@ def driven(
 ) -> tuple[Circuit, npt.NDArray[np.bool_]]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
     law = Law.of(np.arange(float(len(inputs))), inputs, motion.speed if speed is None else speed, 0.0)
-    if not _goes_round(circuit) or circuit.turns > 1:
+    if not circuit.goes_round or circuit.turns > 1:
         # a pose alone tells neither passes nor turns apart
         all_of_them = motion.linkage.motion(input=motion.input, output=motion.output, law=law)
         again = all_of_them.circuits[circuit.index]
@@ -187,11 +187,6 @@ def told_input(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
     slides = motion.linkage.column_kinds[motion.linkage.columns.index(motion.input)] == "slide"
     return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
-
-
-def _goes_round(circuit: Circuit) -> bool:
-    """Whether the input of a circuit turns without a limit until the circuit closes."""
-    return circuit.closed and circuit.input_range is None
 
 
 def _refuse_link(motion: Motion, link: object) -> None:
@@ -239,10 +234,11 @@ def _unbounded(motion: Motion, circuit: Circuit) -> str:
     name = f"circuit: circuit {circuit.index}"
     if not circuit.closed:
         return f"{name} ends at a change point, so it has no cycle; change a dimension a little"
-    others = ", ".join(str(c.index) for c in motion if _goes_round(c))
+    word = "turns back" if circuit.input_range is None else "rocks"
+    others = ", ".join(str(c.index) for c in motion if c.goes_round)
     other = f", or a circuit whose input goes round: {others}" if others else ""
     return (
-        f"{name} rocks: at constant speed of {motion.input} its rates grow without bound at the limits; "
+        f"{name} {word}: at constant speed of {motion.input} its rates grow without bound at the limits; "
         f"give a law that stays off them{other}"
     )
 

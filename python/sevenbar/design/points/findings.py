@@ -146,7 +146,7 @@ def _whose(cycle: Cycle) -> str:
     motion = cycle.motion
     unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
     drive = "driven by a law" if motion.law is not None else f"at {motion.speed:g} {unit}/s"
-    branch = f", branch {cycle.branch}" if cycle.circuit.input_range is not None else ""
+    branch = f", branch {cycle.branch}" if not cycle.circuit.goes_round else ""
     return f"circuit {cycle.circuit.index}{branch}, {motion.input} {drive}"
 
 

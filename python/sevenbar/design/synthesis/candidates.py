@@ -237,7 +237,7 @@ def _in_order(circuit: Circuit, position: Floats) -> Refusal | None:
 def _rising(circuit: Circuit, position: Floats) -> bool:
     """Whether places go forwards along a circuit, over less than a round of it."""
     steps = np.diff(position)
-    if circuit.closed and circuit.input_range is None:
+    if circuit.goes_round:
         steps = _forwards(steps, len(circuit.input))
         if steps.sum() >= len(circuit.input):
             return False
@@ -265,7 +265,7 @@ def used_transmission(linkage: Linkage, circuit: Circuit, inputs: Floats, positi
 
 def _travel(circuit: Circuit, inputs: Floats, position: Floats) -> float:
     """How far the input turns from the first pose to the last [rad], against its sense where negative."""
-    if circuit.input_range is not None:
+    if not circuit.goes_round:
         rough = float(np.diff(np.interp(position[[0, -1]], np.arange(len(circuit.input)), circuit.input))[0])
     else:
         rows = len(circuit.input)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -61,13 +62,14 @@ def function_of(text: str) -> Callable[[Floats], Floats]:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise _not_understood(text, "it is not a formula") from None
     _look_at(body, text)
+    return partial(_values, body)
 
-    def function(x: Floats) -> Floats:
-        with np.errstate(all="ignore"):
-            value = _value(body, np.asarray(x, dtype=float))
-        return np.array(np.broadcast_to(np.asarray(value, dtype=float), np.shape(x)))
 
-    return function
+def _values(body: ast.AST, x: Floats) -> Floats:
+    """What a formula comes to at each x."""
+    with np.errstate(all="ignore"):
+        value = _value(body, np.asarray(x, dtype=float))
+    return np.array(np.broadcast_to(np.asarray(value, dtype=float), np.shape(x)))
 
 
 def _not_understood(text: str, why: str) -> RequestError:

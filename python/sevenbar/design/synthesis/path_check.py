@@ -118,7 +118,7 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
     candidate = checked(draft, claim, task.limits, poses=best.poses)
     if isinstance(candidate, Candidate) and task.closed:
         circuit = draft.linkage.motion(SAMPLES).circuits[candidate.circuit]
-        if circuit.input_range is not None:
+        if not circuit.goes_round:
             return Refusal(
                 "dead centre",
                 "the path is closed, and a dead centre lies between its last point and its first",

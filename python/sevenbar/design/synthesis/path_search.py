@@ -120,7 +120,7 @@ def _starts(task: PathTask, count: int, seed: int) -> Iterator[Floats]:
 def passes(circuit: Circuit, curve: Floats, *, turns: bool) -> Iterator[Pass]:
     """The passes of a circuit with a point's path (rows, 3); rows without a pose are left out."""
     good = np.isfinite(np.column_stack([curve, circuit.q])).all(axis=1)
-    if circuit.closed and circuit.input_range is None and good.all():
+    if circuit.goes_round and good.all():
         yield Pass(circuit, np.arange(len(curve)), curve, True, turns)
         return
     for branch in np.unique(circuit.branch):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -92,16 +93,26 @@ def wish_of_function(
     if most - least <= 1e-12 * max(abs(least), abs(most), 1e-300):
         raise RequestError(f"y: {told} is the same all over {low:g}:{high:g}; give a function that changes")
 
-    def reading(a: Floats) -> Floats:
-        share = (a - input_range[0]) / (input_range[1] - input_range[0])
-        value = (function(low + (high - low) * share) - least) / (most - least)
-        return np.asarray(output_range[0] + (output_range[1] - output_range[0]) * value)
-
+    reading = partial(_reading, function, (low, high), (least, most), input_range, output_range)
     first, last = sorted(input_range)
     middle, half = (first + last) / 2, (last - first) / 2
     samples = middle - half * np.cos(np.linspace(0.0, math.pi, FIT_SAMPLES))
     at = np.empty(0) if points is None else chebyshev(first, last, points)
     return Wish(told, samples, reading(samples), at, reading(at), reading)
+
+
+def _reading(
+    function: Callable[[Floats], Floats],
+    x: tuple[float, float],
+    y: tuple[float, float],
+    inputs: tuple[float, float],
+    outputs: tuple[float, float],
+    a: Floats,
+) -> Floats:
+    """The output's readings that a function wants at the input's readings `a`, by the ends of each scale."""
+    share = (a - inputs[0]) / (inputs[1] - inputs[0])
+    value = (function(x[0] + (x[1] - x[0]) * share) - y[0]) / (y[1] - y[0])
+    return np.asarray(outputs[0] + (outputs[1] - outputs[0]) * value)
 
 
 def wish_of_pairs(

@@ -95,7 +95,7 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     order = np.argsort(x, kind="stable")
     rows, x = rows[order], x[order]
     # a circuit that goes round ends where it began
-    round_ = found.circuit.input_range is None and len(linear.rows) == len(linear.status)
+    round_ = found.circuit.goes_round and len(linear.rows) == len(linear.status)
     if round_ and found.circuit.turns:
         rows, x = np.append(rows, rows[0]), np.append(x, x[0] + 2 * np.pi * abs(found.circuit.turns))
     # rows that are left out leave a gap

@@ -155,7 +155,7 @@ def monte_carlo(
     designs = Designs(linear)
     exact = np.empty((changes.shape[1], len(linear.rows)))
     gap = np.zeros(changes.shape[1], dtype=bool)
-    whole_turn = linear.found.circuit.input_range is None and linear.found.circuit.closed
+    whole_turn = linear.found.circuit.goes_round
     block = max(1, BLOCK // len(linear.rows))
     for start in range(0, len(exact), block):
         part = slice(start, start + block)

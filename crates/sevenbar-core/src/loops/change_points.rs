@@ -1,0 +1,536 @@
+//! Poses at which a motion is not smooth, and every way out of them.
+//!
+//! Where the screws lose rank, `k` directions `K` are free to first order and wrenches `W` do not see them. With the other joints
+//! solved for, what is left of the closure is `g(x) = W e(q(x)) = b + x H x / 2 + ..`, `x` in the plane of `K`. The pose itself is where
+//! the slope of `g` is zero: Newton's method with second derivatives of the closure finds it to rounding, also where `b` is not zero and
+//! two curves pass each other by a hair. The ways out are the solutions of the closure on a small sphere about it: as many as there are,
+//! however they touch, and none where the pose stands alone.
+//!
+//! Source: docs/theory.md, (19) to (22).
+
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Twist, bracket, squared_up, twist_of};
+use super::curve::{Curve, Node, dot, length};
+use super::dense::{least_squares, singular_values};
+use super::polish::{AGREE, CLOSED, NO_RANK};
+use super::starts::Random;
+use super::walk::{Start, Stop};
+
+/// Singular values below this part of the greatest, and this many times the one that is known to vanish near by, vanish there too.
+const NEARLY_ZERO: f64 = 1e-3;
+const AS_SMALL: f64 = 100.0;
+
+/// Farther than this [rad, or parts of the size] from where it was looked for, a place is another.
+const NEAR: f64 = 0.05;
+
+/// Two limits of a joint nearer than this [rad, or parts of the size] are a change point.
+const SAME_LIMIT: f64 = 1e-6;
+
+/// Curves that pass each other at more than this [rad, or parts of the size] are followed apart, whatever their limits.
+const APART: f64 = 1e-5;
+
+/// Curves that pass each other nearer than this [rad, or parts of the size] are not told apart: a relative change of some 1e-12 in a
+/// dimension makes as much, and rounding hides the way between them.
+const TOUCHING: f64 = 1e-6;
+
+/// Curves are cut this far [rad, or parts of the size] from the pose: farther in rounding turns their tangents by more than the way bends.
+const CUT: f64 = 2e-5;
+
+/// Curves that pass at a distance are cut so many times as far out, where both are straight.
+const CUT_TIMES: f64 = 30.0;
+
+/// Radii of the sphere, the next where curves do not run straight into the pose from the one before [rad, or parts of the size].
+const RADII: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
+
+/// A sphere's radius is at least so many times the distance at which curves are cut.
+const LEAST_RADIUS: f64 = 3.0;
+
+/// Directions tried on the circle of two free directions, and for each further one so many times as many.
+const DIRECTIONS: usize = 48;
+const MORE_DIRECTIONS: usize = 6;
+
+/// Seen from the pose, places on spheres of half the radius may differ by so much, and by so little a curve is straight.
+const MOST_BENT: f64 = 0.2;
+const STRAIGHT: f64 = 1e-6;
+
+/// Ways out that differ by less than this part of the radius are one.
+const SAME_WAY: f64 = 1e-5;
+
+/// Tangents at the pose that differ by less than this from opposite ones belong to one smooth curve.
+const OPPOSITE: f64 = 0.03;
+
+/// A second-order form below this part of the closure's is none: a redundant constraint's.
+const NO_FORM: f64 = 1e-7;
+
+/// A pose this many times as far from a change point as curves are cut there still is at it.
+pub(super) const AT_POINT: f64 = 3.0;
+
+/// A way out of a pose.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    /// Its place on the sphere, and the direction outwards there.
+    pub start: Start,
+    /// Seen from the pose, the places on the sphere and on the one of half its radius, in parts of the radius.
+    seen: [Columns; 2],
+}
+
+/// A pose at which the motion is not smooth.
+#[derive(Clone, Debug)]
+pub(super) struct ChangePoint {
+    pub at: Configuration,
+    pub rays: Vec<Ray>,
+    /// For each ray the one that continues it smoothly.
+    pub partner: Vec<Option<usize>>,
+    /// Where curves are cut that run into it.
+    pub cut: f64,
+    /// Freedoms of the motions out of it: none where it stands alone.
+    pub finite: usize,
+}
+
+/// A place where the screws lose rank, and the closure there.
+struct Place {
+    at: Configuration,
+    /// Free directions, of unit length and square to each other.
+    free: Vec<Columns>,
+    /// The value and the second-order form, by rows, of each part of the closure that the screws leave and that is not redundant.
+    forms: Vec<(f64, Vec<f64>)>,
+    /// Closure error that no form explains.
+    open: f64,
+}
+
+impl Place {
+    /// By how much curves pass each other there [rad, or parts of the size], as seen in all columns.
+    fn passing(&self) -> f64 {
+        let passes = |(value, form): &(f64, Vec<f64>)| {
+            let norm = form.iter().map(|x| x * x).sum::<f64>().sqrt();
+            (2.0 * value.abs() / norm).sqrt()
+        };
+        self.forms.iter().map(passes).fold(0.0, f64::max)
+    }
+
+    /// How far apart two limits of a column are there, also where they are complex.
+    fn limits_apart(&self, column: usize) -> f64 {
+        let [(value, form)] = self.forms.as_slice() else {
+            return 2.0 * self.passing();
+        };
+        let [x, y] = self.free.as_slice() else {
+            return 2.0 * self.passing();
+        };
+        let determinant = form[0] * form[3] - form[1] * form[2];
+        let (a, b) = (x[column], y[column]);
+        let bent = (a * a * form[3] - 2.0 * a * b * form[1] + b * b * form[0]) / determinant;
+        2.0 * (2.0 * (value * bent).abs()).sqrt()
+    }
+
+    /// Whether it counts as a change point for these columns: it is one, but for rounding, or their limits nearly meet; or nothing
+    /// can be followed between curves so near.
+    fn counts(&self, wished: &[usize], stuck: bool) -> bool {
+        let passing = self.passing();
+        let limits_meet = || wished.iter().any(|&c| self.limits_apart(c) < SAME_LIMIT);
+        self.open < AGREE && (passing < TOUCHING || (passing < APART && (stuck || limits_meet())))
+    }
+}
+
+impl Chain {
+    /// The screws' first derivatives along rates of the joints.
+    fn carried(&self, screws: &[Twist; COLUMNS], rates: &Columns) -> [Twist; COLUMNS] {
+        let mut out = [[0.0; 6]; COLUMNS];
+        let mut before = [0.0; 6];
+        for (joint, &first) in self.joints.iter().zip(&self.first) {
+            for c in first..first + joint.columns() {
+                out[c] = bracket(&before, &screws[c]);
+            }
+            for c in first..first + joint.columns() {
+                for k in 0..6 {
+                    before[k] += screws[c][k] * rates[c];
+                }
+            }
+        }
+        out
+    }
+
+    /// The place near a pose where the screws have lost rank, with the closure's slope zero in all directions they leave free.
+    fn singular_place(&self, rough: &Configuration) -> Option<Place> {
+        let mut at = *rough;
+        let (values, _) = singular_values(&self.screws(&at));
+        let least = self.columns.checked_sub(2)?;
+        let zero = (NEARLY_ZERO * values[0]).min(AS_SMALL * values[least]);
+        let mut rank = values.iter().filter(|&&v| v > zero).count().min(least);
+        // what else vanishes there is known once it is reached
+        for _ in 0..COLUMNS {
+            at = self.settled_at_rank(&at, rank)?;
+            if length(&self.difference(rough, &at)) > NEAR {
+                return None;
+            }
+            let there = super::polish::rank(&singular_values(&self.screws(&at)).0, NO_RANK);
+            if there > rank {
+                return None;
+            }
+            if there == rank {
+                return Some(self.place_at(&at, rank));
+            }
+            rank = there;
+        }
+        None
+    }
+
+    /// Newton's method on the closure that screws of a rank see, and on the slope of what they leave.
+    fn settled_at_rank(&self, rough: &Configuration, rank: usize) -> Option<Configuration> {
+        let mut at = *rough;
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let placed = self.place(&at);
+            let split = Split::new(self, &placed.screws, rank);
+            let count = split.seen.len() + split.left.len() * split.free.len();
+            let mut columns = vec![vec![0.0; count]; self.columns];
+            let mut right = vec![0.0; count];
+            for (r, row) in split.seen.iter().enumerate() {
+                right[r] = -power(row, &placed.error);
+                for c in 0..self.columns {
+                    columns[c][r] = power(row, &placed.screws[c]);
+                }
+            }
+            for c in 0..self.columns {
+                let mut unit = [0.0; COLUMNS];
+                unit[c] = 1.0;
+                let moved = self.carried(&placed.screws, &unit);
+                for (f, free) in split.free.iter().enumerate() {
+                    let bent = twist_of(&moved, free);
+                    for (w, row) in split.left.iter().enumerate() {
+                        columns[c][split.seen.len() + w * split.free.len() + f] = power(row, &bent);
+                    }
+                }
+            }
+            for (f, free) in split.free.iter().enumerate() {
+                let slope = twist_of(&placed.screws, free);
+                for (w, row) in split.left.iter().enumerate() {
+                    right[split.seen.len() + w * split.free.len() + f] = -power(row, &slope);
+                }
+            }
+            let step = least_squares(&columns, &right, NO_SLOPE);
+            let mut by = [0.0; COLUMNS];
+            by[..self.columns].copy_from_slice(&step);
+            let size = length(&by);
+            if !size.is_finite() || size > NEAR {
+                return None;
+            }
+            at = self.moved(&at, &by);
+            for ball in &mut at.balls {
+                *ball = squared_up(ball);
+            }
+            let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
+            before = size;
+            if steady {
+                break;
+            }
+        }
+        (before < UNSTEADY).then_some(at)
+    }
+
+    fn place_at(&self, at: &Configuration, rank: usize) -> Place {
+        let placed = self.place(at);
+        let split = Split::new(self, &placed.screws, rank);
+        let count = split.free.len();
+        // each wrench's form as a vector, by which redundant ones are told apart
+        let forms: Vec<Vec<f64>> = split
+            .left
+            .iter()
+            .map(|row| {
+                let mut form = Vec::with_capacity(count * count);
+                for a in &split.free {
+                    let moved = self.carried(&placed.screws, a);
+                    form.extend(split.free.iter().map(|b| power(row, &twist_of(&moved, b))));
+                }
+                form
+            })
+            .collect();
+        let values: Vec<f64> = split.left.iter().map(|row| power(row, &placed.error)).collect();
+        let (sizes, mixes) = singular_values(&forms);
+        let mut found = Vec::new();
+        let mut open = 0.0;
+        for (size, mix) in sizes.iter().zip(&mixes) {
+            let value: f64 = mix.iter().zip(&values).map(|(m, v)| m * v).sum();
+            if *size > NO_FORM {
+                let form = (0..count * count)
+                    .map(|k| mix.iter().zip(&forms).map(|(m, f)| m * f[k]).sum())
+                    .collect();
+                found.push((value, form));
+            } else {
+                open += value * value;
+            }
+        }
+        Place { at: *at, free: split.free, forms: found, open: f64::sqrt(open) }
+    }
+
+    /// The change point at or near a pose, if there is one, as the wished columns have it; `stuck` where a walk can go no farther.
+    pub fn change_point(&self, rough: &Configuration, wished: &[usize], stuck: bool) -> Option<ChangePoint> {
+        let place = self.singular_place(rough).filter(|p| p.counts(wished, stuck))?;
+        let cut = CUT.max(CUT_TIMES * place.passing());
+        let mut found = ChangePoint { at: place.at, rays: Vec::new(), partner: Vec::new(), cut, finite: 0 };
+        for &radius in RADII.iter().filter(|&&r| r > LEAST_RADIUS * cut) {
+            let ways = self.ways_out(&place, radius);
+            found.finite = ways.iter().map(|w| w.1).max().unwrap_or(0);
+            if found.finite > 1 {
+                return Some(found);
+            }
+            let rays: Vec<Ray> = ways
+                .iter()
+                .filter_map(|(at, _)| self.ray(&place, at, radius))
+                .collect();
+            let straight = rays.len() == ways.len();
+            if straight || rays.len() > found.rays.len() {
+                found.rays = rays;
+            }
+            if straight {
+                break;
+            }
+        }
+        found.partner = partners(&found.rays);
+        Some(found)
+    }
+
+    /// Where the closure holds on a sphere about a place, each once, with the freedoms there.
+    fn ways_out(&self, place: &Place, radius: f64) -> Vec<(Configuration, usize)> {
+        let mut found: Vec<(Configuration, usize)> = Vec::new();
+        for direction in directions(place) {
+            let Some(at) = self.on_sphere(place, &direction, radius) else {
+                continue;
+            };
+            let known = |f: &(Configuration, usize)| length(&self.difference(&f.0, &at)) < SAME_WAY * radius;
+            if found.iter().any(known) {
+                continue;
+            }
+            let (values, _) = singular_values(&self.screws(&at));
+            let rank = values
+                .iter()
+                .take(6)
+                .filter(|&&v| v > NO_FREEDOM * radius * values[0])
+                .count();
+            found.push((at, self.columns - rank));
+            // a surface has no ways to tell apart
+            if self.columns - rank > 1 {
+                break;
+            }
+        }
+        found
+    }
+
+    /// The solution of the closure at a distance from a place that Newton's method finds from a direction.
+    fn on_sphere(&self, place: &Place, direction: &Columns, radius: f64) -> Option<Configuration> {
+        let mut at = self.moved(&place.at, &direction.map(|x| x * radius));
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_STEPS {
+            let placed = self.place(&at);
+            let off = self.difference(&place.at, &at);
+            let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
+            let distance = seen.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if !(distance > 0.1 * radius && length(&off) < 3.0 * radius) {
+                return None;
+            }
+            let mut outward = [0.0; COLUMNS];
+            for (x, free) in seen.iter().zip(&place.free) {
+                for c in 0..COLUMNS {
+                    outward[c] += x / distance * free[c];
+                }
+            }
+            let columns: Vec<Vec<f64>> = (0..self.columns)
+                .map(|c| {
+                    let mut column = placed.screws[c].to_vec();
+                    column.push(outward[c]);
+                    column
+                })
+                .collect();
+            let mut right: Vec<f64> = placed.error.iter().map(|e| -e).collect();
+            right.push(radius - distance);
+            let mut by = [0.0; COLUMNS];
+            by[..self.columns].copy_from_slice(&least_squares(&columns, &right, NO_RANK));
+            let size = length(&by);
+            if !size.is_finite() {
+                return None;
+            }
+            // no farther than the sphere is large, and so never across it
+            let factor = (0.3 * radius / size).min(1.0);
+            at = self.moved(&at, &by.map(|x| x * factor));
+            for ball in &mut at.balls {
+                *ball = squared_up(ball);
+            }
+            let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
+            before = size;
+            if steady {
+                break;
+            }
+        }
+        let closed = if self.is_redundant() { AGREE } else { CLOSED };
+        (before < STEADY && self.residual(&self.place(&at)) < closed).then_some(at)
+    }
+
+    /// The way out through a place on the sphere; none where its curve does not run straight into the pose.
+    fn ray(&self, place: &Place, at: &Configuration, radius: f64) -> Option<Ray> {
+        let mut outer = *at;
+        let mut seen = [[0.0; COLUMNS]; 3];
+        for (k, seen) in seen.iter_mut().enumerate() {
+            let scale = 1.0 / (radius * 0.5_f64.powi(k as i32));
+            *seen = self.difference(&place.at, &outer).map(|x| x * scale);
+            if k < 2 {
+                outer = self.on_sphere(place, seen, 0.5 / scale)?;
+            }
+        }
+        let apart = |a: &Columns, b: &Columns| length(&std::array::from_fn(|c| a[c] - b[c]));
+        let (first, second) = (apart(&seen[0], &seen[1]), apart(&seen[1], &seen[2]));
+        // asymptotes are left by the square of the distance at which curves pass
+        let passing = 4.0 * place.passing() / radius;
+        if first > MOST_BENT || second > 0.75 * first + STRAIGHT + 2.0 * passing * passing {
+            return None;
+        }
+        let (_, vectors) = singular_values(&self.screws(at));
+        let mut direction = [0.0; COLUMNS];
+        direction[..self.columns].copy_from_slice(&vectors[self.columns - 1]);
+        if dot(&direction, &seen[0]) < 0.0 {
+            direction = direction.map(|x| -x);
+        }
+        Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]] })
+    }
+}
+
+impl Ray {
+    /// The tangent at the pose, outwards.
+    pub fn tangent(&self) -> Columns {
+        let t: Columns = std::array::from_fn(|c| 2.0 * self.seen[1][c] - self.seen[0][c]);
+        let size = length(&t);
+        t.map(|x| x / size)
+    }
+
+    /// How far two ways out are from being one smooth curve: their tangents, then their bends.
+    fn misfit(&self, other: &Self) -> (f64, f64) {
+        let (a, b) = (self.tangent(), other.tangent());
+        let kink = length(&std::array::from_fn(|c| a[c] + b[c]));
+        // twice the bend of each, which a smooth curve has in common
+        let bend = |ray: &Self, c: usize| ray.seen[0][c] - ray.seen[1][c];
+        (
+            kink,
+            length(&std::array::from_fn(|c| bend(self, c) - bend(other, c))),
+        )
+    }
+}
+
+impl ChangePoint {
+    /// Whether a curve passes it, or ends there.
+    pub fn is_on(&self, chain: &Chain, curve: &Curve) -> bool {
+        let near = |n: &Node| length(&chain.difference(&self.at, &n.at)) < AT_POINT * self.cut;
+        let last = curve.nodes.len() - 1;
+        curve.nodes.iter().any(|n| n.is_crossing() && near(n))
+            || near(&curve.nodes[0])
+            || near(&curve.nodes[last])
+    }
+
+    /// Where walks end that run into it.
+    pub fn stop(&self) -> Stop {
+        Stop { at: self.at, radius: self.cut }
+    }
+}
+
+/// For each way out the one that continues it smoothly, nearest in tangent and bend first.
+fn partners(rays: &[Ray]) -> Vec<Option<usize>> {
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for i in 0..rays.len() {
+        for j in i + 1..rays.len() {
+            let (kink, bend) = rays[i].misfit(&rays[j]);
+            if kink < OPPOSITE {
+                pairs.push((kink + bend, i, j));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut partner = vec![None; rays.len()];
+    for (_, i, j) in pairs {
+        if partner[i].is_none() && partner[j].is_none() {
+            (partner[i], partner[j]) = (Some(j), Some(i));
+        }
+    }
+    // the two arms of a cusp
+    if let [a @ None, b @ None] = partner.as_mut_slice() {
+        (*a, *b) = (Some(1), Some(0));
+    }
+    partner
+}
+
+/// Unit vectors in the free directions of a place from which Newton's method begins.
+fn directions(place: &Place) -> Vec<Columns> {
+    let count = place.free.len();
+    let combined = |weights: &[f64]| {
+        let size = weights.iter().map(|w| w * w).sum::<f64>().sqrt();
+        let mut out = [0.0; COLUMNS];
+        for (w, free) in weights.iter().zip(&place.free) {
+            for c in 0..COLUMNS {
+                out[c] += w / size * free[c];
+            }
+        }
+        out
+    };
+    if count == 2 {
+        return (0..DIRECTIONS)
+            .map(|k| {
+                let angle = std::f64::consts::TAU * (k as f64 + 0.31) / DIRECTIONS as f64;
+                combined(&[angle.cos(), angle.sin()])
+            })
+            .collect();
+    }
+    let mut random = Random(0xd1_5ec7);
+    (0..DIRECTIONS * MORE_DIRECTIONS.pow(count.saturating_sub(2).min(2) as u32))
+        .map(|_| {
+            // a sum of uniform numbers is as good as normal here
+            let mut normal = || (0..6).map(|_| random.uniform()).sum::<f64>() - 3.0;
+            let weights: Vec<f64> = (0..count).map(|_| normal()).collect();
+            combined(&weights)
+        })
+        .collect()
+}
+
+/// The directions that screws of a rank leave free, and the wrenches that see a motion and those that do not.
+struct Split {
+    free: Vec<Columns>,
+    seen: Vec<Vec<f64>>,
+    left: Vec<Vec<f64>>,
+}
+
+impl Split {
+    fn new(chain: &Chain, screws: &[Twist; COLUMNS], rank: usize) -> Self {
+        let columns: Vec<Vec<f64>> = screws[..chain.columns].iter().map(|s| s.to_vec()).collect();
+        let (_, right) = singular_values(&columns);
+        let free = right[rank..]
+            .iter()
+            .map(|v| {
+                let mut out = [0.0; COLUMNS];
+                out[..chain.columns].copy_from_slice(v);
+                out
+            })
+            .collect();
+        let rows: Vec<Vec<f64>> = (0..6)
+            .map(|r| {
+                let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
+                row.resize(row.len().max(6), 0.0);
+                row
+            })
+            .collect();
+        let mut seen = singular_values(&rows).1;
+        let left = seen.split_off(rank.min(6));
+        Self { free, seen, left }
+    }
+}
+
+fn power(row: &[f64], twist: &Twist) -> f64 {
+    row.iter().zip(twist).map(|(a, b)| a * b).sum()
+}
+
+/// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
+const MOST_STEPS: usize = 40;
+
+/// A step [rad, or parts of the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
+const LAST_STEP: f64 = 1e-15;
+const STEADY: f64 = 1e-9;
+const UNSTEADY: f64 = 1e-6;
+
+/// A part of the greatest slope below which nothing is solved for.
+const NO_SLOPE: f64 = 1e-9;
+
+/// A singular value below this part of the radius and of the greatest is a freedom all along.
+const NO_FREEDOM: f64 = 1e-4;

@@ -1,0 +1,219 @@
+"""Where branches meet: every way out of a change point is followed, each arc once, and smooth ones are one circuit."""
+
+import itertools
+from collections.abc import Sequence
+from math import pi, radians
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+
+SAMPLES = 96
+
+
+def planar_rows(*lengths: float) -> sb.Linkage:
+    """A planar four-bar by its lengths; the last is the ground."""
+    return sb.from_dh("RRRR", length=list(lengths), twist=[0] * 4, offset=[0] * 4)
+
+
+def planar_drawn(*places: tuple[float, float]) -> sb.Linkage:
+    return sb.from_axes([{"kind": "R", "at": [x, y, 0.0], "axis": [0, 0, 1]} for x, y in places])
+
+
+def spherical(*twists: float) -> sb.Linkage:
+    """A spherical four-bar by its sides [deg]."""
+    return sb.from_dh("RRRR", length=[0] * 4, twist=[radians(t) for t in twists], offset=[0] * 4)
+
+
+def apart(q: np.ndarray[Any, Any], rows: np.ndarray[Any, Any]) -> Any:
+    """How far poses (m, columns) are from the nearest of rows (n, columns), in the column that differs most."""
+    return np.abs((rows[:, None] - q[None] + pi) % (2 * pi) - pi).max(axis=2).min(axis=0)
+
+
+def every_mode_is_on_a_circuit(linkage: sb.Linkage, motion: sb.Motion) -> None:
+    rows = np.concatenate([c.q[np.isfinite(c.q).all(axis=1)] for c in motion])
+    modes = [linkage.assembly_modes(2 * pi * k / SAMPLES).q for k in range(3, SAMPLES, 4)]
+    found = np.concatenate(modes)
+    assert len(found)
+    assert apart(found, rows).max() < 1e-4
+
+
+def no_circuit_is_found_twice(motion: sb.Motion) -> None:
+    # a circuit along which the input moves by rounding only has no rows between its limits
+    rich = [circuit for circuit in motion if len(circuit.q) > 6]
+    for one, other in itertools.combinations(rich, 2):
+        middle = one.q[[len(one.q) // 3, len(one.q) // 2 + 1]]
+        assert apart(middle, other.q).max() > 1e-8
+
+
+def is_whole(linkage: sb.Linkage) -> sb.Motion:
+    motion = linkage.motion(SAMPLES)
+    assert motion.motion_type == "change-point"
+    assert all(circuit.closed for circuit in motion)
+    every_mode_is_on_a_circuit(linkage, motion)
+    no_circuit_is_found_twice(motion)
+    for point in motion.change_points:
+        # the pose closes, and lies on the circuits that are said to meet there
+        assert np.abs(linkage.assembly_modes(point.input).residual).max(initial=0.0) < 1e-9
+        assert point.ways % 2 == 0
+        assert point.circuits
+    return motion
+
+
+FOLDING = {
+    "s + l = p + q": planar_rows(1, 2.6, 2.4, 0.8),
+    "s + l = p + q in decimals": planar_rows(0.9, 1.9, 1.8, 2.8000000000000003),
+    "with two equal lengths": planar_rows(0.3, 2.6, 2.6, 4.9),
+    "short coupler": planar_rows(1, 2.1, 0.5, 1.6),
+    "long crank": planar_rows(0.5, 1.8, 1.4, 0.9),
+    "parallelogram": planar_drawn((0, 0), (0.5, 1), (2.5, 1), (2, 0)),
+    "parallelogram by its lengths": planar_rows(2, 1, 2, 1),
+    "kite": planar_drawn((0, 0), (1, 1), (3, 0), (1, -1)),
+    "rhombus": planar_drawn((0, 0), (1, 2), (3, 3), (2, 1)),
+    "square": planar_drawn((0, 0), (0, 1), (1, 1), (1, 0)),
+    "rhombus by its lengths": planar_rows(1, 1, 1, 1),
+    "right angles on the sphere": spherical(90, 90, 90, 90),
+    "spherical parallelogram": spherical(40, 60, 40, 60),
+    "spherical s + l = p + q": spherical(30, 70, 60, 40),
+}
+
+
+@pytest.mark.parametrize("name", FOLDING)
+def test_every_branch_of_a_linkage_that_folds_is_followed(name: str) -> None:
+    is_whole(FOLDING[name])
+
+
+def test_the_parallelogram_and_the_crossed_one_are_two_circuits_that_meet_twice() -> None:
+    motion = is_whole(planar_drawn((0, 0), (0.5, 1), (2.5, 1), (2, 0)))
+    assert len(motion.circuits) == 2
+    assert [circuit.turns for circuit in motion] == [1, 1]
+    assert [(point.circuits, point.ways) for point in motion.change_points] == [((0, 1), 4)] * 2
+    # folded flat: the crank, drawn upwards to the right, lies along the ground
+    fold = np.arctan2(1, 0.5)
+    np.testing.assert_allclose(motion.change_point_inputs, [pi - fold, 2 * pi - fold], atol=1e-9)
+    # one keeps opposite sides parallel: the last joint counts the ground against its link
+    gains = [np.ptp(c.output + c.input) for c in motion]
+    assert min(gains) < 1e-9 < 1 < max(gains)
+
+
+def test_a_folding_four_bar_is_one_circuit_of_two_turns_where_the_branches_change_places() -> None:
+    motion = is_whole(planar_rows(1, 2.6, 2.4, 0.8))
+    (circuit,) = motion.circuits
+    assert circuit.turns == 2
+    (point,) = motion.change_points
+    assert (point.circuits, point.ways, point.isolated) == ((0,), 4, False)
+
+
+def test_a_row_at_a_change_point_has_its_pose_and_no_rates() -> None:
+    linkage = planar_drawn((0, 0), (0, 1), (1, 1), (1, 0))
+    for circuit in linkage.motion(SAMPLES):
+        at = circuit.status == "change-point"
+        assert at.sum() == 2
+        assert (circuit.residual[at] < 1e-12).all()
+        assert np.isfinite(circuit.q).all()
+        assert np.isnan(circuit.dq[at]).all()
+        assert np.isfinite(circuit.dq[~at]).all()
+
+
+def rates_agree_with_differences(circuit: sb.Circuit) -> None:
+    ok = circuit.status == "ok"
+    step = 2 * pi / SAMPLES
+    inner = ok[:-2] & ok[1:-1] & ok[2:]
+    slopes = (circuit.q[2:] - circuit.q[:-2]) / (2 * step)
+    assert np.abs(slopes - circuit.dq[1:-1])[inner].max() < 0.1
+
+
+def test_rates_run_smoothly_over_a_change_point() -> None:
+    for circuit in planar_drawn((0, 0), (0.5, 1), (2.5, 1), (2, 0)).motion(SAMPLES, speed=1.0):
+        rates_agree_with_differences(circuit)
+
+
+def random_grashof(rng: np.random.Generator, unit: float) -> list[float]:
+    """Four lengths in multiples of a unit, the longest with the shortest as long as the others together."""
+    while True:
+        short, *middle = sorted(rng.integers(1, 31, 3).tolist())
+        lengths = [short, *middle, sum(middle) - short]
+        if lengths[-1] >= middle[-1]:
+            return [round(float(x) * unit, 6) for x in rng.permutation(lengths)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("unit", [0.1, 0.01])
+def test_four_bars_that_fold_in_decimals_lose_nothing(unit: float) -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(60):
+        is_whole(planar_rows(*random_grashof(rng, unit)))
+
+
+@pytest.mark.slow
+def test_beside_a_change_nothing_is_lost_or_found_twice() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(80):
+        lengths = random_grashof(rng, 0.1)
+        lengths[int(rng.integers(4))] += float(rng.choice([-1, 1]) * 10 ** rng.uniform(-13, -5))
+        linkage = planar_rows(*lengths)
+        motion = linkage.motion(SAMPLES)
+        assert all(circuit.closed for circuit in motion), lengths
+        every_mode_is_on_a_circuit(linkage, motion)
+        no_circuit_is_found_twice(motion)
+
+
+@pytest.mark.parametrize("off", [1e-9, 1e-10, 0.0, 1e-15, -1e-15])
+def test_a_linkage_beside_a_change_is_one_circuit_or_two(off: float) -> None:
+    motion = planar_rows(1, 2.5 + off, 2, 1.5).motion(SAMPLES)
+    assert len(motion.circuits) in (1, 2)
+    close = motion.limits.size > 1 and np.diff(motion.limits).min() < 1e-6
+    assert (motion.motion_type == "change-point") == (close or abs(off) < 1e-12)
+
+
+@pytest.mark.parametrize("lengths", [(3, 1, 1, 1), (6, 1, 2, 3), (0.7, 0.1, 0.2, 0.4)])
+def test_a_loop_that_closes_stretched_only_is_rigid(lengths: Sequence[float]) -> None:
+    linkage = planar_rows(*lengths)
+    motion = linkage.motion(36)
+    assert motion.motion_type == "rigid"
+    assert linkage.mobility().finite == 0
+    assert [point.isolated for point in motion.change_points] == [True]
+    assert "no motion leads out of it" in sb.report.markdown(motion)
+
+
+def through_two_lines(rng: np.random.Generator) -> sb.Linkage:
+    """Six turning joints whose axes all meet two lines: two freedoms to first order, and none."""
+    joints = []
+    for _ in range(6):
+        on_one = np.array([rng.uniform(-1, 1), 0.0, 0.0])
+        on_other = np.array([0.3, rng.uniform(-1, 1), 1.0])
+        joints.append({"kind": "R", "at": on_one.tolist(), "axis": (on_other - on_one).tolist()})
+    return sb.from_axes(joints)
+
+
+def test_axes_that_meet_two_lines_do_not_move() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(4):
+        linkage = through_two_lines(rng)
+        assert linkage.mobility().finite == 0
+        motion = linkage.motion(36)
+        assert motion.motion_type == "rigid"
+
+
+def test_two_inputs_are_still_told_from_shaky_loops() -> None:
+    five = planar_drawn((0, 0), (0, 1), (1, 1.5), (2, 1), (2, 0))
+    assert five.mobility().finite == 2
+    assert five.motion(24).motion_type == "two-inputs"
+
+
+def planar_with_balls(*places: tuple[float, float]) -> sb.Linkage:
+    """An RSSR whose axes are parallel: a planar four-bar, the balls in its plane."""
+    at = [[x, y, 0.0] for x, y in places]
+    kinds = [{"kind": "R", "axis": [0, 0, 1]}, {"kind": "S"}, {"kind": "S"}, {"kind": "R", "axis": [0, 0, 1]}]
+    return sb.from_axes([kind | {"at": place} for kind, place in zip(kinds, at, strict=True)])
+
+
+@pytest.mark.parametrize("method", ["auto", "general"])
+def test_closed_form_and_general_way_tell_the_same_poses(method: Any) -> None:
+    motion = planar_with_balls((0, 0), (0.5, 1), (2.5, 1), (2, 0)).motion(SAMPLES, method=method)
+    assert motion.motion_type == "change-point"
+    fold = np.arctan2(1, 0.5)
+    np.testing.assert_allclose(motion.change_point_inputs, [pi - fold, 2 * pi - fold], atol=1e-7)
+    assert [(len(point.circuits), point.ways) for point in motion.change_points] == [(2, 4)] * 2

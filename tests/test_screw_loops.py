@@ -1,0 +1,126 @@
+"""Loops of screws: what `mobility` says of them, each input's motion says too; source: the subgroups that their screws span.
+
+Screws of one pitch about parallel axes, and slides across, move as a planar linkage of turns does, each link rising by what it turns: so
+three and a slide are a slider-crank, four a four-bar, and two such sets in two directions leave the straight line of Sarrus.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from sevenbar import report
+from sevenbar.errors import RequestError
+from sevenbar.many import loop_motions
+
+Z = [0, 0, 1]
+
+
+def screw(at, axis=Z, pitch=0.4):
+    return {"kind": "H", "at": [float(x) for x in at], "axis": axis, "pitch": float(pitch)}
+
+
+def slide(at, axis):
+    return {"kind": "P", "at": [float(x) for x in at], "axis": axis}
+
+
+def slider_crank(random, places):
+    pitch = random.uniform(0.1, 1.5)
+    points = np.round(random.uniform(-2, 2, (3, 2)), places)
+    angle = random.uniform(0, math.tau)
+    screws = [screw([*p, 0], pitch=pitch) for p in points]
+    return [*screws, slide([*points[2], 0], [math.cos(angle), math.sin(angle), 0])]
+
+
+def four_bar(random, places):
+    pitch = random.uniform(-1.5, -0.1)
+    return [screw(p, pitch=pitch) for p in np.round(random.uniform(-2, 2, (4, 3)), places)]
+
+
+def sarrus(random, places):
+    pitch = round(random.uniform(0.1, 1.5), places)
+    points = np.round(random.uniform(-2, 2, (6, 3)), places)
+    axes = [Z] * 3 + [[1, 0, 0]] * 3
+    return [screw(p, axis, pitch) for p, axis in zip(points, axes, strict=True)]
+
+
+def jack(random, places):
+    """A nut on a screwed spindle, kept from turning by a slide."""
+    pitch = round(random.uniform(0.1, 1.5), places)
+    return [
+        {"kind": "R", "at": [0, 0, 0], "axis": Z},
+        screw([0, 0, 1], pitch=pitch),
+        slide(np.round(random.uniform(-2, 2, 3), places), Z),
+    ]
+
+
+def unlike_pitches(random, places):
+    """Four screws of unlike pitches: three conditions of the plane and that of height leave nothing."""
+    pitches = random.uniform(0.1, 1, 4)
+    points = np.round(random.uniform(-2, 2, (4, 2)), places)
+    return [screw([*p, 0], pitch=h) for p, h in zip(points, pitches, strict=True)]
+
+
+FAMILIES = {slider_crank: 1, four_bar: 1, sarrus: 1, jack: 1, unlike_pitches: 0}
+
+
+def verdict(linkage, column):
+    """Whether a motion is found with this input, one that stands still in it taken for one."""
+    try:
+        return bool(linkage.motion(24, input=column).circuits)
+    except RequestError as refused:
+        assert "stands still" in str(refused)
+        return True
+
+
+@pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("places", [1, 9])
+def test_every_input_says_of_a_screw_loop_what_mobility_says(family, places):
+    random = np.random.default_rng(places)
+    for _ in range(6):
+        linkage = sb.from_axes(family(random, places))
+        assert linkage.mobility().finite == FAMILIES[family]
+        told = [verdict(linkage, column) for column in linkage.drivable()]
+        assert told == [bool(FAMILIES[family])] * len(told)
+
+
+THREE = [screw([0, 0, 0]), screw([0.3, 0.5, 0]), screw([2, 0.2, 0]), slide([2, 0.2, 0], [1, 0, 0])]
+
+
+def test_a_screw_that_turns_on_without_end_is_a_spindle_and_no_rocker():
+    linkage = sb.from_axes(THREE)
+    types = [linkage.motion(24, input=name).motion_type for name in linkage.drivable()]
+    # crank and coupler gain a turn each round, against each other; the third screw swings
+    assert types == ["spindle-slider", "spindle-slider", "rocker-slider", "slider-rocker"]
+    circuit = linkage.motion(24, output="theta_2").circuits[0]
+    assert (circuit.motion_type, circuit.closed) == ("double-spindle", False)
+    assert circuit.input_range[1] - circuit.input_range[0] > 10 * math.tau
+    batch = loop_motions([linkage], 0, 1, 24, 1)
+    assert set(batch.columns["circuit_type"]) == {"double-spindle"}
+
+
+def test_the_motion_is_that_of_the_slider_crank_of_turns():
+    turns = [dict(joint, kind="R") for joint in THREE[:3]]
+    plain = sb.from_axes([{k: v for k, v in j.items() if k != "pitch"} for j in turns] + THREE[3:])
+    known = np.concatenate([c.q for c in plain.motion(24)])
+    for circuit in sb.from_axes(THREE).motion(24):
+        for q in circuit.q[circuit.status == "ok"]:
+            apart = known - q
+            apart[:, :3] = (apart[:, :3] + math.pi) % math.tau - math.pi
+            assert np.abs(apart).max(axis=1).min() < 1e-9
+
+
+def test_the_report_says_without_end():
+    told = report.markdown(sb.from_axes(THREE).motion(24))
+    assert "without end" in told
+
+
+def test_screws_are_seeds_where_nothing_turns():
+    """Rows do not close at zero, so no drawn pose leads to the circuits."""
+    rows = {"length": [1.0, 2.6, 2.4, 2.0], "twist": [0.0] * 4, "offset": [0.0] * 4, "pitch": [0.3] * 4}
+    linkage = sb.from_dh("HHHH", **rows)
+    assert linkage.mobility().finite == 1
+    motion = linkage.motion(24)
+    assert motion.circuits
+    assert "screws within one turn" in motion.established
