@@ -219,7 +219,7 @@ def test_a_loop_that_gains_freedoms_keeps_the_last_view() -> None:
     [
         (drawn(*(("R", at, (0, 0, 1)) for at in [(0, 0, 0), (10, 0, 0), (20, 5, 0), (10, 20, 0), (0, 12, 0)])), "two-inputs"),
         (drawn(("R", (0, 0, 0), (0, 0, 1)), ("R", (10, 0, 0), (0, 0, 1)), ("R", (20, 5, 0), (0, 1, 1)), ("R", (10, 20, 0), (1, 0, 1)), ("R", (0, 12, 0), (0, 0, 1))), "rigid"),
-        (drawn(("R", (0, 0, 0), (0, 0, 1)), ("S", (1, 0, 0), None), ("R", (2, 0.5, 0.2), (0.3, 1, 0.2)), ("S", (1, 2, 0.7), None)), "is not followed yet"),
+        (drawn(("R", (0, 0, 0), (0, 0, 1)), ("S", (1, 0, 0), None), ("R", (2, 0.5, 0.2), (0.3, 1, 0.2)), ("S", (1, 2, 0.7), None)).replace("'R'\nat = [2", "'H'\npitch = 1\nat = [2"), "moves no other link"),
         (drawn(*(("R", (i % 3, i // 3, i * i / 9), (i % 2, 1, i)) for i in range(9))), "freedoms"),
         ("format = 1\n[rssr]\nM = 700\nN = 700\nL1 = 250\nL2 = 1\nL3 = 550\nD = 0\n", "cannot-assemble"),
     ],
