@@ -388,15 +388,21 @@ def _counted(raw: Mapping[str, Any], count: Count | None) -> str:
         return f"branch points of {count.joint} are all accounted for: {many}{others}"
     told = []
     for each in count.open[:MOST_RANGES_TOLD]:
-        start = math.degrees(each.start) % 360
         what = "some" if each.missing is None else f"{each.missing}"
-        told.append(f"{what} between {start:.6g} and {start + math.degrees(each.end - each.start):.6g} deg")
+        start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
+        if wide < NARROW_RANGE_DEG:
+            told.append(f"{what} within {wide / 2:.1g} deg of {(start + wide / 2) % 360:.6g} deg")
+        else:
+            told.append(f"{what} between {start % 360:.6g} and {start % 360 + wide:.6g} deg")
     more = " and elsewhere" if len(count.open) > MOST_RANGES_TOLD else ""
     return f"branch points of {count.joint} are not all accounted for: {', '.join(told)}{more}"
 
 
 #: Ranges that do not balance told in one sentence.
 MOST_RANGES_TOLD = 4
+
+#: A range narrower than this [deg] is given by its middle, as one about a change point.
+NARROW_RANGE_DEG = 0.01
 
 
 def _established(raw: Mapping[str, Any], columns: Sequence[str], count: Count | None) -> str:

@@ -73,7 +73,7 @@ pub(super) struct Curves {
     /// Freedoms of a pose out of which more than one leads.
     surface: usize,
     arcs: Arcs,
-    /// Modes at sharp bends, left for the last; and whether it has come to that.
+    /// Modes at sharp bends, left for the last; and whether they are followed now.
     unfollowed: Vec<Configuration>,
     last: bool,
     /// Columns whose limits say what is a change point.
@@ -219,7 +219,10 @@ impl Curves {
         survey.count(circle, known.clone(), &singular, &mut |pose| {
             // the same pose with an idle link turned over does not count
             if chain.counts(pose) {
+                // a circuit so narrow that it was missed bends sharply all along
+                let last = std::mem::replace(&mut self.last, true);
                 self.take(chain, &[*pose], rising);
+                self.last = last;
             }
             let now = self.dead_centres(chain, column);
             let told = |at: &&f64| known.iter().all(|k| (k - **at).abs() > SAME_INPUT);
