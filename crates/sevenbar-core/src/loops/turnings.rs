@@ -39,7 +39,7 @@ impl Curve {
         let rounded =
             |n: &Node| n.inverse_norm > NEAR && n.rates[0][column].abs() <= ROUNDED * n.inverse_norm.powi(2);
         // the last rate before nodes at which rounding hides it, and the node of these where it is least
-        let mut blurred: Option<(f64, usize)> = None;
+        let mut blurred: Option<(f64, usize)> = self.blurred_start(column, &rounded);
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
             if a.is_crossing() || b.is_crossing() {
@@ -119,13 +119,34 @@ impl Curve {
                 }
             }
         }
+        found.sort_by_key(|t| t.segment);
         found
+    }
+
+    /// Of a closed curve that begins among nodes whose rates rounding hides: the rate before these, and the node where it is least.
+    fn blurred_start(&self, column: usize, rounded: &dyn Fn(&Node) -> bool) -> Option<(f64, usize)> {
+        if self.end != End::Closed || !rounded(&self.nodes[0]) {
+            return None;
+        }
+        let rate = |k: usize| self.nodes[k].rates[0][column];
+        let mut least = 0;
+        for k in (1..self.nodes.len() - 1).rev() {
+            if !rounded(&self.nodes[k]) {
+                return Some((rate(k), least));
+            }
+            if rate(k).abs() < rate(least).abs() {
+                least = k;
+            }
+        }
+        None
     }
 
     /// Where a column turns back beside a node at which its rate is rounding: there, or in a step next to it where its sign changes.
     fn turning_beside(&self, chain: &Chain, column: usize, least: usize) -> Turning {
         let rate = |k: usize| self.nodes[k].rates[0][column];
-        [least.wrapping_sub(1), least]
+        // a closed curve's last step leads to its first node
+        let before = least.checked_sub(1).unwrap_or(self.nodes.len() - 2);
+        [before, least]
             .into_iter()
             .filter(|&k| k + 1 < self.nodes.len() && rate(k) * rate(k + 1) < 0.0)
             .find_map(|segment| {
