@@ -8,10 +8,10 @@
 //!
 //! Source: docs/theory.md, (19) to (22).
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Twist, bracket, squared_up, twist_of};
+use super::chain::{COLUMNS, Chain, Columns, Configuration, Twist, squared_up, twist_of};
 use super::curve::{Curve, Node, dot, length};
 use super::dense::{least_squares, singular_values};
-use super::polish::{AGREE, CLOSED, NO_RANK};
+use super::polish::{self, AGREE, CLOSED, NO_RANK, wrenches};
 use super::starts::Random;
 use super::walk::{Start, Stop};
 
@@ -63,6 +63,20 @@ const NO_FORM: f64 = 1e-7;
 
 /// A pose this many times as far from a change point as curves are cut there still is at it.
 pub(super) const AT_POINT: f64 = 3.0;
+
+/// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
+const MOST_STEPS: usize = 40;
+
+/// A step [rad, or parts of the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
+const LAST_STEP: f64 = 1e-15;
+const STEADY: f64 = 1e-9;
+const UNSTEADY: f64 = 1e-6;
+
+/// A part of the greatest slope below which nothing is solved for.
+const NO_SLOPE: f64 = 1e-9;
+
+/// A singular value below this part of the radius and of the greatest is a freedom all along.
+const NO_FREEDOM: f64 = 1e-4;
 
 /// A way out of a pose.
 #[derive(Clone, Copy, Debug)]
@@ -133,19 +147,9 @@ impl Place {
 impl Chain {
     /// The screws' first derivatives along rates of the joints.
     fn carried(&self, screws: &[Twist; COLUMNS], rates: &Columns) -> [Twist; COLUMNS] {
-        let mut out = [[0.0; 6]; COLUMNS];
-        let mut before = [0.0; 6];
-        for (joint, &first) in self.joints.iter().zip(&self.first) {
-            for c in first..first + joint.columns() {
-                out[c] = bracket(&before, &screws[c]);
-            }
-            for c in first..first + joint.columns() {
-                for k in 0..6 {
-                    before[k] += screws[c][k] * rates[c];
-                }
-            }
-        }
-        out
+        let mut series = [*screws, [[0.0; 6]; COLUMNS]];
+        self.carry(&mut series, &[*rates, [0.0; COLUMNS]], 1);
+        series[1]
     }
 
     /// The place near a pose where the screws have lost rank, with the closure's slope zero in all directions they leave free.
@@ -161,7 +165,7 @@ impl Chain {
             if length(&self.difference(rough, &at)) > NEAR {
                 return None;
             }
-            let there = super::polish::rank(&singular_values(&self.screws(&at)).0, NO_RANK);
+            let there = polish::rank(&singular_values(&self.screws(&at)).0, NO_RANK);
             if there > rank {
                 return None;
             }
@@ -504,15 +508,7 @@ impl Split {
                 out
             })
             .collect();
-        let rows: Vec<Vec<f64>> = (0..6)
-            .map(|r| {
-                let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
-                row.resize(row.len().max(6), 0.0);
-                row
-            })
-            .collect();
-        let mut seen = singular_values(&rows).1;
-        let left = seen.split_off(rank.min(6));
+        let (seen, left) = wrenches(&columns, rank);
         Self { free, seen, left }
     }
 }
@@ -520,17 +516,3 @@ impl Split {
 fn power(row: &[f64], twist: &Twist) -> f64 {
     row.iter().zip(twist).map(|(a, b)| a * b).sum()
 }
-
-/// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
-const MOST_STEPS: usize = 40;
-
-/// A step [rad, or parts of the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
-const LAST_STEP: f64 = 1e-15;
-const STEADY: f64 = 1e-9;
-const UNSTEADY: f64 = 1e-6;
-
-/// A part of the greatest slope below which nothing is solved for.
-const NO_SLOPE: f64 = 1e-9;
-
-/// A singular value below this part of the radius and of the greatest is a freedom all along.
-const NO_FREEDOM: f64 = 1e-4;

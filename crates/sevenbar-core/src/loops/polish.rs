@@ -44,8 +44,9 @@ pub(super) fn rank(values: &[f64], zero: f64) -> usize {
     values.iter().take(6).filter(|&&v| v > zero * values[0]).count()
 }
 
-/// A basis, of unit length and square, of the rows of power zero on every screw: moment, then force.
-pub(super) fn unyielding(columns: &[Vec<f64>], rank: usize) -> Vec<Vec<f64>> {
+/// Two bases, of unit length and square: rows that see a motion of columns of a rank, and those of power zero on every screw; moment,
+/// then force.
+pub(super) fn wrenches(columns: &[Vec<f64>], rank: usize) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let rows: Vec<Vec<f64>> = (0..6)
         .map(|r| {
             let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
@@ -53,7 +54,14 @@ pub(super) fn unyielding(columns: &[Vec<f64>], rank: usize) -> Vec<Vec<f64>> {
             row
         })
         .collect();
-    singular_values(&rows).1.split_off(rank.min(6))
+    let mut seen = singular_values(&rows).1;
+    let unyielding = seen.split_off(rank.min(6));
+    (seen, unyielding)
+}
+
+/// A basis of the rows of power zero on every screw.
+pub(super) fn unyielding(columns: &[Vec<f64>], rank: usize) -> Vec<Vec<f64>> {
+    wrenches(columns, rank).1
 }
 
 /// Newton's method with the input held; `None` where it does not close but for redundant constraints, or goes farther than `reach`.

@@ -34,7 +34,7 @@ impl Chain {
     ///
     /// Source: docs/theory.md, (13) and (14).
     #[inline(always)]
-    fn carry<N: Number, const TERMS: usize>(
+    pub fn carry<N: Number, const TERMS: usize>(
         &self,
         screws: &mut Screws<N, TERMS>,
         rates: &[Columns<N>; TERMS],
