@@ -197,6 +197,13 @@ def test_axes_that_meet_two_lines_do_not_move() -> None:
         assert motion.motion_type == "rigid"
 
 
+def test_a_linkage_drawn_flat_has_the_rank_of_the_poses_that_it_moves_through() -> None:
+    flat = planar_drawn((0, 0), (1, 0), (3, 0), (2, 0))
+    assert (flat.mobility().rank, flat.mobility().finite) == (3, 1)
+    assert len(flat.mobility().redundant) == 3
+    assert flat.motion(SAMPLES).mobility.rank == 3
+
+
 def test_two_inputs_are_still_told_from_shaky_loops() -> None:
     five = planar_drawn((0, 0), (0, 1), (1, 1.5), (2, 1), (2, 0))
     assert five.mobility().finite == 2

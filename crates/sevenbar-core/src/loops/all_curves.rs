@@ -312,8 +312,22 @@ impl Curves {
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
         self.change_points = std::mem::take(&mut self.arcs.points);
         let finite = if self.curves.is_empty() { self.surface } else { 1 };
+        // all modes may have been change points
+        if let Some(curve) = self.curves.first() {
+            let columns = chain.screws(curve.plainest());
+            let rank = rank(&singular_values(&columns).0, NO_RANK);
+            self.find(chain, &columns, rank);
+        }
         if let Some(found) = &mut self.found {
             found.finite = found.finite.min(finite);
+        }
+    }
+
+    /// Holds the greatest rank of all poses, and what goes with it.
+    fn find(&mut self, chain: &Chain, columns: &[Vec<f64>], rank: usize) {
+        if self.found.as_ref().is_none_or(|f| rank > f.rank) {
+            self.found =
+                Some(Found { rank, redundant: wrenches(columns, rank), finite: chain.columns - rank });
         }
     }
 
@@ -328,13 +342,7 @@ impl Curves {
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
             let rank = rank(&values, NO_RANK);
-            if self.found.as_ref().is_none_or(|f| rank > f.rank) {
-                self.found = Some(Found {
-                    rank,
-                    redundant: wrenches(&columns, rank),
-                    finite: chain.columns - rank,
-                });
-            }
+            self.find(chain, &columns, rank);
             if chain.columns - rank != 1 {
                 // on a surface every pose is like this one
                 let isolated =
