@@ -52,7 +52,7 @@ POSED, RATED = ("ok", "dead-centre", "change-point"), ("ok",)
 
 #: Words of motion types that come with circuits and without them.
 WITHOUT = {"rigid", "two-inputs", "cannot-assemble"}
-SINGLE = {"crank", "rocker", "slider"}
+SINGLE = {"crank", "rocker", "slider", "spindle"}
 
 
 class Broken(Exception):  # noqa: N818  # told as a fact, not raised as an error of the caller

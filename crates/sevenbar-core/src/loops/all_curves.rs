@@ -339,6 +339,10 @@ impl Curves {
             if self.holds(chain, mode) || curves.iter().flatten().any(known) {
                 continue;
             }
+            if chain.is_far(mode) {
+                self.still += 1;
+                continue;
+            }
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
             let rank = rank(&values, NO_RANK);

@@ -49,6 +49,14 @@ impl Chain {
         curves
     }
 
+    /// Whether a slide or screw is farther out than curves are followed.
+    pub fn is_far(&self, at: &Configuration) -> bool {
+        let far = |(joint, &c): (&Joint, &usize)| {
+            !matches!(joint, Joint::Turn | Joint::Ball(_)) && at.values[c].abs() > FARTHEST
+        };
+        self.joints.iter().zip(&self.first).any(far)
+    }
+
     /// The curve walked the other way: its own nodes where each step is certain that way too.
     pub fn turned_round(&self, curve: &Curve, stops: &[Stop]) -> Curve {
         self.reversed(curve)
