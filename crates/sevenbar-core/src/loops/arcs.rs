@@ -16,6 +16,9 @@ const MOST_ROUNDS: usize = 32;
 const TRIED: f64 = 1e-3;
 const MOST_FAILED: usize = 16;
 
+/// Norm of the screws' inverse from which a place may lie beside a change point.
+const NARROW: f64 = 1e4;
+
 /// A way out of a change point: which one, and which of its rays.
 type Ray = (usize, usize);
 
@@ -303,7 +306,6 @@ fn shifted(node: &Node, turns: &Columns) -> Node {
 
 /// Where a curve nearly loses rank without an end: a place of it at each least distance.
 pub(super) fn narrow_places(curve: &Curve) -> Vec<Configuration> {
-    const NARROW: f64 = 1e4;
     let norm = |k: usize| curve.nodes.get(k).map_or(0.0, |n| n.inverse_norm);
     (0..curve.nodes.len())
         .filter(|&k| norm(k) > NARROW && norm(k) >= norm(k + 1) && (k == 0 || norm(k) >= norm(k - 1)))
