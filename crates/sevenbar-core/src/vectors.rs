@@ -9,10 +9,10 @@ use crate::vector_math::sin_cos_side_by_side;
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{
     __m256d, __m512d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_div_pd,
-    _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_sqrt_pd,
-    _mm256_storeu_pd, _mm256_sub_pd, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_fmadd_pd,
-    _mm512_fnmadd_pd, _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_sqrt_pd,
-    _mm512_storeu_pd, _mm512_sub_pd,
+    _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
+    _mm256_sqrt_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd,
+    _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mul_pd, _mm512_set1_pd,
+    _mm512_sqrt_pd, _mm512_storeu_pd, _mm512_sub_pd,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -59,6 +59,8 @@ pub(crate) trait Vector: Number {
     fn load(x: &Reals) -> Self;
     /// The numbers of the lanes.
     fn store(self) -> Reals;
+    /// Whether `self > b` in some lane.
+    fn exceeds_somewhere(self, b: Self) -> bool;
 }
 
 /// Code to be compiled once for each vector unit. Implementations are `#[inline(always)]`.
@@ -165,6 +167,10 @@ impl Vector for Plain {
     fn store(self) -> Reals {
         self.0
     }
+    #[inline(always)]
+    fn exceeds_somewhere(self, b: Self) -> bool {
+        (0..LANES).any(|k| self.0[k] > b.0[k])
+    }
 }
 
 /// One register of AVX-512.
@@ -224,6 +230,10 @@ impl Vector for Wide {
         let mut x = [0.0; LANES];
         unsafe { _mm512_storeu_pd(x.as_mut_ptr(), self.0) };
         x
+    }
+    #[inline(always)]
+    fn exceeds_somewhere(self, b: Self) -> bool {
+        (unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, b.0) }) != 0
     }
 }
 
@@ -291,6 +301,12 @@ impl Vector for Middle {
             _mm256_storeu_pd(x.as_mut_ptr().add(4), self.0[1]);
         }
         x
+    }
+    #[inline(always)]
+    fn exceeds_somewhere(self, b: Self) -> bool {
+        let greater =
+            |k: usize| unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(self.0[k], b.0[k])) };
+        greater(0) | greater(1) != 0
     }
 }
 

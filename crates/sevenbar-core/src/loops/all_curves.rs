@@ -19,8 +19,9 @@ const SEEDS: usize = 24;
 /// The same where modes are searched for.
 const SEARCHED_SEEDS: usize = 4;
 
-/// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be.
-const AHEAD: usize = 4;
+/// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be; then those that are left
+/// between the modes at all: the first of the seeds, and each how many.
+const AHEAD: [(usize, usize); 2] = [(0, 4), (1, 1)];
 
 /// Modes of a loop without screws at an input; where more are found, curves of them are, and few are followed at once.
 const MOST_MODES: usize = 16;
@@ -107,11 +108,13 @@ fn seed_columns(chain: &Chain, wished: &[usize], drawn: bool) -> Vec<usize> {
 pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
     let drawn = chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED;
     let seeds = seed_columns(chain, wished, drawn);
-    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new(wished) };
     // the pose of a drawing first: the joints are zero there
-    if drawn {
-        out.take(chain, &[Configuration::ZERO], wished[0]);
-    }
+    let mut drawings = if drawn {
+        vec![Configuration::ZERO]
+    } else {
+        Vec::new()
+    };
+    let mut out = Curves { seed_columns: seeds.clone(), ..Curves::new(wished) };
     for seed in seeds {
         let finder = ModeFinder::new(chain, seed);
         let searched = finder.completeness() == Completeness::Searched;
@@ -121,6 +124,7 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         let count = if searched { SEARCHED_SEEDS } else { SEEDS };
         out.seeds = count;
         if first_only {
+            out.take(chain, &std::mem::take(&mut drawings), wished[0]);
             for k in 0..count {
                 if out.is_empty() {
                     out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, wished[0]);
@@ -137,13 +141,8 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         if seed == wished[0] {
             out.modes_at_zero = Some(finder.polished(&rough[0]).modes.len());
         }
-        let places: Vec<Configuration> = rough
-            .iter()
-            .step_by(AHEAD)
-            .filter(|modes| modes.len() <= MOST_MODES)
-            .flat_map(|modes| finder.polished(&out.unknown(chain, modes)).modes)
-            .collect();
-        out.ahead = chain.closed_curves(&places);
+        out.look_ahead(&finder, &rough, &drawings);
+        out.take(chain, &std::mem::take(&mut drawings), wished[0]);
         for modes in &rough {
             let polished = finder.polished(&out.unknown(chain, modes));
             out.misfits.extend(polished.misfits);
@@ -162,6 +161,8 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             }
         }
     }
+    // where nothing turns
+    out.take(chain, &drawings, wished[0]);
     out.finish(chain);
     out.misfits.sort_by(f64::total_cmp);
     if out.seed_columns.is_empty() {
@@ -251,6 +252,27 @@ impl Curves {
     /// Those modes that lie on no curve yet.
     fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
         modes.iter().filter(|m| !self.holds(chain, m)).copied().collect()
+    }
+
+    /// The same, the curves ahead aside too.
+    fn unforeseen(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
+        let mut modes = self.unknown(chain, modes);
+        modes.retain(|m| !lies_on_any(chain, &self.ahead, m));
+        modes
+    }
+
+    /// Follows the closed curves through what is to come, many pieces side by side.
+    fn look_ahead(&mut self, finder: &ModeFinder, rough: &[Vec<Configuration>], drawings: &[Configuration]) {
+        let chain = finder.chain;
+        for (first, every) in AHEAD {
+            let mut places = self.unforeseen(chain, drawings);
+            for modes in rough.iter().skip(first).step_by(every) {
+                if modes.len() <= MOST_MODES {
+                    places.extend(finder.polished(&self.unforeseen(chain, modes)).modes);
+                }
+            }
+            self.ahead.extend(chain.closed_curves(&places));
+        }
     }
 
     /// Whether a mode is a place of a known curve.

@@ -254,11 +254,7 @@ impl Arcs {
         }
         measure(chain, &mut nodes);
         let curve = Curve { nodes, end };
-        if closed {
-            begun_at(chain, &curve, middle)
-        } else {
-            curve
-        }
+        if closed { begun_at(&curve, middle) } else { curve }
     }
 
     /// The node of a change point that an arc runs into by a ray, its turns as in the arc's last node.

@@ -159,12 +159,12 @@ impl<'a> Passes<'a> {
         } else {
             curve
         };
-        let passes = Self::of(chain, curve.clone(), input)?;
+        let passes = Self::of(chain, curve, input)?;
         // a curve over change points was joined in the direction it is to have
-        if passes.passes[0].end > passes.passes[0].start || curve.crosses() {
+        if passes.passes[0].end > passes.passes[0].start || passes.curve.crosses() {
             return Some(passes);
         }
-        Some(Self::of(chain, chain.turned_round(&curve, &[]), input).unwrap_or(passes))
+        Some(Self::of(chain, chain.turned_round(&passes.curve, &[]), input).unwrap_or(passes))
     }
 
     fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {
@@ -188,7 +188,7 @@ impl<'a> Passes<'a> {
             let lowest = (0..curve.nodes.len() - 1)
                 .filter(|&k| is_turning(&curve.nodes[k]))
                 .min_by(|&a, &b| height(a).total_cmp(&height(b)))?;
-            curve = begun_at(chain, &curve, lowest);
+            curve = begun_at(&curve, lowest);
         }
         let last = curve.nodes.len() - 1;
         let mut marks: Vec<usize> = (1..last).filter(|&k| is_turning(&curve.nodes[k])).collect();

@@ -198,13 +198,14 @@ fn within(angle: f64, from: f64, to: f64) -> bool {
     (angle - from).rem_euclid(TAU) < to - from
 }
 
-/// How far two solutions are apart [parts of their values, or of the size].
-fn distance(slides: &Slides, a: &Solution, b: &Solution) -> f64 {
+/// The square of how far two solutions are apart [parts of their values, or of the size].
+fn square_apart(slides: &Slides, a: &Solution, b: &Solution) -> f64 {
     let off = |i: usize| {
+        let square = (a[i] - b[i]).norm_sqr();
         if slides[i] {
-            (a[i] - b[i]).norm() / (1.0 + a[i].norm())
+            square / (1.0 + a[i].norm_sqr())
         } else {
-            (a[i] / b[i] - 1.0).norm()
+            square / b[i].norm_sqr()
         }
     };
     (0..UNKNOWNS).map(off).fold(0.0, f64::max)
@@ -310,14 +311,14 @@ impl Account<'_> {
         a.iter().all(|a| {
             let (mut nearest, mut least, mut next) = (0, f64::INFINITY, f64::INFINITY);
             for (k, b) in b.iter().enumerate() {
-                let off = distance(slides, a.solution(), b.solution());
+                let off = square_apart(slides, a.solution(), b.solution());
                 if off < least {
                     (nearest, least, next) = (k, off, least);
                 } else {
                     next = next.min(off);
                 }
             }
-            least < NEARER * next && !std::mem::replace(&mut taken[nearest], true)
+            least < NEARER * NEARER * next && !std::mem::replace(&mut taken[nearest], true)
         })
     }
 
@@ -535,7 +536,8 @@ mod tests {
             let finder = ModeFinder::new(&chain, 0);
             let closed = Survey::new(&finder).unwrap();
             assert!(matches!(closed.infinite, Infinite::At(_)));
-            let watched = Survey::watching_all(&finder, finder.algebraic().unwrap(), closed.watch.clone());
+            let algebraic = finder.algebraic().unwrap();
+            let watched = Survey::watching(&finder, algebraic, closed.watch.clone(), None);
             let (a, b) = (numbers(&closed), numbers(&watched));
             assert_eq!(a, b);
             seen += a.iter().map(|(_, n)| n.1).sum::<i64>();

@@ -253,6 +253,9 @@ impl Node {
     }
 }
 
+/// A correction below this [rad, or parts of the size] leaves less than `stand` takes off.
+const NEARLY_CLOSED: f64 = 1e-6;
+
 impl Chain {
     /// The move that the rates of a node lead to.
     #[inline(always)]
@@ -455,6 +458,9 @@ impl Chain {
             let inverse = bordered_inverse(&placed.screws, self.columns, &from.rates[0]);
             let d = inverse.times(&placed.error).map(|x| -x);
             at = self.moved(&at, &d);
+            if length(&d) < NEARLY_CLOSED {
+                break;
+            }
         }
         let off = length(&self.difference(&start, &at));
         let node = self.stand(&at, &from.rates[0]).node;

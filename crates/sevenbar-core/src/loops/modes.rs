@@ -10,7 +10,7 @@ use super::chain::{BALLS, Chain, Configuration, Joint, Rotation, product, short_
 use super::geometry::Form;
 use super::paths::{BRISK, CAREFUL, JOINTS, Pace, Parameters, Slides, Solution, UNKNOWNS, follow};
 use super::phases::Watch;
-use super::poles::poles;
+use super::poles::{poles, untold_three};
 use super::polish::{Settled, polish};
 use super::reduce::Z_TO_X;
 use super::starts::{Class, Random, distinct, general_count};
@@ -383,8 +383,8 @@ impl<'a> ModeFinder<'a> {
                 let x = solution[i];
                 (x.im.abs() < REAL * (1.0 + x.re.abs())).then_some(x.re)?
             } else {
-                let z = solution[i] / shift[i];
-                ((z.norm() - 1.0).abs() < REAL).then_some(z.arg())?
+                let size = solution[i].norm_sqr().sqrt();
+                ((size - 1.0).abs() < REAL).then_some((solution[i] * shift[i].conj()).arg())?
             };
             match *unknown {
                 Unknown::Column(c) => out.values[c] = real,
@@ -468,6 +468,11 @@ impl<'a> Algebraic<'a> {
     pub fn poles(&self) -> Option<Vec<Complex64>> {
         let zero = self.parameters.turns[UNKNOWNS];
         Some(poles(&self.parameters)?.into_iter().map(|z| z / zero).collect())
+    }
+
+    /// The first of three passive joints in a row that need not be watched, if there are such.
+    pub fn untold_three(&self) -> Option<usize> {
+        untold_three(&self.parameters, &self.finder.slides)
     }
 
     /// All solutions followed round a circle and down to the real values beneath.

@@ -6,7 +6,7 @@
 //!
 //! Source: docs/theory_many.md, (17) and (18).
 
-use super::paths::{JOINTS, Parameters, UNKNOWNS};
+use super::paths::{JOINTS, Parameters, Slides, UNKNOWNS};
 use num_complex::Complex64;
 use std::ops::{Add, Mul};
 
@@ -107,6 +107,13 @@ pub(super) fn poles(parameters: &Parameters) -> Option<Vec<Complex64>> {
         }
     }
     Some(found)
+}
+
+/// The first of three passive joints in a row that neither become infinite nor move alone, the others at rest: where solutions run to
+/// infinity, or move with the input at rest, another joint tells of it. `None` where special geometry leaves no such three.
+pub(super) fn untold_three(parameters: &Parameters, slides: &Slides) -> Option<usize> {
+    let links: [Motion; JOINTS] = std::array::from_fn(|k| transform(parameters, k));
+    (0..UNKNOWNS - 2).find(|&j| !slides[j..j + 3].contains(&true) && !is_special(&links[j], &links[j + 1]))
 }
 
 /// Whether two transforms with a joint between let the joints before and after become infinite, or one does.

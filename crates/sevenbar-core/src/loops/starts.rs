@@ -202,7 +202,7 @@ fn same(slides: &Slides, a: &Solution, b: &Solution, apart: f64) -> bool {
         if slides[i] {
             (a[i] - b[i]).norm() < apart * (1.0 + a[i].norm())
         } else {
-            (a[i] / b[i] - 1.0).norm() < apart
+            (a[i] - b[i]).norm_sqr() < apart * apart * b[i].norm_sqr()
         }
     })
 }

@@ -71,11 +71,18 @@ impl<'a> Survey<'a> {
             let still = at.iter().any(|x| x.norm().ln().abs() < REAL_INPUT);
             return Some(Self { finder, algebraic, watch, infinite: Infinite::At(at), flips, still });
         }
-        Some(Self::watching_all(finder, algebraic, watch))
+        let untold = algebraic.untold_three();
+        Some(Self::watching(finder, algebraic, watch, untold))
     }
 
-    /// With every passive joint watched, as special geometry asks for.
-    pub fn watching_all(finder: &'a ModeFinder<'a>, algebraic: Algebraic<'a>, mut watch: Watch) -> Self {
+    /// With the passive joints watched, as special geometry asks for: all but three in a row that tell nothing by themselves, if there
+    /// are such, by the first of them.
+    pub fn watching(
+        finder: &'a ModeFinder<'a>,
+        algebraic: Algebraic<'a>,
+        mut watch: Watch,
+        untold: Option<usize>,
+    ) -> Self {
         let zeros = algebraic.zeros;
         let mut random = Random(0xb0b);
         let mut met: [Vec<Complex64>; UNKNOWNS] = Default::default();
@@ -83,7 +90,8 @@ impl<'a> Survey<'a> {
         let chain = turned_out(finder);
         let closure = algebraic.closure(None);
         for i in 0..UNKNOWNS {
-            if matches!(finder.unknowns[i], Unknown::Added) {
+            let aside = untold.is_some_and(|first| (first..first + 3).contains(&i));
+            if aside || matches!(finder.unknowns[i], Unknown::Added) {
                 continue;
             }
             let value = Complex64::from_polar(0.45 + 0.35 * random.uniform(), TAU * random.uniform());

@@ -249,15 +249,23 @@ pub(super) fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], col
         .filter(|(_, place)| place.is_none())
         .map(|(t, _)| t)
         .peekable();
+    // steps that are now in parts
+    let mut parted: Vec<std::ops::Range<usize>> = Vec::new();
     for (k, node) in curve.nodes.iter().enumerate() {
         nodes.push(*node);
+        let before = nodes.len() - 1;
         while let Some(t) = rest.next_if(|t| t.segment == k) {
             let mut node = t.node;
             node.rates[0][column] = 0.0;
             nodes.push(node);
         }
+        if nodes.len() - 1 > before {
+            parted.push(before..nodes.len());
+        }
     }
-    measure(chain, &mut nodes);
+    for range in parted {
+        measure(chain, &mut nodes[range.start..=range.end]);
+    }
     curve.nodes = nodes;
 }
 
@@ -267,10 +275,11 @@ pub(super) fn turns_at(node: &Node, column: usize) -> bool {
 }
 
 /// A closed curve begun at another of its nodes, turns counted on.
-pub(super) fn begun_at(chain: &Chain, curve: &Curve, start: usize) -> Curve {
+pub(super) fn begun_at(curve: &Curve, start: usize) -> Curve {
     let last = curve.nodes.len() - 1;
     let gained = curve.gained();
-    let mut nodes: Vec<Node> = curve.nodes[start..last].to_vec();
+    let mut nodes: Vec<Node> = Vec::with_capacity(curve.nodes.len());
+    nodes.extend_from_slice(&curve.nodes[start..last]);
     nodes.extend(curve.nodes[..=start].iter().map(|n| {
         let mut n = *n;
         for c in 0..COLUMNS {
@@ -278,6 +287,5 @@ pub(super) fn begun_at(chain: &Chain, curve: &Curve, start: usize) -> Curve {
         }
         n
     }));
-    measure(chain, &mut nodes);
     Curve { nodes, end: curve.end }
 }
