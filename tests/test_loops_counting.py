@@ -117,6 +117,32 @@ def test_the_count_is_of_all_dead_centres_of_its_joint() -> None:
         assert motion.count.dead_centres == len(dead_centres)
 
 
+@pytest.mark.parametrize(
+    ("name", "dead_centres"),
+    [
+        ("bennett", 0),
+        ("goldberg_5r", 0),
+        ("myard_5r", 0),
+        ("bricard_line", 0),
+        ("bricard_plane", 0),
+        ("bricard_trihedral", 2),
+        ("planar_4r", 0),
+        ("spherical_4r", 0),
+        ("sarrus", 0),
+        ("six_bar", 0),
+    ],
+)
+def test_overconstrained_loops_are_counted(name: str, dead_centres: int) -> None:
+    """Their circuits meet others that only the closure with added joints has: zeros of the determinant, and no dead centres."""
+    motion = sb.load(name).motion(36)
+    assert motion.completeness == "counted"
+    assert motion.count is not None
+    assert motion.count.open == ()
+    assert motion.count.dead_centres == dead_centres
+    found = [d for c in motion.circuits for d in c.dead_centres if d.kind == "input"]
+    assert len(found) == dead_centres
+
+
 def test_screws_are_not_counted() -> None:
     motion = sb.load("screw_drill").motion(24)
     assert (motion.completeness, motion.count) == ("searched", None)

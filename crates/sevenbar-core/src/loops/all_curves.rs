@@ -4,7 +4,7 @@ use super::arcs::{Arcs, contains, narrow_places};
 use super::around::Circle;
 use super::chain::{COLUMNS, Chain, Configuration, Joint};
 use super::change_points::ChangePoint;
-use super::counting::{Count, Uncounted};
+use super::counting::{Count, Known, Uncounted};
 use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
@@ -31,9 +31,6 @@ const SEED_JOINTS: usize = 2;
 
 /// An open range narrower than this [rad] is that of one singular pose, or of solutions infinite at a real input, and open with any joint.
 const WIDE_RANGE: f64 = 1e-3;
-
-/// Dead centres whose inputs differ by less [rad] are one.
-const SAME_INPUT: f64 = 1e-9;
 
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
@@ -215,9 +212,8 @@ impl Curves {
         circle: Circle,
         (column, rising): (usize, usize),
     ) -> Result<Count, Uncounted> {
-        let singular: Vec<f64> = self.arcs.points.iter().map(|p| p.at.values[column]).collect();
-        let mut known = self.dead_centres(chain, column);
-        survey.count(circle, known.clone(), &singular, &mut |pose| {
+        let known = self.known(chain, survey, column);
+        survey.count(circle, known, &mut |pose| {
             // the same pose with an idle link turned over does not count
             if chain.counts(pose) {
                 // a circuit so narrow that it was missed bends sharply all along
@@ -225,23 +221,24 @@ impl Curves {
                 self.take(chain, &[*pose], rising);
                 self.last = last;
             }
-            let now = self.dead_centres(chain, column);
-            let told = |at: &&f64| known.iter().all(|k| (k - **at).abs() > SAME_INPUT);
-            let new: Vec<f64> = now.iter().filter(told).copied().collect();
-            known = now;
-            new
+            self.known(chain, survey, column)
         })
     }
 
-    /// The values of a column at which it turns back on any curve.
-    fn dead_centres(&self, chain: &Chain, column: usize) -> Vec<f64> {
+    /// The zeros of the determinant that the curves tell of.
+    fn known(&self, chain: &Chain, survey: &Survey, column: usize) -> Known {
+        let singular = self.arcs.points.iter().map(|p| p.at.values[column]);
+        let mut known = Known { singular: singular.collect(), ..Known::default() };
         let joined = self.arcs.joined(chain, self.wished[0]);
-        let curves = self.curves.iter().chain(&joined);
-        let turnings = curves.flat_map(|c| c.turnings(chain, column));
-        turnings
-            .filter(|t| !t.node.is_crossing())
-            .map(|t| t.node.at.values[column])
-            .collect()
+        for curve in self.curves.iter().chain(&joined) {
+            let turnings = curve.turnings(chain, column);
+            let smooth = turnings.iter().filter(|t| !t.node.is_crossing());
+            known
+                .dead_centres
+                .extend(smooth.map(|t| t.node.at.values[column]));
+            known.meetings.extend(survey.meetings(chain, curve));
+        }
+        known
     }
 
     /// Whether some motion is known.

@@ -67,6 +67,17 @@ pub struct Open {
     pub missing: Option<i64>,
 }
 
+/// Inputs of the zeros of the determinant that are known [rad].
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    /// Dead centres of all curves.
+    pub dead_centres: Vec<f64>,
+    /// Where a curve meets one that only the filled-up closure has.
+    pub meetings: Vec<f64>,
+    /// Poses at which curves are not smooth: two zeros each.
+    pub singular: Vec<f64>,
+}
+
 /// The account of an input's branch points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Count {
@@ -80,6 +91,13 @@ pub struct Count {
     pub poles: usize,
     /// Ranges that do not balance, none where all do.
     pub open: Vec<Open>,
+}
+
+impl Known {
+    /// The simple zeros.
+    fn simple(&self) -> impl Iterator<Item = &f64> {
+        self.dead_centres.iter().chain(&self.meetings)
+    }
 }
 
 /// Why nothing was counted.
@@ -128,25 +146,22 @@ struct Stand {
 struct Account<'a> {
     survey: &'a Survey<'a>,
     closure: &'a Around<'a>,
-    /// Inputs of the dead centres of all curves, and of poses at which they are not smooth.
-    known: Vec<f64>,
-    singular: &'a [f64],
+    known: Known,
     located: Vec<Branching>,
     open: Vec<Open>,
     ranges: usize,
-    /// Follows the curve through a pose; gives the inputs of its dead centres if it is new.
-    seed: &'a mut dyn FnMut(&Configuration) -> Vec<f64>,
+    /// Follows the curve through a pose, and gives what is known then.
+    seed: &'a mut dyn FnMut(&Configuration) -> Known,
 }
 
 impl Survey<'_> {
-    /// The account, from the circle that was followed and the inputs of the dead centres that are known, and of singular poses.
-    /// `seed` follows the curve through a pose that was found, and gives the inputs of its dead centres if it is new.
+    /// The account, from the circle that was followed and what is known. `seed` follows the curve through a pose that was found, and
+    /// gives what is known then.
     pub fn count(
         &self,
         circle: Circle,
-        known: Vec<f64>,
-        singular: &[f64],
-        seed: &mut dyn FnMut(&Configuration) -> Vec<f64>,
+        known: Known,
+        seed: &mut dyn FnMut(&Configuration) -> Known,
     ) -> Result<Count, Uncounted> {
         if self.still {
             return Err(Uncounted::Still);
@@ -158,7 +173,6 @@ impl Survey<'_> {
             survey: self,
             closure: &closure,
             known,
-            singular,
             located: Vec::new(),
             open: Vec::new(),
             ranges: 0,
@@ -182,7 +196,7 @@ impl Survey<'_> {
             };
             count.open.retain(overlaps);
             count.column = self.finder.input;
-            count.dead_centres = account.known.len();
+            count.dead_centres = account.known.dead_centres.len();
             count.complex_branch_points = account.located.iter().filter(|b| !b.real).count();
             count.poles = count.poles.max(poles as usize);
             if count.open.iter().all(|o| o.to - o.from < WIDE) {
@@ -298,7 +312,7 @@ impl Account<'_> {
         let slides = &self.survey.finder.slides;
         let apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
         apart
-            && self.known.iter().all(|&at| {
+            && self.known.simple().all(|&at| {
                 let off = (at - angle).rem_euclid(TAU);
                 off.min(TAU - off) > CLEAR
             })
@@ -382,8 +396,8 @@ impl Account<'_> {
             return None;
         }
         let between = |at: &f64| within(*at, a.angle, b.angle);
-        let known = self.known.iter().filter(|at| between(at)).count() as i64;
-        let singular = 2 * self.singular.iter().filter(|at| between(at)).count() as i64;
+        let known = self.known.simple().filter(|at| between(at)).count() as i64;
+        let singular = 2 * self.known.singular.iter().filter(|at| between(at)).count() as i64;
         let complex = self.located.iter().filter(|b| !b.real);
         let complex = complex
             .filter(|p| between(&p.tau.re) && p.tau.im.abs() < a.height)
@@ -481,8 +495,7 @@ impl Account<'_> {
                 .flatten();
             self.located.push(Branching { real: pose.is_some(), ..found });
             if let Some(pose) = pose {
-                let new = (self.seed)(&pose);
-                self.known.extend(new);
+                self.known = (self.seed)(&pose);
             } else {
                 let mirrored = std::array::from_fn(|i| {
                     if slides[i] {
@@ -513,12 +526,11 @@ mod tests {
         let account = Account {
             survey,
             closure: &closure,
-            known: Vec::new(),
-            singular: &[],
+            known: Known::default(),
             located: Vec::new(),
             open: Vec::new(),
             ranges: 0,
-            seed: &mut |_| Vec::new(),
+            seed: &mut |_| Known::default(),
         };
         let sectors = account.sectors(&circle, &survey.algebraic.own()).unwrap();
         sectors.iter().map(|s| (s.borders[0].angle, s.numbers)).collect()
@@ -558,8 +570,9 @@ mod tests {
         let finder = ModeFinder::new(&chain, 0);
         let survey = Survey::new(&finder).unwrap();
         let circle = finder.around(24, Some(&survey.watch)).1.unwrap();
+        let known = Known { dead_centres: known.to_vec(), ..Known::default() };
         survey
-            .count(circle, known.to_vec(), &[], &mut |_| Vec::new())
+            .count(circle, known.clone(), &mut |_| known.clone())
             .unwrap()
     }
 

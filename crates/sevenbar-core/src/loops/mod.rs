@@ -19,6 +19,7 @@ mod lanes;
 mod locating;
 mod many;
 mod measures;
+mod meetings;
 mod modes;
 mod motion;
 mod paths;

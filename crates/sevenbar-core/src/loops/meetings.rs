@@ -1,0 +1,113 @@
+//! Where curves of an overconstrained loop meet other curves of its filled-up closure.
+//!
+//! With joints added about general axes the loop closes in more ways, in which these move. Where such a curve runs through one of
+//! the loop's own the determinant of the screws is zero, although the input does not turn back: a zero that the count sees and that
+//! stands for no circuit. Along a real curve determinant and rate of the input change sign together at dead centres, and only the
+//! determinant where curves meet.
+//!
+//! Source: docs/theory_many.md, (12).
+
+use super::around::Around;
+use super::chain::{Chain, Configuration};
+use super::curve::Curve;
+use super::lanes::Lanes;
+use super::modes::Unknown;
+use super::paths::{Solution, UNKNOWNS};
+use super::survey::Survey;
+use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
+use num_complex::Complex64;
+
+/// Halvings of a step, down to rounding.
+const HALVINGS: usize = 50;
+
+/// The determinant of the passive screws at real solutions.
+struct Determinants<'a> {
+    closure: &'a Around<'a>,
+    at: &'a [(Solution, Complex64)],
+    out: &'a mut Vec<f64>,
+}
+
+impl LaneKernel for Determinants<'_> {
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        for block in self.at.chunks(LANES) {
+            let lanes = |pick: &dyn Fn(&(Solution, Complex64)) -> Complex64| {
+                let of = |part: fn(Complex64) -> f64| -> Reals {
+                    std::array::from_fn(|k| part(pick(&block[k.min(block.len() - 1)])))
+                };
+                Lanes::<V>::load(&of(|z| z.re), &of(|z| z.im))
+            };
+            let x: [Lanes<V>; UNKNOWNS] = std::array::from_fn(|i| lanes(&|at| at.0[i]));
+            let (.., determinant) = self.closure.linearise(&x, lanes(&|at| at.1)).solve();
+            self.out.extend_from_slice(&determinant.re.store()[..block.len()]);
+        }
+    }
+}
+
+impl Survey<'_> {
+    /// The inputs at which a curve meets others of the filled-up closure [rad]; none where no joints were added, or balls turn.
+    pub fn meetings(&self, chain: &Chain, curve: &Curve) -> Vec<f64> {
+        let unknowns = &self.finder.unknowns;
+        let added = unknowns.iter().any(|u| matches!(u, Unknown::Added));
+        if !added || unknowns.iter().any(|u| matches!(u, Unknown::BallTurn(..))) {
+            return Vec::new();
+        }
+        let column = self.finder.input;
+        let closure = self.algebraic.closure(None);
+        let determinants = |places: &[Configuration]| {
+            let at: Vec<(Solution, Complex64)> = places
+                .iter()
+                .map(|at| {
+                    (
+                        self.solution(at),
+                        closure.zero() * Complex64::cis(at.values[column]),
+                    )
+                })
+                .collect();
+            let mut out = Vec::with_capacity(at.len());
+            dispatch(Determinants { closure: &closure, at: &at, out: &mut out });
+            out
+        };
+        let nodes = &curve.nodes;
+        let places: Vec<Configuration> = nodes.iter().map(|n| n.at).collect();
+        // without the sign changes of dead centres
+        let signs: Vec<f64> = determinants(&places)
+            .iter()
+            .zip(nodes)
+            .map(|(d, n)| d.signum() * n.rates[0][column].signum())
+            .collect();
+        let mut found = Vec::new();
+        for (k, node) in nodes.iter().enumerate().take(nodes.len() - 1) {
+            if signs[k] * signs[k + 1] >= 0.0 || node.is_crossing() || nodes[k + 1].is_crossing() {
+                continue;
+            }
+            let (mut low, mut high) = (0.0, node.step);
+            let mut at = node.at.values[column];
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                let Some(here) = chain.ahead(node, middle) else {
+                    break;
+                };
+                at = here.at.values[column];
+                let sign = determinants(&[here.at])[0].signum() * here.rates[0][column].signum();
+                if sign * signs[k] > 0.0 {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            found.push(at);
+        }
+        found
+    }
+
+    /// A configuration as the closure has it, added joints at zero.
+    fn solution(&self, at: &Configuration) -> Solution {
+        let zeros = &self.algebraic.zeros;
+        std::array::from_fn(|i| match self.finder.unknowns[i] {
+            Unknown::Column(c) if self.finder.slides[i] => at.values[c].into(),
+            Unknown::Column(c) => zeros[i] * Complex64::cis(at.values[c]),
+            _ => zeros[i],
+        })
+    }
+}
