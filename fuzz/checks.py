@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,10 @@ CLOSED_CHANGING = 1e-3
 
 #: Condition up to which poses are compared, and how near [rad, parts of the size] two of them are one.
 WELL, SAME = 1e4, 1e-7
+
+#: How near a mode [rad, parts of the size] is to a row at the same input: at change points it is a fourth root of
+#: rounding.
+ON_CIRCUIT = 1e-3
 
 #: Share of their spread by which a row may lie beyond the extremes of a rate.
 BEYOND = 1e-6
@@ -85,6 +90,10 @@ def judged(linkage: sb.Linkage, rng: np.random.Generator, seen: Counter[str]) ->
     seen["circuits"] += len(motion.circuits)
     seen[f"completeness {motion.completeness}"] += 1
     written_down(motion)
+    column = linkage.columns.index(motion.input)
+    if linkage.column_kinds[column] == "turn":
+        k = 1 + 2 * int(rng.integers(SAMPLES // 2))
+        modes_are_on_circuits(motion, linkage.assembly_modes(math.tau * k / SAMPLES))
     if motion.motion_type not in WITHOUT:
         at = float(rng.uniform(-np.pi, np.pi))
         modes = linkage.assembly_modes(at)
@@ -224,18 +233,10 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
     linkage = motion.linkage
     # a ball's turns may have two names for one pose; the other joints tell all poses apart
     owners = _owners(linkage)
-    turns = [
-        i
-        for i, (o, k) in enumerate(zip(owners, linkage.column_kinds, strict=True))
-        if o not in "SH" and k == "turn"
-    ]
+    turns = _columns(linkage, lambda owner, kind: owner not in "SH" and kind == "turn")
     # a whole turn takes a screw to another place
     screws = [i for i, o in enumerate(owners) if o == "H"]
-    slides = [
-        i
-        for i, (o, k) in enumerate(zip(owners, linkage.column_kinds, strict=True))
-        if o != "S" and k == "slide"
-    ]
+    slides = _columns(linkage, lambda owner, kind: owner != "S" and kind == "slide")
     places = []
     for circuit in motion:
         good = (circuit.status == "ok") & (circuit.condition < WELL)
@@ -257,6 +258,27 @@ def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:
     turning = [c for c in motion if c.closed and c.input_range is None and np.nanmax(c.condition) < WELL]
     least = sum(circuit.turns for circuit in turning)
     hold(len(modes) >= least, f"{len(modes)} modes at {at} where {least} circuits pass")
+
+
+def modes_are_on_circuits(motion: sb.Motion, modes: sb.Modes) -> None:
+    """Each mode at one of the inputs of the rows is a pose of a row, or stands alone."""
+    if motion.completeness == "searched" or motion.misfits.size or motion.motion_type in WITHOUT:
+        return
+    if any(not circuit.closed for circuit in motion):
+        return
+    turns = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "turn")
+    slides = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "slide")
+
+    def place(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        size = motion.circuits[0].size if motion.circuits else 1.0
+        return np.concatenate([np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, slides] / size], axis=1)
+
+    poses = [circuit.q[_posed(circuit)] for circuit in motion]
+    poses += [np.atleast_2d(point.q) for point in motion.change_points]
+    known = np.concatenate(poses) if poses else np.zeros((0, modes.q.shape[1]))
+    apart = cKDTree(place(known)).query(place(modes.q), p=np.inf)[0] if len(known) else np.inf
+    lost = int((np.broadcast_to(apart, len(modes)) > ON_CIRCUIT).sum())
+    hold(not lost, f"{lost} of {len(modes)} modes lie on no circuit")
 
 
 def written_down(motion: sb.Motion) -> None:
@@ -282,6 +304,12 @@ def _refused(word: str) -> Any:
 def _owners(linkage: sb.Linkage) -> list[str]:
     """The kind of the joint of each column."""
     return [joint.kind for joint in linkage.joints for _ in joint.columns]
+
+
+def _columns(linkage: sb.Linkage, fits: Callable[[str, str], bool]) -> list[int]:
+    """The columns whose joint and kind fit."""
+    pairs = zip(_owners(linkage), linkage.column_kinds, strict=True)
+    return [column for column, (owner, kind) in enumerate(pairs) if fits(owner, kind)]
 
 
 def _promised(motion: sb.Motion, circuit: sb.Circuit) -> npt.NDArray[np.float64]:

@@ -123,8 +123,8 @@ def rows(
     z1, x1, p1 = first[:3, 2], first[:3, 0], first[:3, 3]
     z6, x5, p6 = frame[:3, 2], frame[:3, 0], frame[:3, 3]
     z7, p7 = direction(rng), rng.normal(size=3)
-    foot6, foot7a, x6, a6, alpha6 = _common_normal(rng, p6, z6, p7, z7)
-    foot7, foot1, x7, a7, alpha7 = _common_normal(rng, p7, z7, p1, z1)
+    foot6, foot7a, x6, a6, alpha6 = common_normal(rng, p6, z6, p7, z7)
+    foot7, foot1, x7, a7, alpha7 = common_normal(rng, p7, z7, p1, z1)
     all_length = np.array([*length, a6, a7])
     all_twist = np.array([*twist, alpha6, alpha7])
     joint_angle = np.array([_angle(z1, x7, x1), *turns, _angle(z6, x5, x6), _angle(z7, x6, x7)])
@@ -140,7 +140,7 @@ def rows(
     )
 
 
-def _common_normal(
+def common_normal(
     rng: np.random.Generator, p: np.ndarray, z: np.ndarray, q: np.ndarray, w: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
     """The feet on both lines, the direction between them (either way), the signed distance and the twist."""

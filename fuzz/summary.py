@@ -17,7 +17,14 @@ from fuzz.watch import Watch
 from fuzz.ways import WAYS, Job
 
 #: Which share of the linkages goes which way: the dear ones are few.
-LINKAGES = {"rssr batch": 0.89, "loop batch": 0.06, "rssr": 0.03, "loop": 0.0195, "screw": 0.0005}
+LINKAGES = {
+    "rssr batch": 0.88,
+    "loop batch": 0.06,
+    "rssr": 0.03,
+    "loop": 0.0195,
+    "edge": 0.01,
+    "screw": 0.0005,
+}
 
 #: The same of the files.
 FILES = {"file": 0.99, "table": 0.01}

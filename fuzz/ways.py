@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 import sevenbar as sb
-from fuzz import batches, files, loops, rssrs, tables
+from fuzz import batches, edges, files, loops, rssrs, tables
 from fuzz.checks import Broken, judged
 from fuzz.messages import family, look_at
 from fuzz.tally import Finding, Tally
@@ -139,6 +139,11 @@ def _loop_text(seed: int, index: int) -> str:
     rng = _rng("loop", seed, index)
     draw = list(loops.FAMILIES.values())[index % len(loops.FAMILIES)]
     return written(draw(rng))
+
+
+def _edge_text(seed: int, index: int) -> str:
+    draw = list(edges.FAMILIES.values())[index % len(edges.FAMILIES)]
+    return written(draw(_rng("edge", seed, index)))
 
 
 def _screw_text(seed: int, index: int) -> str:
@@ -279,6 +284,7 @@ WAYS: dict[str, Way] = {
     "rssr": Way(3, 200, 30, _one_by_one, _rssr_text, _analysed),
     "loop": Way(4, 100, 60, _one_by_one, _loop_text, _analysed),
     "screw": Way(5, 5, 120, _one_by_one, _screw_text, _analysed),
+    "edge": Way(8, 50, 60, _one_by_one, _edge_text, _analysed),
     "file": Way(6, 4000, 20, _one_by_one, files.drawn, _file),
     "table": Way(7, 1000, 20, _one_by_one, tables.drawn, _table),
 }

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 import os
 import time
 from collections import Counter
@@ -24,12 +25,22 @@ from sevenbar.forms import from_description
 from sevenbar.gallery import names
 
 #: Cases of each way: some seconds together; the others take minutes.
-SHORT = {"rssr batch": 4096, "loop batch": 64, "rssr": 70, "loop": 57, "screw": 2, "file": 3000, "table": 400}
+SHORT = {
+    "rssr batch": 4096,
+    "loop batch": 64,
+    "rssr": 70,
+    "loop": 57,
+    "edge": 48,
+    "screw": 2,
+    "file": 3000,
+    "table": 400,
+}
 LONG = {
     "rssr batch": 60_000,
     "loop batch": 320,
     "rssr": 600,
     "loop": 300,
+    "edge": 300,
     "screw": 6,
     "file": 20_000,
     "table": 1000,
@@ -123,6 +134,11 @@ def test_motions_that_contradict_themselves_break() -> None:
             checks.of_motion(dataclasses.replace(motion, **changes))
     with pytest.raises(checks.Broken, match="in common"):
         checks.circuits_are_distinct(dataclasses.replace(motion, circuits=motion.circuits[:1] * 2))
+    motion = sb.load("planar_4r").motion(checks.SAMPLES)
+    modes = motion.linkage.assembly_modes(math.tau / checks.SAMPLES)
+    checks.modes_are_on_circuits(motion, modes)
+    with pytest.raises(checks.Broken, match="1 of 2 modes lie on no circuit"):
+        checks.modes_are_on_circuits(dataclasses.replace(motion, circuits=motion.circuits[:1]), modes)
 
 
 @pytest.mark.parametrize(

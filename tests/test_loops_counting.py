@@ -15,46 +15,10 @@ import numpy.typing as npt
 import pytest
 
 import sevenbar as sb
+from fuzz.edges import isolated_pose
 from sevenbar import _core
 
 Floats = npt.NDArray[np.float64]
-
-
-def screw(point: Floats, axis: Floats, letter: str) -> Floats:
-    if letter == "P":
-        return np.r_[np.zeros(3), axis]
-    return np.r_[axis, np.cross(point, axis)]
-
-
-def second_order(screws: Floats) -> tuple[Floats, Floats]:
-    """Singular values of the screws, and eigenvalues of the second-order form on what the first order leaves free."""
-
-    def bracket(a: Floats, b: Floats) -> Floats:
-        return np.r_[np.cross(a[:3], b[:3]), np.cross(a[:3], b[3:]) + np.cross(a[3:], b[:3])]
-
-    u, s, vt = np.linalg.svd(screws)
-    form = np.zeros((7, 7))
-    for i in range(7):
-        for j in range(i + 1, 7):
-            form[i, j] = form[j, i] = u[:, 5] @ bracket(screws[:, i], screws[:, j])
-    return s, np.linalg.eigvalsh(vt[5:] @ form @ vt[5:].T)
-
-
-def isolated_pose(rng: np.random.Generator, letters: str) -> list[tuple[Floats, Floats]]:
-    """Axes of a pose that stands alone, all in the linear complex with moment `pitch` along z."""
-    while True:
-        pitch = 0.7 * rng.normal()
-        axes = []
-        for letter in letters:
-            point = rng.uniform(-1, 1, 3)
-            normal = np.array([0.0, 0.0, 1.0]) if letter == "P" else np.array([-point[1], point[0], pitch])
-            axis = np.cross(normal, rng.normal(size=3))
-            axes.append((point, axis / np.linalg.norm(axis)))
-        s, form = second_order(
-            np.array([screw(*axis, letter) for axis, letter in zip(axes, letters, strict=True)]).T
-        )
-        if s[4] > 0.1 and np.abs(form).min() > 0.1 and form[0] * form[1] > 0:
-            return axes
 
 
 def opened(seed: int, letters: str, epsilon: float) -> dict[str, Any]:
