@@ -20,39 +20,43 @@ from sevenbar import _core
 Floats = npt.NDArray[np.float64]
 
 
-def screw(point: Floats, axis: Floats, letter: str) -> Floats:
+def screws(point: Floats, axis: Floats, letter: str) -> list[Floats]:
     if letter == "P":
-        return np.r_[np.zeros(3), axis]
-    return np.r_[axis, np.cross(point, axis)]
+        return [np.r_[np.zeros(3), axis]]
+    return [np.r_[a, np.cross(point, a)] for a in (np.eye(3) if letter == "S" else [axis])]
 
 
-def second_order(screws: Floats) -> tuple[Floats, Floats]:
+def second_order(columns: Floats) -> tuple[Floats, Floats]:
     """Singular values of the screws, and eigenvalues of the second-order form on what the first order leaves free."""
 
     def bracket(a: Floats, b: Floats) -> Floats:
         return np.r_[np.cross(a[:3], b[:3]), np.cross(a[:3], b[3:]) + np.cross(a[3:], b[:3])]
 
-    u, s, vt = np.linalg.svd(screws)
+    u, s, vt = np.linalg.svd(columns)
     form = np.zeros((7, 7))
     for i in range(7):
         for j in range(i + 1, 7):
-            form[i, j] = form[j, i] = u[:, 5] @ bracket(screws[:, i], screws[:, j])
+            form[i, j] = form[j, i] = u[:, 5] @ bracket(columns[:, i], columns[:, j])
     return s, np.linalg.eigvalsh(vt[5:] @ form @ vt[5:].T)
 
 
 def isolated_pose(rng: np.random.Generator, letters: str) -> list[tuple[Floats, Floats]]:
     """Axes of a pose that stands alone, all in the linear complex with moment `pitch` along z."""
     while True:
-        pitch = 0.7 * rng.normal()
+        # a ball bears forces through its centre only
+        pitch = 0.0 if "S" in letters else 0.7 * rng.normal()
         axes = []
         for letter in letters:
             point = rng.uniform(-1, 1, 3)
+            if letter == "S":
+                point[:2] = 0.0
             normal = np.array([0.0, 0.0, 1.0]) if letter == "P" else np.array([-point[1], point[0], pitch])
-            axis = np.cross(normal, rng.normal(size=3))
+            axis = rng.normal(size=3)
+            if letter != "S":
+                axis = np.cross(normal, axis)
             axes.append((point, axis / np.linalg.norm(axis)))
-        s, form = second_order(
-            np.array([screw(*axis, letter) for axis, letter in zip(axes, letters, strict=True)]).T
-        )
+        columns = [s for axis, letter in zip(axes, letters, strict=True) for s in screws(*axis, letter)]
+        s, form = second_order(np.array(columns).T)
         if s[4] > 0.1 and np.abs(form).min() > 0.1 and form[0] * form[1] > 0:
             return axes
 
@@ -70,19 +74,19 @@ def opened(seed: int, letters: str, epsilon: float) -> dict[str, Any]:
         frames.append(frame)
     links = np.array([np.linalg.inv(a) @ b for a, b in zip(frames[:-1], frames[1:], strict=True)])
     links[3][:3, 3] += epsilon * frames[3][2, :3]
-    loop = _core.Loop(letters, np.zeros(7), frames[0], frames[-1], links)
-    raw: dict[str, Any] = loop.motion(0, 6, 90, 1.0, None)
+    loop = _core.Loop(letters, np.zeros(len(letters)), frames[0], frames[-1], links)
+    raw: dict[str, Any] = loop.motion(0, 1, 90, 1.0, None)
     return raw
 
 
 def farthest(circuit: dict[str, Any]) -> float:
-    """How far a circuit goes from the pose that stood alone [rad, or length]."""
-    joints = circuit["joints"][0]
+    """How far the first three joints of a circuit go from the pose that stood alone [rad, or length]."""
+    joints = circuit["joints"][0][:, :3]
     joints = joints[np.isfinite(joints).all(axis=1)]
     return float(np.abs((joints + math.pi) % (2 * math.pi) - math.pi).max()) if len(joints) else math.inf
 
 
-@pytest.mark.parametrize("letters", ["RRRRRRR", "RRRPRRR"])
+@pytest.mark.parametrize("letters", ["RRRRRRR", "RRRPRRR", "RRRPRPR", "PRRRRRR", "RRRRS", "RRRSR"])
 @pytest.mark.parametrize("epsilon", [1e-5, 1e-8, 1e-11])
 def test_a_narrow_circuit_is_found_on_the_side_on_which_it_opens(letters: str, epsilon: float) -> None:
     for seed in range(3):
@@ -92,6 +96,30 @@ def test_a_narrow_circuit_is_found_on_the_side_on_which_it_opens(letters: str, e
             assert raw["count"][4] == []
             found.append(sum(farthest(c) < 200 * math.sqrt(epsilon) for c in raw["circuits"]))
         assert sorted(found) == [0, 1]
+
+
+def drawn(rng: np.random.Generator, kinds: str) -> sb.Linkage:
+    joints: list[dict[str, Any]] = []
+    for kind in kinds:
+        joints.append({"kind": kind, "at": rng.uniform(-1, 1, 3).tolist()})
+        if kind != "S":
+            joints[-1]["axis"] = rng.normal(size=3).tolist()
+    return sb.from_axes(joints)
+
+
+@pytest.mark.parametrize("seed", [130, 173])
+def test_limits_of_a_coupler_turned_over_and_beside_infinite_joints_are_counted(seed: int) -> None:
+    linkage = drawn(np.random.default_rng(seed), "RSSR")
+    motion, exact = linkage.motion(24, method="general"), linkage.motion(24)
+    assert motion.completeness == "counted"
+    assert motion.count is not None
+    assert motion.count.dead_centres == sum(d.kind == "input" for c in exact for d in c.dead_centres)
+
+
+def test_a_complex_pair_straight_beside_a_drawn_pose_is_counted() -> None:
+    # on one side of a border of two ranges, and known on the other
+    for seed, epsilon in ((1, -1e-12), (4, 1e-12)):
+        assert opened(seed, "RRRSR", epsilon)["count"][4] == []
 
 
 def test_the_paper_s_loop_has_no_branch_point() -> None:

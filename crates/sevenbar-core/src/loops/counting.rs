@@ -450,6 +450,14 @@ impl Account<'_> {
         let (from, to) = (borders[0].border.angle, borders[borders.len() - 1].border.angle);
         let (height, wide) = (borders[0].border.height, to - from);
         let starts: Vec<(&Place, Complex64)> = borders
+            // one on the border itself is counted on one side, and known on the other
+            let on_border = |tau: Complex64| {
+                let off = (tau.re - a.angle).rem_euclid(TAU);
+                off.min(TAU - off) < CLEAR
+            };
+            if last.missing == Some(0) && self.located.iter().any(|b| on_border(b.tau)) {
+                self.open.pop();
+            }
             .iter()
             .flat_map(|b| {
                 b.places
@@ -490,6 +498,10 @@ impl Account<'_> {
                         1.0 / found.at[i].conj()
                     }
                 });
+            // with an idle link turned over it is no pose of a curve; the one that is will be found, too
+            if pose.as_ref().is_some_and(|p| !finder.chain.counts(p)) {
+                continue;
+            }
                 let tau = found.tau.conj();
                 self.located.push(Branching { tau, at: mirrored, real: false });
             }
