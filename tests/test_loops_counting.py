@@ -122,6 +122,28 @@ def test_a_complex_pair_straight_beside_a_drawn_pose_is_counted() -> None:
         assert opened(seed, "RRRSR", epsilon)["count"][4] == []
 
 
+@pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR", "RRPRPRP"])
+def test_circuits_that_end_where_slides_are_infinite_are_counted_and_none_is_missed(kinds: str) -> None:
+    rng = np.random.default_rng(8)
+    turns = np.array([letter == "R" for kind in kinds for letter in ("RP" if kind == "C" else kind)])
+    far = 0
+    for _ in range(6):
+        linkage = drawn(rng, kinds)
+        motion = linkage.motion(180)
+        assert motion.completeness == "counted"
+        far += sum(not c.closed for c in motion)
+        size = linkage._general.size
+        rows = np.concatenate([c.q[np.isfinite(c.q).all(axis=1)] for c in motion])
+        for k in range(0, 180, 9):
+            for q in linkage.assembly_modes(2 * math.pi * k / 180).q:
+                # circuits are followed to 50 sizes
+                if np.abs(q).max() < 40 * size:
+                    off = rows - q
+                    off = np.where(turns, (off + math.pi) % (2 * math.pi) - math.pi, off)
+                    assert np.abs(off).max(axis=1).min() < 1e-6 * size
+    assert far > 0
+
+
 def test_the_paper_s_loop_has_no_branch_point() -> None:
     motion = sb.load("seven_r").motion(24)
     assert motion.completeness == "counted"

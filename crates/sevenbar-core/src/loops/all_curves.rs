@@ -150,6 +150,10 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             out.take(chain, &polished.modes, wished[0]);
         }
         out.ahead.clear();
+        for value in survey.iter().flat_map(|s| s.unseeded(count)) {
+            let modes = finder.at(value).modes;
+            out.take(chain, &modes, wished[0]);
+        }
         if let (Some(survey), Some(circle)) = (survey, circle) {
             let count = out.counted(chain, &survey, circle, (seed, wished[0]));
             if seed == out.seed_columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
@@ -217,13 +221,14 @@ impl Curves {
         let singular: Vec<f64> = self.arcs.points.iter().map(|p| p.at.values[column]).collect();
         let mut known = self.dead_centres(chain, column);
         survey.count(circle, known.clone(), &singular, &mut |pose| {
-            // the same pose with an idle link turned over does not count
-            if chain.counts(pose) {
-                // a circuit so narrow that it was missed bends sharply all along
-                let last = std::mem::replace(&mut self.last, true);
-                self.take(chain, &[*pose], rising);
-                self.last = last;
+            // a curve is not followed so far, but may turn back there
+            if chain.is_far(pose) {
+                return vec![pose.values[column]];
             }
+            // a circuit so narrow that it was missed bends sharply all along
+            let last = std::mem::replace(&mut self.last, true);
+            self.take(chain, &[*pose], rising);
+            self.last = last;
             let now = self.dead_centres(chain, column);
             let told = |at: &&f64| known.iter().all(|k| (k - **at).abs() > SAME_INPUT);
             let new: Vec<f64> = now.iter().filter(told).copied().collect();

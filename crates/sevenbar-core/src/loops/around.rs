@@ -183,6 +183,11 @@ impl<'a> Around<'a> {
         }
     }
 
+    /// The same with links that have no length.
+    pub fn without_lengths(&self) -> Self {
+        Self { shifts: [[0.0; 3]; JOINTS], watch: None, ..*self }
+    }
+
     /// `e^(i t)` of the given turn of the last joint at the input's zero.
     pub fn zero(&self) -> Complex64 {
         Complex64::new(self.turns[UNKNOWNS][0], self.turns[UNKNOWNS][1])

@@ -5,7 +5,7 @@
 //! counts them. Where more are counted than known, the path is led nearer and the range halved, and Newton's method started
 //! from the solutions on it.
 //!
-//! Source: docs/theory_many.md, (12) to (16).
+//! Source: docs/theory_many.md, (12) to (16), and (20).
 
 use super::around::{Around, Circle, Place};
 use super::chain::Configuration;
@@ -72,7 +72,7 @@ pub struct Open {
 pub struct Count {
     /// The column of the input.
     pub column: usize,
-    /// Real ones, dead centres of the circuits.
+    /// Real ones, dead centres of the circuits, or farther out than these are followed.
     pub dead_centres: usize,
     /// Complex ones that were located and counted off.
     pub complex_branch_points: usize,
@@ -297,10 +297,15 @@ impl Account<'_> {
         let slides = &self.survey.finder.slides;
         let apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
         apart
-            && self.known.iter().all(|&at| {
-                let off = (at - angle).rem_euclid(TAU);
-                off.min(TAU - off) > CLEAR
-            })
+            && self
+                .known
+                .iter()
+                .copied()
+                .chain(self.survey.afar.iter().map(|a| a.input))
+                .all(|at| {
+                    let off = (at - angle).rem_euclid(TAU);
+                    off.min(TAU - off) > CLEAR
+                })
     }
 
     /// Whether two lists hold the same solutions: each has one in the other that is far nearer than all others, and no two have one.
@@ -371,7 +376,14 @@ impl Account<'_> {
                 sum
             }
         };
-        Some((zeros, infinite))
+        // slides infinite at a real input are known
+        let afar = self
+            .survey
+            .afar
+            .iter()
+            .filter(|at| within(at.input, a.angle, b.angle));
+        let (order, slides) = afar.fold((0, 0), |sum, at| (sum.0 + at.order, sum.1 + at.slides));
+        (infinite >= slides).then_some((zeros - order, infinite - slides))
     }
 
     /// How many branch points are counted between two borders and not known.
@@ -438,6 +450,14 @@ impl Account<'_> {
         {
             last.to = b.angle;
             last.missing = last.missing.zip(missing).map(|(x, y)| x + y);
+            // one on the border itself is counted on one side, and known on the other
+            let on_border = |tau: Complex64| {
+                let off = (tau.re - a.angle).rem_euclid(TAU);
+                off.min(TAU - off) < CLEAR
+            };
+            if last.missing == Some(0) && self.located.iter().any(|b| on_border(b.tau)) {
+                self.open.pop();
+            }
         } else {
             self.open.push(Open { from: a.angle, to: b.angle, missing });
         }
@@ -450,14 +470,6 @@ impl Account<'_> {
         let (from, to) = (borders[0].border.angle, borders[borders.len() - 1].border.angle);
         let (height, wide) = (borders[0].border.height, to - from);
         let starts: Vec<(&Place, Complex64)> = borders
-            // one on the border itself is counted on one side, and known on the other
-            let on_border = |tau: Complex64| {
-                let off = (tau.re - a.angle).rem_euclid(TAU);
-                off.min(TAU - off) < CLEAR
-            };
-            if last.missing == Some(0) && self.located.iter().any(|b| on_border(b.tau)) {
-                self.open.pop();
-            }
             .iter()
             .flat_map(|b| {
                 b.places
@@ -486,6 +498,10 @@ impl Account<'_> {
             let pose = (found.tau.im.abs() < REAL)
                 .then(|| finder.configuration(&found.at, &self.survey.algebraic.zeros, found.tau.re))
                 .flatten();
+            // with an idle link turned over it is no pose of a curve; the one that is will be found, too
+            if pose.as_ref().is_some_and(|p| !finder.chain.counts(p)) {
+                continue;
+            }
             self.located.push(Branching { real: pose.is_some(), ..found });
             if let Some(pose) = pose {
                 let new = (self.seed)(&pose);
@@ -498,10 +514,6 @@ impl Account<'_> {
                         1.0 / found.at[i].conj()
                     }
                 });
-            // with an idle link turned over it is no pose of a curve; the one that is will be found, too
-            if pose.as_ref().is_some_and(|p| !finder.chain.counts(p)) {
-                continue;
-            }
                 let tau = found.tau.conj();
                 self.located.push(Branching { tau, at: mirrored, real: false });
             }
