@@ -116,6 +116,17 @@ def test_limits_of_a_coupler_turned_over_and_beside_infinite_joints_are_counted(
     assert motion.count.dead_centres == sum(d.kind == "input" for c in exact for d in c.dead_centres)
 
 
+def test_where_turns_of_an_rssr_are_infinite_at_real_rocker_angles_its_crank_counts() -> None:
+    # the coupler's height over its crank's plane is the rocker's alone: where it is the coupler's length
+    # two complex couplers have no direction across the crank's axis
+    for L2 in (56.3861, 169.1236):
+        linkage = sb.rssr(112.1046, 85.6589, 56.6266, 106.9128, 42.8507, L2)
+        motion, exact = (linkage.motion(24, input="rocker", method=m) for m in ("general", "auto"))
+        assert (motion.completeness, len(motion.circuits)) == ("counted", len(exact.circuits))
+        assert motion.count is not None
+        assert motion.count.joint == "crank"
+
+
 def test_a_complex_pair_straight_beside_a_drawn_pose_is_counted() -> None:
     # on one side of a border of two ranges, and known on the other
     for seed, epsilon in ((1, -1e-12), (4, 1e-12)):

@@ -28,8 +28,9 @@ const MOST_MODES: usize = 16;
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
-/// An open range narrower than this [rad] is that of one singular pose, or of solutions infinite at a real input, and open with any joint.
-const WIDE_RANGE: f64 = 1e-3;
+/// An open range narrower than this [rad] is that of one singular pose, and open with any joint. About solutions that run to infinity at
+/// one value of a joint ranges are wider, and another joint may have an account of them.
+const WIDE_RANGE: f64 = 1e-4;
 
 /// Dead centres whose inputs differ by less [rad] are one.
 const SAME_INPUT: f64 = 1e-9;
