@@ -116,6 +116,23 @@ def test_limits_of_a_coupler_turned_over_and_beside_infinite_joints_are_counted(
     assert motion.count.dead_centres == sum(d.kind == "input" for c in exact for d in c.dead_centres)
 
 
+def test_two_circuits_found_late_that_turn_back_at_the_same_inputs_both_count() -> None:
+    # about the ball, which drives nothing else, the universal joint closes in two ways
+    rng = np.random.default_rng(111)
+    joints: list[dict[str, Any]] = []
+    for kind in "RSUR":
+        joints.append({"kind": kind, "at": rng.uniform(-1, 1, 3).tolist()})
+        if kind == "R":
+            joints[-1]["axis"] = rng.normal(size=3).tolist()
+        if kind == "U":
+            first = rng.normal(size=3)
+            joints[-1]["axes"] = [first.tolist(), np.cross(first, rng.normal(size=3)).tolist()]
+    motion = sb.from_axes(joints).motion(24)
+    assert (motion.completeness, len(motion.circuits)) == ("counted", 4)
+    assert motion.count is not None
+    assert motion.count.dead_centres == 8
+
+
 def test_where_turns_of_an_rssr_are_infinite_at_real_rocker_angles_its_crank_counts() -> None:
     # the coupler's height over its crank's plane is the rocker's alone: where it is the coupler's length
     # two complex couplers have no direction across the crank's axis

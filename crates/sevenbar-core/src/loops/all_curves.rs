@@ -231,9 +231,13 @@ impl Curves {
             self.take(chain, &[*pose], rising);
             self.last = last;
             let now = self.dead_centres(chain, column);
-            let told = |at: &&f64| known.iter().all(|k| (k - **at).abs() > SAME_INPUT);
-            let new: Vec<f64> = now.iter().filter(told).copied().collect();
-            known = now;
+            // circuits may turn back at one input, so each known one tells of one only
+            let mut told = std::mem::replace(&mut known, now.clone());
+            let mut new = now;
+            new.retain(|at| {
+                let same = told.iter().position(|k| (k - at).abs() <= SAME_INPUT);
+                same.map(|k| told.swap_remove(k)).is_none()
+            });
             new
         })
     }

@@ -10,7 +10,7 @@
 use super::around::{Around, Circle, Place};
 use super::chain::Configuration;
 use super::locating::{Branching, branch_points};
-use super::modes::{CIRCLE, SAME_MODE};
+use super::modes::{CIRCLE, SAME_MODE, Unknown};
 use super::paths::{CAREFUL, Slides, Solution, UNKNOWNS};
 use super::phases::FACTORS;
 use super::starts::distinct;
@@ -480,6 +480,16 @@ impl Account<'_> {
         let wanted = |tau: Complex64| {
             tau.im.abs() < 2.5 * height && tau.re > from - 0.5 * wide && tau.re < to + 0.5 * wide
         };
+        let idle = !finder.chain.halves.is_empty();
+        // the other joints are the same with a ball's turns turned over
+        let plain = |mut x: Solution| {
+            for (x, unknown) in x.iter_mut().zip(&finder.unknowns) {
+                if matches!(unknown, Unknown::BallTurn(..)) {
+                    *x = Complex64::ONE;
+                }
+            }
+            x
+        };
         for found in branch_points(self.closure, slides, &starts, wanted) {
             let gimbal = |&(i, zero): &(usize, Complex64)| {
                 let z = found.at[i] / zero;
@@ -489,8 +499,9 @@ impl Account<'_> {
                 let turned = (found.tau - b.tau) / TAU;
                 let near = (turned - turned.re.round()).norm() * TAU < SAME_POINT;
                 // flips of one pose are one point
-                near && (self.survey.flips > 1
-                    || distinct(slides, [b.at, found.at].into_iter(), SAME_POINT.sqrt()).len() == 1)
+                near && (idle
+                    || distinct(slides, [b.at, found.at].map(plain).into_iter(), SAME_POINT.sqrt()).len()
+                        == 1)
             };
             if self.survey.watch.middles.iter().any(gimbal) || self.located.iter().any(|b| known(&b)) {
                 continue;
