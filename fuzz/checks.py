@@ -36,8 +36,8 @@ CLOSED_CHANGING = 1e-3
 #: Condition up to which poses are compared, and how near [rad, parts of the size] two of them are one.
 WELL, SAME = 1e4, 1e-7
 
-#: How near a mode [rad, parts of the size] is to a row at the same input: at change points it is a fourth root of
-#: rounding.
+#: How near a mode [rad, parts of the size] is to a row at the same input: a fourth root of rounding at
+#: change points.
 ON_CIRCUIT = 1e-3
 
 #: Share of their spread by which a row may lie beyond the extremes of a rate.

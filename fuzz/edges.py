@@ -114,8 +114,14 @@ def shaky(rng: np.random.Generator) -> Description:
     return _lines_crossed(rng, int(rng.integers(1, 3)))
 
 
+def _screws(point: np.ndarray, axis: np.ndarray, letter: str) -> list[np.ndarray]:
+    if letter == "P":
+        return [np.r_[np.zeros(3), axis]]
+    return [np.r_[a, np.cross(point, a)] for a in (np.eye(3) if letter == "S" else [axis])]
+
+
 def _second_order(screws: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values of the screws (6, 7), and of the second-order form on what the first order leaves free."""
+    """Singular values of the screws (6, 7), and of the second-order form on what these leave free."""
 
     def bracket(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return np.r_[np.cross(a[:3], b[:3]), np.cross(a[:3], b[3:]) + np.cross(a[3:], b[:3])]
@@ -129,18 +135,24 @@ def _second_order(screws: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def isolated_pose(rng: np.random.Generator, letters: str) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Points and axes of seven R or P joints whose pose stands alone: all in one linear complex about z."""
+    """Points and axes of R, P and S joints of seven freedoms whose pose stands alone.
+
+    All are in one linear complex about z.
+    """
     while True:
-        pitch = 0.7 * rng.normal()
+        # a ball bears forces through its centre only
+        pitch = 0.0 if "S" in letters else 0.7 * rng.normal()
         axes = []
-        screws = []
         for letter in letters:
             point = rng.uniform(-1, 1, 3)
+            if letter == "S":
+                point[:2] = 0.0
             normal = np.array([0.0, 0.0, 1.0]) if letter == "P" else np.array([-point[1], point[0], pitch])
-            axis = np.cross(normal, rng.normal(size=3))
-            axis /= np.linalg.norm(axis)
-            axes.append((point, axis))
-            screws.append(np.r_[np.zeros(3), axis] if letter == "P" else np.r_[axis, np.cross(point, axis)])
+            axis = rng.normal(size=3)
+            if letter != "S":
+                axis = np.cross(normal, axis)
+            axes.append((point, axis / np.linalg.norm(axis)))
+        screws = [s for axis, letter in zip(axes, letters, strict=True) for s in _screws(*axis, letter)]
         s, form = _second_order(np.array(screws).T)
         if s[4] > CLEARLY and np.abs(form).min() > CLEARLY and form[0] * form[1] > 0:
             return axes

@@ -20,8 +20,7 @@ TOLD = {
     "rssr": "RSSRs one by one: file, mobility, all circuits, rates to the jerk, a point, a link, "
     "measures, summary, JSON",
     "loop": "general loops one by one, the same",
-    "edge": "loops at change points and just beside them, drawn in decimals, shaky, or with a narrow circuit, "
-    "the same",
+    "edge": "loops at change points and beside them, in decimals, shaky, with narrow circuits, the same",
     "screw": "loops with screws, whose modes are searched: few, since they are slow",
     "file": f"mutated TOML through the loader; of those that load one in {files.COUNTED} has its mobility "
     "counted, "
@@ -108,8 +107,8 @@ def _checked() -> str:
         "jerk, points, links.",
         "Limits rise and lie within a turn; the motion type fits the limits, the ranges and the circuits.",
         "A circuit whose input turns fully has its modes at any input.",
-        "Each mode at an input of the rows lies on a circuit or at a change point, where modes are algebraic and "
-        "circuits close.",
+        "Each mode at an input of the rows lies on a circuit or at a change point, where modes are algebraic "
+        "and circuits close.",
         "No well-conditioned row lies on two circuits; no row exceeds the extremes of velocity and "
         "acceleration.",
         "The report's JSON has no NaN, its text no `nan`; measures are finite or absent.",

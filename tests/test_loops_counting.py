@@ -34,19 +34,19 @@ def opened(seed: int, letters: str, epsilon: float) -> dict[str, Any]:
         frames.append(frame)
     links = np.array([np.linalg.inv(a) @ b for a, b in zip(frames[:-1], frames[1:], strict=True)])
     links[3][:3, 3] += epsilon * frames[3][2, :3]
-    loop = _core.Loop(letters, np.zeros(7), frames[0], frames[-1], links)
-    raw: dict[str, Any] = loop.motion(0, 6, 90, 1.0, None)
+    loop = _core.Loop(letters, np.zeros(len(letters)), frames[0], frames[-1], links)
+    raw: dict[str, Any] = loop.motion(0, 1, 90, 1.0, None)
     return raw
 
 
 def farthest(circuit: dict[str, Any]) -> float:
-    """How far a circuit goes from the pose that stood alone [rad, or length]."""
-    joints = circuit["joints"][0]
+    """How far the first three joints of a circuit go from the pose that stood alone [rad, or length]."""
+    joints = circuit["joints"][0][:, :3]
     joints = joints[np.isfinite(joints).all(axis=1)]
     return float(np.abs((joints + math.pi) % (2 * math.pi) - math.pi).max()) if len(joints) else math.inf
 
 
-@pytest.mark.parametrize("letters", ["RRRRRRR", "RRRPRRR"])
+@pytest.mark.parametrize("letters", ["RRRRRRR", "RRRPRRR", "RRRPRPR", "PRRRRRR", "RRRRS", "RRRSR"])
 @pytest.mark.parametrize("epsilon", [1e-5, 1e-8, 1e-11])
 def test_a_narrow_circuit_is_found_on_the_side_on_which_it_opens(letters: str, epsilon: float) -> None:
     for seed in range(3):
@@ -56,6 +56,80 @@ def test_a_narrow_circuit_is_found_on_the_side_on_which_it_opens(letters: str, e
             assert raw["count"][4] == []
             found.append(sum(farthest(c) < 200 * math.sqrt(epsilon) for c in raw["circuits"]))
         assert sorted(found) == [0, 1]
+
+
+def drawn(rng: np.random.Generator, kinds: str) -> sb.Linkage:
+    joints: list[dict[str, Any]] = []
+    for kind in kinds:
+        joints.append({"kind": kind, "at": rng.uniform(-1, 1, 3).tolist()})
+        if kind != "S":
+            joints[-1]["axis"] = rng.normal(size=3).tolist()
+    return sb.from_axes(joints)
+
+
+@pytest.mark.parametrize("seed", [130, 173])
+def test_limits_of_a_coupler_turned_over_and_beside_infinite_joints_are_counted(seed: int) -> None:
+    linkage = drawn(np.random.default_rng(seed), "RSSR")
+    motion, exact = linkage.motion(24, method="general"), linkage.motion(24)
+    assert motion.completeness == "counted"
+    assert motion.count is not None
+    assert motion.count.dead_centres == sum(d.kind == "input" for c in exact for d in c.dead_centres)
+
+
+def test_two_circuits_found_late_that_turn_back_at_the_same_inputs_both_count() -> None:
+    # about the ball, which drives nothing else, the universal joint closes in two ways
+    rng = np.random.default_rng(111)
+    joints: list[dict[str, Any]] = []
+    for kind in "RSUR":
+        joints.append({"kind": kind, "at": rng.uniform(-1, 1, 3).tolist()})
+        if kind == "R":
+            joints[-1]["axis"] = rng.normal(size=3).tolist()
+        if kind == "U":
+            first = rng.normal(size=3)
+            joints[-1]["axes"] = [first.tolist(), np.cross(first, rng.normal(size=3)).tolist()]
+    motion = sb.from_axes(joints).motion(24)
+    assert (motion.completeness, len(motion.circuits)) == ("counted", 4)
+    assert motion.count is not None
+    assert motion.count.dead_centres == 8
+
+
+def test_where_turns_of_an_rssr_are_infinite_at_real_rocker_angles_its_crank_counts() -> None:
+    # the coupler's height over its crank's plane is the rocker's alone: where it is the coupler's length
+    # two complex couplers have no direction across the crank's axis
+    for L2 in (56.3861, 169.1236):
+        linkage = sb.rssr(112.1046, 85.6589, 56.6266, 106.9128, 42.8507, L2)
+        motion, exact = (linkage.motion(24, input="rocker", method=m) for m in ("general", "auto"))
+        assert (motion.completeness, len(motion.circuits)) == ("counted", len(exact.circuits))
+        assert motion.count is not None
+        assert motion.count.joint == "crank"
+
+
+def test_a_complex_pair_straight_beside_a_drawn_pose_is_counted() -> None:
+    # on one side of a border of two ranges, and known on the other
+    for seed, epsilon in ((1, -1e-12), (4, 1e-12)):
+        assert opened(seed, "RRRSR", epsilon)["count"][4] == []
+
+
+@pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR", "RRPRPRP"])
+def test_circuits_that_end_where_slides_are_infinite_are_counted_and_none_is_missed(kinds: str) -> None:
+    rng = np.random.default_rng(8)
+    turns = np.array([letter == "R" for kind in kinds for letter in ("RP" if kind == "C" else kind)])
+    far = 0
+    for _ in range(6):
+        linkage = drawn(rng, kinds)
+        motion = linkage.motion(180)
+        assert motion.completeness == "counted"
+        far += sum(not c.closed for c in motion)
+        size = linkage._general.size
+        rows = np.concatenate([c.q[np.isfinite(c.q).all(axis=1)] for c in motion])
+        for k in range(0, 180, 9):
+            for q in linkage.assembly_modes(2 * math.pi * k / 180).q:
+                # circuits are followed to 50 sizes
+                if np.abs(q).max() < 40 * size:
+                    off = rows - q
+                    off = np.where(turns, (off + math.pi) % (2 * math.pi) - math.pi, off)
+                    assert np.abs(off).max(axis=1).min() < 1e-6 * size
+    assert far > 0
 
 
 def test_the_paper_s_loop_has_no_branch_point() -> None:

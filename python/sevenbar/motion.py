@@ -157,7 +157,7 @@ class Count:
     """
 
     joint: str
-    #: Real branch points, where this joint turns back on a circuit.
+    #: Real branch points, where this joint turns back on a circuit, or farther out than these are followed.
     dead_centres: int
     #: Complex ones near the real values, located and counted off.
     complex_branch_points: int

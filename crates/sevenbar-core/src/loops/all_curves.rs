@@ -29,8 +29,9 @@ const MOST_MODES: usize = 16;
 /// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
 const SEED_JOINTS: usize = 2;
 
-/// An open range narrower than this [rad] is that of one singular pose, or of solutions infinite at a real input, and open with any joint.
-const WIDE_RANGE: f64 = 1e-3;
+/// An open range narrower than this [rad] is that of one singular pose, and open with any joint. About solutions that run to infinity at
+/// one value of a joint ranges are wider, and another joint may have an account of them.
+const WIDE_RANGE: f64 = 1e-4;
 
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
@@ -146,6 +147,10 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             out.take(chain, &polished.modes, wished[0]);
         }
         out.ahead.clear();
+        for value in survey.iter().flat_map(|s| s.unseeded(count)) {
+            let modes = finder.at(value).modes;
+            out.take(chain, &modes, wished[0]);
+        }
         if let (Some(survey), Some(circle)) = (survey, circle) {
             let count = out.counted(chain, &survey, circle, (seed, wished[0]));
             if seed == out.seed_columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
@@ -212,6 +217,7 @@ impl Curves {
         circle: Circle,
         (column, rising): (usize, usize),
     ) -> Result<Count, Uncounted> {
+<<<<<<< HEAD
         let known = self.known(chain, survey, column);
         survey.count(circle, known, &mut |pose| {
             // the same pose with an idle link turned over does not count
@@ -222,6 +228,28 @@ impl Curves {
                 self.last = last;
             }
             self.known(chain, survey, column)
+=======
+        let singular: Vec<f64> = self.arcs.points.iter().map(|p| p.at.values[column]).collect();
+        let mut known = self.dead_centres(chain, column);
+        survey.count(circle, known.clone(), &singular, &mut |pose| {
+            // a curve is not followed so far, but may turn back there
+            if chain.is_far(pose) {
+                return vec![pose.values[column]];
+            }
+            // a circuit so narrow that it was missed bends sharply all along
+            let last = std::mem::replace(&mut self.last, true);
+            self.take(chain, &[*pose], rising);
+            self.last = last;
+            let now = self.dead_centres(chain, column);
+            // circuits may turn back at one input, so each known one tells of one only
+            let mut told = std::mem::replace(&mut known, now.clone());
+            let mut new = now;
+            new.retain(|at| {
+                let same = told.iter().position(|k| (k - at).abs() <= SAME_INPUT);
+                same.map(|k| told.swap_remove(k)).is_none()
+            });
+            new
+>>>>>>> work-a
         })
     }
 

@@ -9,7 +9,7 @@
 
 use super::lanes::Lanes;
 use super::paths::{
-    BRISK, JOINTS, LAST_CORRECTIONS, LAST_SECOND_FAR, LEAST_CONTRACTION, LONGEST_MOVE, Linear, Pace,
+    BRISK, CAREFUL, JOINTS, LAST_CORRECTIONS, LAST_SECOND_FAR, LEAST_CONTRACTION, LONGEST_MOVE, Linear, Pace,
     Parameters, SHORTEST_STEP, Slides, Solution, Triple, UNKNOWNS, cosine_sine, cross, infinite, moved, size,
     turn,
 };
@@ -154,19 +154,24 @@ impl<'a> Around<'a> {
 
     /// Where places above an angle arrive straight below, at a height that is less; both as `ln |e^(i tau)|`.
     pub fn lowered(&self, places: &[Place], angle: f64, (height, to): (f64, f64)) -> Option<Vec<Place>> {
-        let way = [self.down(angle, height, to)];
-        self.follow(places, &[&way], BRISK).into_iter().collect()
+        self.all(places, self.down(angle, height, to))
     }
 
     /// Where places at a height arrive after an arc from one angle to another.
     pub fn along(&self, places: &[Place], height: f64, (from, to): (f64, f64)) -> Option<Vec<Place>> {
-        let way = [Way {
+        let way = Way {
             direction: Complex64::ONE,
             length: to - from,
             end: self.zero() * Complex64::from_polar(height.exp(), to),
             settle: true,
-        }];
-        self.follow(places, &[&way], BRISK).into_iter().collect()
+        };
+        self.all(places, way)
+    }
+
+    /// Where all places arrive by a way; in short steps if one is lost in long ones.
+    fn all(&self, places: &[Place], way: Way) -> Option<Vec<Place>> {
+        let at = |pace| -> Option<Vec<Place>> { self.follow(places, &[&[way]], pace).into_iter().collect() };
+        at(BRISK).or_else(|| at(CAREFUL))
     }
 
     fn down(&self, angle: f64, height: f64, to: f64) -> Way {
@@ -176,6 +181,11 @@ impl<'a> Around<'a> {
             end: self.zero() * Complex64::from_polar(to.exp(), angle),
             settle: true,
         }
+    }
+
+    /// The same with links that have no length.
+    pub fn without_lengths(&self) -> Self {
+        Self { shifts: [[0.0; 3]; JOINTS], watch: None, ..*self }
     }
 
     /// `e^(i t)` of the given turn of the last joint at the input's zero.

@@ -5,12 +5,12 @@
 //! counts them. Where more are counted than known, the path is led nearer and the range halved, and Newton's method started
 //! from the solutions on it.
 //!
-//! Source: docs/theory_many.md, (12) to (16).
+//! Source: docs/theory_many.md, (12) to (16), and (20).
 
 use super::around::{Around, Circle, Place};
 use super::chain::Configuration;
 use super::locating::{Branching, branch_points};
-use super::modes::{CIRCLE, SAME_MODE};
+use super::modes::{CIRCLE, SAME_MODE, Unknown};
 use super::paths::{CAREFUL, Slides, Solution, UNKNOWNS};
 use super::phases::FACTORS;
 use super::starts::distinct;
@@ -83,7 +83,7 @@ pub(super) struct Known {
 pub struct Count {
     /// The column of the input.
     pub column: usize,
-    /// Real ones, dead centres of the circuits.
+    /// Real ones, dead centres of the circuits, or farther out than these are followed.
     pub dead_centres: usize,
     /// Complex ones that were located and counted off.
     pub complex_branch_points: usize,
@@ -312,10 +312,22 @@ impl Account<'_> {
         let slides = &self.survey.finder.slides;
         let apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
         apart
+<<<<<<< HEAD
             && self.known.simple().all(|&at| {
                 let off = (at - angle).rem_euclid(TAU);
                 off.min(TAU - off) > CLEAR
             })
+=======
+            && self
+                .known
+                .iter()
+                .copied()
+                .chain(self.survey.afar.iter().map(|a| a.input))
+                .all(|at| {
+                    let off = (at - angle).rem_euclid(TAU);
+                    off.min(TAU - off) > CLEAR
+                })
+>>>>>>> work-a
     }
 
     /// Whether two lists hold the same solutions: each has one in the other that is far nearer than all others, and no two have one.
@@ -386,7 +398,14 @@ impl Account<'_> {
                 sum
             }
         };
-        Some((zeros, infinite))
+        // slides infinite at a real input are known
+        let afar = self
+            .survey
+            .afar
+            .iter()
+            .filter(|at| within(at.input, a.angle, b.angle));
+        let (order, slides) = afar.fold((0, 0), |sum, at| (sum.0 + at.order, sum.1 + at.slides));
+        (infinite >= slides).then_some((zeros - order, infinite - slides))
     }
 
     /// How many branch points are counted between two borders and not known.
@@ -453,6 +472,14 @@ impl Account<'_> {
         {
             last.to = b.angle;
             last.missing = last.missing.zip(missing).map(|(x, y)| x + y);
+            // one on the border itself is counted on one side, and known on the other
+            let on_border = |tau: Complex64| {
+                let off = (tau.re - a.angle).rem_euclid(TAU);
+                off.min(TAU - off) < CLEAR
+            };
+            if last.missing == Some(0) && self.located.iter().any(|b| on_border(b.tau)) {
+                self.open.pop();
+            }
         } else {
             self.open.push(Open { from: a.angle, to: b.angle, missing });
         }
@@ -475,6 +502,16 @@ impl Account<'_> {
         let wanted = |tau: Complex64| {
             tau.im.abs() < 2.5 * height && tau.re > from - 0.5 * wide && tau.re < to + 0.5 * wide
         };
+        let idle = !finder.chain.halves.is_empty();
+        // the other joints are the same with a ball's turns turned over
+        let plain = |mut x: Solution| {
+            for (x, unknown) in x.iter_mut().zip(&finder.unknowns) {
+                if matches!(unknown, Unknown::BallTurn(..)) {
+                    *x = Complex64::ONE;
+                }
+            }
+            x
+        };
         for found in branch_points(self.closure, slides, &starts, wanted) {
             let gimbal = |&(i, zero): &(usize, Complex64)| {
                 let z = found.at[i] / zero;
@@ -484,8 +521,9 @@ impl Account<'_> {
                 let turned = (found.tau - b.tau) / TAU;
                 let near = (turned - turned.re.round()).norm() * TAU < SAME_POINT;
                 // flips of one pose are one point
-                near && (self.survey.flips > 1
-                    || distinct(slides, [b.at, found.at].into_iter(), SAME_POINT.sqrt()).len() == 1)
+                near && (idle
+                    || distinct(slides, [b.at, found.at].map(plain).into_iter(), SAME_POINT.sqrt()).len()
+                        == 1)
             };
             if self.survey.watch.middles.iter().any(gimbal) || self.located.iter().any(|b| known(&b)) {
                 continue;
@@ -493,6 +531,10 @@ impl Account<'_> {
             let pose = (found.tau.im.abs() < REAL)
                 .then(|| finder.configuration(&found.at, &self.survey.algebraic.zeros, found.tau.re))
                 .flatten();
+            // with an idle link turned over it is no pose of a curve; the one that is will be found, too
+            if pose.as_ref().is_some_and(|p| !finder.chain.counts(p)) {
+                continue;
+            }
             self.located.push(Branching { real: pose.is_some(), ..found });
             if let Some(pose) = pose {
                 self.known = (self.seed)(&pose);

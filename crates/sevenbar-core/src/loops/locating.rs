@@ -40,10 +40,10 @@ pub(super) struct Branching {
 }
 
 /// The closure linearised at a solution: `columns q' + input tau' = -error`.
-struct Local {
-    columns: [Six; UNKNOWNS],
-    input: Six,
-    error: Six,
+pub(super) struct Local {
+    pub columns: [Six; UNKNOWNS],
+    pub input: Six,
+    pub error: Six,
 }
 
 /// The closure at up to eight solutions.
@@ -78,7 +78,7 @@ impl LaneKernel for Linearise<'_> {
     }
 }
 
-fn linearised(closure: &Around, at: &[(Solution, Complex64)]) -> Vec<Local> {
+pub(super) fn linearised(closure: &Around, at: &[(Solution, Complex64)]) -> Vec<Local> {
     let mut out = Vec::with_capacity(at.len());
     for block in at.chunks(LANES) {
         dispatch(Linearise { closure, at: block, out: &mut out });
@@ -240,7 +240,7 @@ fn bracket(a: &Six, b: &Six) -> Six {
 }
 
 /// Solves `a x = b` in place, by elimination with row exchanges; none where a pivot is zero.
-fn solve<const N: usize>(a: &mut [[Complex64; N]; N], b: &mut [Complex64; N]) -> Option<()> {
+pub(super) fn solve<const N: usize>(a: &mut [[Complex64; N]; N], b: &mut [Complex64; N]) -> Option<()> {
     let mut greatest = 0.0;
     for c in 0..N {
         let row = (c..N).max_by(|&i, &j| a[i][c].norm_sqr().total_cmp(&a[j][c].norm_sqr()))?;

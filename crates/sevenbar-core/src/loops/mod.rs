@@ -3,6 +3,7 @@
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
 
+mod afar;
 mod all_curves;
 mod arcs;
 mod around;

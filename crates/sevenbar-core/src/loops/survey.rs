@@ -2,6 +2,7 @@
 //!
 //! Source: docs/theory_many.md, (14) and (17).
 
+use super::afar::{Afar, afar};
 use super::chain::{Chain, Joint};
 use super::locating::still;
 use super::modes::{Algebraic, ModeFinder, Unknown};
@@ -14,12 +15,17 @@ use std::f64::consts::TAU;
 /// `ln |e^(i tau)|` below which an input at which another joint moves alone counts as real.
 const REAL_INPUT: f64 = 1e-6;
 
+/// Inputs nearer than this [rad] are one.
+const SAME_INPUT: f64 = 1e-9;
+
 /// What is watched on the way round, and where the watched joints have their values.
 pub(super) struct Survey<'a> {
     pub finder: &'a ModeFinder<'a>,
     pub algebraic: Algebraic<'a>,
     pub watch: Watch,
     pub infinite: Infinite,
+    /// Where slides are infinite at real inputs.
+    pub afar: Vec<Afar>,
     /// Of how many solutions each pose has one: those with a ball's turns, or an idle coupler, turned over.
     pub flips: i64,
     /// Whether other joints may move with the input at rest.
@@ -69,7 +75,8 @@ impl<'a> Survey<'a> {
         if let Some(at) = known {
             // solutions infinite at a real input may be those of a motion with the input at rest
             let still = at.iter().any(|x| x.norm().ln().abs() < REAL_INPUT);
-            return Some(Self { finder, algebraic, watch, infinite: Infinite::At(at), flips, still });
+            let infinite = Infinite::At(at);
+            return Some(Self { finder, algebraic, watch, infinite, afar: Vec::new(), flips, still });
         }
         let untold = algebraic.untold_three();
         Some(Self::watching(finder, algebraic, watch, untold))
@@ -115,14 +122,28 @@ impl<'a> Survey<'a> {
             watch.values[i] = Some(value * zero);
         }
         let flips = 1 << watch.middles.len();
+        let afar = afar(finder, &algebraic, &chain);
         Self {
             finder,
             algebraic,
             watch,
             infinite: Infinite::Watched(met),
+            afar,
             flips,
             still: rests,
         }
+    }
+
+    /// A value in each range between neighbouring inputs at which slides are infinite that has none of `2 pi k / count`: a curve
+    /// through which the input only rises ends at such inputs, and leads over all between.
+    pub fn unseeded(&self, count: usize) -> Vec<f64> {
+        let spacing = TAU / count as f64;
+        let mut ends: Vec<f64> = self.afar.iter().map(|a| a.input.rem_euclid(TAU)).collect();
+        ends.sort_by(f64::total_cmp);
+        ends.extend(ends.first().map(|e| e + TAU));
+        let pairs = ends.windows(2).filter(|w| w[1] - w[0] > SAME_INPUT);
+        let within_one = pairs.filter(|w| (w[0] / spacing).floor() == (w[1] / spacing).floor());
+        within_one.map(|w| 0.5 * (w[0] + w[1])).collect()
     }
 }
 
@@ -148,7 +169,7 @@ fn turned_out(finder: &ModeFinder) -> Chain {
 }
 
 /// The solutions with one unknown at a complex value, as the finder has them, and `e^(i tau)` of its input there.
-fn solutions_with(
+pub(super) fn solutions_with(
     chain: &Chain,
     finder: &ModeFinder,
     zeros: &[Complex64; UNKNOWNS],
