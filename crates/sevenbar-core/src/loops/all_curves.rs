@@ -8,7 +8,7 @@ use super::counting::{Count, Uncounted};
 use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
-use super::polish::{CLOSED, NO_RANK, rank, unyielding};
+use super::polish::{self, CLOSED, NO_RANK, rank, unyielding};
 use super::survey::Survey;
 use super::walk::Start;
 use std::f64::consts::TAU;
@@ -70,8 +70,6 @@ pub(super) struct Curves {
     pub modes_at_zero: Option<usize>,
     /// Poses at which curves are not smooth, or that stand alone, once all curves are known.
     pub change_points: Vec<ChangePoint>,
-    /// Freedoms of a pose out of which more than one leads.
-    surface: usize,
     arcs: Arcs,
     /// Modes at sharp bends, left for the last; and whether they are followed now.
     unfollowed: Vec<Configuration>,
@@ -162,6 +160,9 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             }
         }
     }
+    if out.found.is_none() && !out.seed_columns.is_empty() {
+        out.look_beside_paths(chain);
+    }
     out.finish(chain);
     out.misfits.sort_by(f64::total_cmp);
     if out.seed_columns.is_empty() {
@@ -184,12 +185,29 @@ impl Curves {
             misfits: Vec::new(),
             modes_at_zero: None,
             change_points: Vec::new(),
-            surface: 0,
             arcs: Arcs::default(),
             unfollowed: Vec::new(),
             last: false,
             wished: wished.to_vec(),
             ahead: Vec::new(),
+        }
+    }
+
+    /// Searches where no mode stands alone but paths to others were lost.
+    fn look_beside_paths(&mut self, chain: &Chain) {
+        let finder = ModeFinder::new(chain, self.seed_columns[0]);
+        if !finder.is_degenerate() {
+            return;
+        }
+        self.completeness = Completeness::Searched;
+        self.count = Err(Uncounted::Searched);
+        self.seed_columns.truncate(1);
+        self.seeds = SEARCHED_SEEDS;
+        for k in 0..SEARCHED_SEEDS {
+            if let Some(mode) = finder.one_by_search(TAU * k as f64 / SEARCHED_SEEDS as f64) {
+                self.take(chain, &[mode], self.wished[0]);
+                return;
+            }
         }
     }
 
@@ -283,10 +301,9 @@ impl Curves {
 
     /// Follows what leads out of a pose at which the motion may not be smooth; tells whether it is a change point or stands alone.
     fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
-        let Some(point) = self.arcs.learn(chain, pose, &self.wished, stuck) else {
+        if self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
             return false;
-        };
-        self.surface = self.surface.max(self.arcs.points[point].finite);
+        }
         let passing = self.arcs.complete(chain, &self.wished);
         // what was followed over the point by rounding is known by its arcs
         self.curves.retain(|c| !contains(chain, c, &self.arcs));
@@ -311,7 +328,11 @@ impl Curves {
         self.forget_parts(chain);
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
         self.change_points = std::mem::take(&mut self.arcs.points);
-        let finite = if self.curves.is_empty() { self.surface } else { 1 };
+        let finite = if self.curves.is_empty() {
+            self.arcs.finite
+        } else {
+            1
+        };
         // all modes may have been change points
         if let Some(curve) = self.curves.first() {
             let columns = chain.screws(curve.plainest());
@@ -346,14 +367,22 @@ impl Curves {
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
             let rank = rank(&values, NO_RANK);
-            self.find(chain, &columns, rank);
             if chain.columns - rank != 1 {
                 // on a surface every pose is like this one
                 let isolated =
-                    chain.columns > rank + 1 && self.surface < 2 && self.branches(chain, mode, false);
+                    chain.columns > rank + 1 && self.arcs.finite < 2 && self.branches(chain, mode, false);
                 self.still += usize::from(!isolated);
+                // a mode beside a pose that stands alone has a greater rank
+                let pose = self
+                    .arcs
+                    .at(chain, mode)
+                    .map_or(mode, |p| &self.arcs.points[p].at);
+                let columns = chain.screws(pose);
+                let rank = polish::rank(&singular_values(&columns).0, NO_RANK);
+                self.find(chain, &columns, rank);
                 continue;
             }
+            self.find(chain, &columns, rank);
             if values[rank - 1] < NARROW * values[0] && !self.last {
                 // where a curve bends sharply a start is not known well enough to be met again: from elsewhere first
                 if !self.branches(chain, mode, false) {

@@ -40,6 +40,8 @@ pub(super) struct Arcs {
     failed: Vec<Configuration>,
     /// How many of the points the arcs end at, where they come by.
     respected: usize,
+    /// The most freedoms with which the loop moves out of a pose that was looked at.
+    pub finite: usize,
 }
 
 impl Arcs {
@@ -85,6 +87,11 @@ impl Arcs {
             }
             return None;
         };
+        self.finite = self.finite.max(found.finite);
+        // on a surface every pose is like this one
+        if found.finite > 1 && found.rays.is_empty() {
+            return None;
+        }
         if let Some(known) = self.at(chain, &found.at) {
             return Some(known);
         }
