@@ -31,6 +31,9 @@ const SEED_JOINTS: usize = 2;
 /// An open range narrower than this [rad] is that of one singular pose, or of solutions infinite at a real input, and open with any joint.
 const WIDE_RANGE: f64 = 1e-3;
 
+/// Two branch points become one in a pose that stands alone, one on each side of the real inputs.
+const BRANCH_POINTS_OF_POSE: i64 = 2;
+
 /// Dead centres whose inputs differ by less [rad] are one.
 const SAME_INPUT: f64 = 1e-9;
 
@@ -149,7 +152,10 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
         }
         out.ahead.clear();
         if let (Some(survey), Some(circle)) = (survey, circle) {
-            let count = out.counted(chain, &survey, circle, (seed, wished[0]));
+            let mut count = out.counted(chain, &survey, circle, (seed, wished[0]));
+            if let Ok(count) = &mut count {
+                out.look_into(chain, &finder, count);
+            }
             if seed == out.seed_columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
                 out.count = count;
             }
@@ -248,6 +254,28 @@ impl Curves {
             known = now;
             new
         })
+    }
+
+    /// Looks where solutions meet within ranges too narrow to be counted: in a pose that stands alone they are real at one input only.
+    fn look_into(&mut self, chain: &Chain, finder: &ModeFinder, count: &mut Count) {
+        count.open.retain(|open| {
+            if open.to - open.from > WIDE_RANGE {
+                return true;
+            }
+            let mut met = 0;
+            for place in finder.rough_at(0.5 * (open.from + open.to)) {
+                if self.holds(chain, &place) || !self.branches(chain, &place, false) {
+                    continue;
+                }
+                if let Some(point) = self.arcs.at(chain, &place) {
+                    let columns = chain.screws(&self.arcs.points[point].at);
+                    let rank = rank(&singular_values(&columns).0, NO_RANK);
+                    self.find(chain, &columns, rank);
+                    met += BRANCH_POINTS_OF_POSE;
+                }
+            }
+            open.missing != Some(met) || met == 0
+        });
     }
 
     /// The values of a column at which it turns back on any curve.

@@ -167,8 +167,9 @@ impl Arcs {
                     .iter()
                     .any(|p| length(&chain.difference(&p.at, &n.at)) < p.radius)
             };
-            let inner = &arc.curve.nodes[1..arc.curve.nodes.len() - 1];
-            let cut = inner.iter().any(through);
+            // an arc that begins where it ends has one node
+            let inner = arc.curve.nodes.get(1..arc.curve.nodes.len() - 1);
+            let cut = inner.is_some_and(|nodes| nodes.iter().any(through));
             if cut {
                 for (p, r) in arc.ends.iter().flatten() {
                     done[*p][*r] = false;

@@ -263,7 +263,7 @@ impl<'a> ModeFinder<'a> {
     }
 
     /// The same, some of them rough to [`POLISHED_MOVE`].
-    fn rough_at(&self, value: f64) -> Vec<Configuration> {
+    pub fn rough_at(&self, value: f64) -> Vec<Configuration> {
         let Some(closure) = &self.closure else {
             return self.search(value);
         };
