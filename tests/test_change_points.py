@@ -240,6 +240,27 @@ def test_longer_loops_that_close_stretched_only_are_rigid(joints: int) -> None:
         assert [point.isolated for point in motion.change_points] == [True]
 
 
+def test_a_pose_of_seven_joints_that_stands_alone_is_named() -> None:
+    """Seven axes of one linear complex: two complex solutions meet at a single real input, between the seeds."""
+    rows = [
+        (1.080375407722382, 0.7435869716475731, 1.0124178291036499),
+        (-0.6955695458976744, 1.140383463359292, -1.7638707579868298),
+        (-0.03101176210029995, 3.0146118304354363, 0.5600664228103199),
+        (0.47420567793886637, 1.1380662927529341, 0.07483008418893095),
+        (0.09103408364672873, 1.290104465072478, 0.584113153174373),
+        (0.15999614637781595, 0.10963734314149463, 3.9078937942737957),
+        (-0.6045103358067054, 2.212402633534889, -3.2658255553844255),
+    ]
+    length, twist, offset = zip(*rows, strict=True)
+    loop = sb.from_dh("RRRRRRR", length=length, twist=twist, offset=offset)
+    motion = loop.motion(SAMPLES)
+    assert (motion.motion_type, motion.mobility.finite) == ("rigid", 0)
+    (point,) = motion.change_points
+    assert point.isolated
+    assert motion.mobility.rank == 5
+    assert "no motion leads out of it" in sb.report.markdown(motion)
+
+
 def sarrus(short: float, long: float) -> sb.Linkage:
     """Two legs of equal links each, which fold flat and on top of themselves."""
     joints = []

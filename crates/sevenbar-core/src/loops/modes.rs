@@ -63,7 +63,7 @@ pub(super) const CIRCLE: f64 = 1.05;
 const SEARCH_STARTS: usize = 1500;
 
 /// The same where paths were lost: most starts lead to a pose where there is one, and each costs more.
-const SPARE_STARTS: usize = 100;
+const SPARE_STARTS: usize = 300;
 
 /// Turns to each side within which a screw joint is searched.
 pub(super) const SCREW_TURNS: f64 = 1.0;

@@ -120,12 +120,15 @@ pub(super) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
 /// The same where the other joints have freedoms to spare: each step is the shortest of those that lead as near.
 pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configuration) -> Option<Configuration> {
     let mut at = *rough;
+    let mut best = f64::INFINITY;
     for step in 0..MOST_STEPS {
         let placed = chain.place(&at);
         let residual = chain.residual(&placed);
-        if residual < CLOSED {
+        // a pose that closes by a square is as near as rounding lets it come, not where it first closes
+        if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
             return Some(at);
         }
+        best = best.min(residual);
         if step > HOPELESS_AFTER && residual > HOPELESS {
             return None;
         }
