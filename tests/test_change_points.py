@@ -15,7 +15,13 @@ SAMPLES = 96
 
 def planar_rows(*lengths: float) -> sb.Linkage:
     """A planar four-bar by its lengths; the last is the ground."""
-    return sb.from_dh("RRRR", length=list(lengths), twist=[0] * 4, offset=[0] * 4)
+    return planar_joints(*lengths)
+
+
+def planar_joints(*lengths: float) -> sb.Linkage:
+    """The same of any number of turning joints."""
+    count = len(lengths)
+    return sb.from_dh("R" * count, length=list(lengths), twist=[0] * count, offset=[0] * count)
 
 
 def planar_drawn(*places: tuple[float, float]) -> sb.Linkage:
@@ -208,6 +214,69 @@ def test_two_inputs_are_still_told_from_shaky_loops() -> None:
     five = planar_drawn((0, 0), (0, 1), (1, 1.5), (2, 1), (2, 0))
     assert five.mobility().finite == 2
     assert five.motion(24).motion_type == "two-inputs"
+
+
+@pytest.mark.parametrize("joints", [5, 6, 7])
+def test_loops_with_freedoms_to_spare_are_found_from_their_rows_too(joints: int) -> None:
+    """Their modes lie on surfaces, to which no path leads."""
+    for lengths, twists in (([1.0], [0.0]), ([0.0], [1.0])):
+        loop = sb.from_dh("R" * joints, length=lengths * joints, twist=twists * joints, offset=[0] * joints)
+        motion = loop.motion(24)
+        assert (motion.motion_type, motion.mobility.finite) == ("two-inputs", joints - 3)
+        modes = loop.assembly_modes(0.3)
+        assert (modes.completeness, len(modes.q)) == ("searched", 1)
+        assert modes.residual.max() < 1e-10
+
+
+@pytest.mark.parametrize("joints", [5, 6, 7])
+def test_longer_loops_that_close_stretched_only_are_rigid(joints: int) -> None:
+    lengths = [1.2, 0.7, 2.0, 0.4, 1.1, 0.3][: joints - 1]
+    rows = planar_joints(*lengths, round(sum(lengths), 6))
+    sides = [radians(x) for x in (20, 15, 30, 10, 25, 12)[: joints - 1]]
+    ball = sb.from_dh("R" * joints, length=[0] * joints, twist=[*sides, sum(sides)], offset=[0] * joints)
+    for loop in (rows, ball):
+        motion = loop.motion(24)
+        assert (motion.motion_type, loop.mobility().finite) == ("rigid", 0)
+        assert [point.isolated for point in motion.change_points] == [True]
+
+
+def test_a_pose_of_seven_joints_that_stands_alone_is_named() -> None:
+    """Seven axes of one linear complex: two complex solutions meet at a single real input, between the seeds."""
+    rows = [
+        (1.080375407722382, 0.7435869716475731, 1.0124178291036499),
+        (-0.6955695458976744, 1.140383463359292, -1.7638707579868298),
+        (-0.03101176210029995, 3.0146118304354363, 0.5600664228103199),
+        (0.47420567793886637, 1.1380662927529341, 0.07483008418893095),
+        (0.09103408364672873, 1.290104465072478, 0.584113153174373),
+        (0.15999614637781595, 0.10963734314149463, 3.9078937942737957),
+        (-0.6045103358067054, 2.212402633534889, -3.2658255553844255),
+    ]
+    length, twist, offset = zip(*rows, strict=True)
+    loop = sb.from_dh("RRRRRRR", length=length, twist=twist, offset=offset)
+    motion = loop.motion(SAMPLES)
+    assert (motion.motion_type, motion.mobility.finite) == ("rigid", 0)
+    (point,) = motion.change_points
+    assert point.isolated
+    assert motion.mobility.rank == 5
+    assert "no motion leads out of it" in sb.report.markdown(motion)
+
+
+def sarrus(short: float, long: float) -> sb.Linkage:
+    """Two legs of equal links each, which fold flat and on top of themselves."""
+    joints = []
+    for length, along, axis in ((short, [1, 0, 0], [0, 1, 0]), (long, [0, 1, 0], [1, 0, 0])):
+        foot, knee = 0.5 * np.array(along), (0.5 + length) * np.array(along)
+        places = [foot, knee + np.array([0, 0, 0.3]), foot + np.array([0, 0, 0.6])]
+        joints.append([{"kind": "R", "at": place.tolist(), "axis": axis} for place in places])
+    return sb.from_axes(joints[0] + joints[1][::-1])
+
+
+@pytest.mark.parametrize("long", [1.6, 1.3, 2.5])
+def test_a_sarrus_linkage_of_equal_links_passes_the_poses_in_which_it_folds(long: float) -> None:
+    """Folded, each leg turns by itself: surfaces of poses, into which the circuits run, and out again."""
+    motion = is_whole(sarrus(1.2, long))
+    assert len(motion.circuits) == 2
+    assert [(point.ways, len(point.circuits)) for point in motion.change_points] == [(2, 1)] * 4
 
 
 def planar_with_balls(*places: tuple[float, float]) -> sb.Linkage:

@@ -124,3 +124,9 @@ def test_screws_are_seeds_where_nothing_turns():
     motion = linkage.motion(24)
     assert motion.circuits
     assert "screws within one turn" in motion.established
+
+
+def test_screws_on_the_corners_of_a_kite_are_told_to_move():
+    """Each fold leads on to others, some turns of a screw on, out to where screws are no longer followed."""
+    kite = sb.from_axes([screw([x, y, 0]) for x, y in ((0, 0), (1, 1.5), (2.7, 0), (1, -1.5))])
+    assert kite.mobility().finite == 1

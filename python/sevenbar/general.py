@@ -416,10 +416,14 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str], count: Count | 
     text = f"{how} at {raw['seeds']} values of {joints}; "
     if raw.get("rank") is None:
         text += "there are none"
-    else:
+    elif raw["circuits"]:
         text += "each lies on a circuit"
-    if raw["still"]:
-        text += f", but {raw['still']} from which no motion could be followed"
+        if raw["still"]:
+            text += f", but {raw['still']} from which no motion could be followed"
+    elif raw["finite"] > 1:
+        text += f"the loop moves out of them with {raw['finite']} freedoms"
+    else:
+        text += "no motion leads out of them"
     if told := _counted(raw, count):
         text += f"; {told}"
     if raw["misfits"]:

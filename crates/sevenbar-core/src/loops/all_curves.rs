@@ -8,7 +8,7 @@ use super::counting::{Count, Known, Uncounted};
 use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder};
-use super::polish::{CLOSED, NO_RANK, rank, unyielding};
+use super::polish::{self, CLOSED, NO_RANK, rank, unyielding};
 use super::survey::Survey;
 use super::walk::Start;
 use std::f64::consts::TAU;
@@ -32,6 +32,9 @@ const SEED_JOINTS: usize = 2;
 /// An open range narrower than this [rad] is that of one singular pose, and open with any joint. About solutions that run to infinity at
 /// one value of a joint ranges are wider, and another joint may have an account of them.
 const WIDE_RANGE: f64 = 1e-4;
+
+/// Two branch points become one in a pose that stands alone, one on each side of the real inputs.
+const BRANCH_POINTS_OF_POSE: i64 = 2;
 
 /// Norm of the screws' inverse from which rounding leaves nothing to follow.
 const LOST: f64 = 1e6;
@@ -69,8 +72,6 @@ pub(super) struct Curves {
     pub modes_at_zero: Option<usize>,
     /// Poses at which curves are not smooth, or that stand alone, once all curves are known.
     pub change_points: Vec<ChangePoint>,
-    /// Freedoms of a pose out of which more than one leads.
-    surface: usize,
     arcs: Arcs,
     /// Modes at sharp bends, left for the last; and whether they are followed now.
     unfollowed: Vec<Configuration>,
@@ -152,7 +153,10 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
             out.take(chain, &modes, wished[0]);
         }
         if let (Some(survey), Some(circle)) = (survey, circle) {
-            let count = out.counted(chain, &survey, circle, (seed, wished[0]));
+            let mut count = out.counted(chain, &survey, circle, (seed, wished[0]));
+            if let Ok(count) = &mut count {
+                out.look_into(chain, &finder, count);
+            }
             if seed == out.seed_columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
                 out.count = count;
             }
@@ -165,6 +169,9 @@ pub(super) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curve
     }
     // where nothing turns
     out.take(chain, &drawings, wished[0]);
+    if out.found.is_none() && !out.seed_columns.is_empty() {
+        out.look_beside_paths(chain);
+    }
     out.finish(chain);
     out.misfits.sort_by(f64::total_cmp);
     if out.seed_columns.is_empty() {
@@ -187,12 +194,29 @@ impl Curves {
             misfits: Vec::new(),
             modes_at_zero: None,
             change_points: Vec::new(),
-            surface: 0,
             arcs: Arcs::default(),
             unfollowed: Vec::new(),
             last: false,
             wished: wished.to_vec(),
             ahead: Vec::new(),
+        }
+    }
+
+    /// Searches where no mode stands alone but paths to others were lost.
+    fn look_beside_paths(&mut self, chain: &Chain) {
+        let finder = ModeFinder::new(chain, self.seed_columns[0]);
+        if !finder.is_degenerate() {
+            return;
+        }
+        self.completeness = Completeness::Searched;
+        self.count = Err(Uncounted::Searched);
+        self.seed_columns.truncate(1);
+        self.seeds = SEARCHED_SEEDS;
+        for k in 0..SEARCHED_SEEDS {
+            if let Some(mode) = finder.one_by_search(TAU * k as f64 / SEARCHED_SEEDS as f64) {
+                self.take(chain, &[mode], self.wished[0]);
+                return;
+            }
         }
     }
 
@@ -217,40 +241,44 @@ impl Curves {
         circle: Circle,
         (column, rising): (usize, usize),
     ) -> Result<Count, Uncounted> {
-<<<<<<< HEAD
         let known = self.known(chain, survey, column);
+        let mut far: Vec<f64> = Vec::new();
         survey.count(circle, known, &mut |pose| {
-            // the same pose with an idle link turned over does not count
-            if chain.counts(pose) {
+            if chain.is_far(pose) {
+                // a curve is not followed so far, but may turn back there
+                far.push(pose.values[column]);
+            } else {
                 // a circuit so narrow that it was missed bends sharply all along
                 let last = std::mem::replace(&mut self.last, true);
                 self.take(chain, &[*pose], rising);
                 self.last = last;
             }
-            self.known(chain, survey, column)
-=======
-        let singular: Vec<f64> = self.arcs.points.iter().map(|p| p.at.values[column]).collect();
-        let mut known = self.dead_centres(chain, column);
-        survey.count(circle, known.clone(), &singular, &mut |pose| {
-            // a curve is not followed so far, but may turn back there
-            if chain.is_far(pose) {
-                return vec![pose.values[column]];
-            }
-            // a circuit so narrow that it was missed bends sharply all along
-            let last = std::mem::replace(&mut self.last, true);
-            self.take(chain, &[*pose], rising);
-            self.last = last;
-            let now = self.dead_centres(chain, column);
-            // circuits may turn back at one input, so each known one tells of one only
-            let mut told = std::mem::replace(&mut known, now.clone());
-            let mut new = now;
-            new.retain(|at| {
-                let same = told.iter().position(|k| (k - at).abs() <= SAME_INPUT);
-                same.map(|k| told.swap_remove(k)).is_none()
-            });
-            new
->>>>>>> work-a
+            let mut known = self.known(chain, survey, column);
+            known.dead_centres.extend(&far);
+            known
         })
+    }
+
+    /// Looks where solutions meet within ranges too narrow to be counted: in a pose that stands alone they are real at one input only.
+    fn look_into(&mut self, chain: &Chain, finder: &ModeFinder, count: &mut Count) {
+        count.open.retain(|open| {
+            if open.to - open.from > WIDE_RANGE {
+                return true;
+            }
+            let mut met = 0;
+            for place in finder.rough_at(0.5 * (open.from + open.to)) {
+                if self.holds(chain, &place) || !self.branches(chain, &place, false) {
+                    continue;
+                }
+                if let Some(point) = self.arcs.at(chain, &place) {
+                    let columns = chain.screws(&self.arcs.points[point].at);
+                    let rank = rank(&singular_values(&columns).0, NO_RANK);
+                    self.find(chain, &columns, rank);
+                    met += BRANCH_POINTS_OF_POSE;
+                }
+            }
+            open.missing != Some(met) || met == 0
+        });
     }
 
     /// The zeros of the determinant that the curves tell of.
@@ -330,10 +358,9 @@ impl Curves {
 
     /// Follows what leads out of a pose at which the motion may not be smooth; tells whether it is a change point or stands alone.
     fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
-        let Some(point) = self.arcs.learn(chain, pose, &self.wished, stuck) else {
+        if self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
             return false;
-        };
-        self.surface = self.surface.max(self.arcs.points[point].finite);
+        }
         let passing = self.arcs.complete(chain, &self.wished);
         // what was followed over the point by rounding is known by its arcs
         self.curves.retain(|c| !contains(chain, c, &self.arcs));
@@ -358,7 +385,11 @@ impl Curves {
         self.forget_parts(chain);
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
         self.change_points = std::mem::take(&mut self.arcs.points);
-        let finite = if self.curves.is_empty() { self.surface } else { 1 };
+        let finite = if self.curves.is_empty() {
+            self.arcs.finite
+        } else {
+            1
+        };
         // all modes may have been change points
         if let Some(curve) = self.curves.first() {
             let columns = chain.screws(curve.plainest());
@@ -393,14 +424,22 @@ impl Curves {
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
             let rank = rank(&values, NO_RANK);
-            self.find(chain, &columns, rank);
             if chain.columns - rank != 1 {
                 // on a surface every pose is like this one
                 let isolated =
-                    chain.columns > rank + 1 && self.surface < 2 && self.branches(chain, mode, false);
+                    chain.columns > rank + 1 && self.arcs.finite < 2 && self.branches(chain, mode, false);
                 self.still += usize::from(!isolated);
+                // a mode beside a pose that stands alone has a greater rank
+                let pose = self
+                    .arcs
+                    .at(chain, mode)
+                    .map_or(mode, |p| &self.arcs.points[p].at);
+                let columns = chain.screws(pose);
+                let rank = polish::rank(&singular_values(&columns).0, NO_RANK);
+                self.find(chain, &columns, rank);
                 continue;
             }
+            self.find(chain, &columns, rank);
             if values[rank - 1] < NARROW * values[0] && !self.last {
                 // where a curve bends sharply a start is not known well enough to be met again: from elsewhere first
                 if !self.branches(chain, mode, false) {

@@ -40,6 +40,8 @@ pub(super) struct Arcs {
     failed: Vec<Configuration>,
     /// How many of the points the arcs end at, where they come by.
     respected: usize,
+    /// The most freedoms with which the loop moves out of a pose that was looked at.
+    pub finite: usize,
 }
 
 impl Arcs {
@@ -85,6 +87,11 @@ impl Arcs {
             }
             return None;
         };
+        self.finite = self.finite.max(found.finite);
+        // on a surface every pose is like this one
+        if found.finite > 1 && found.rays.is_empty() {
+            return None;
+        }
         if let Some(known) = self.at(chain, &found.at) {
             return Some(known);
         }
@@ -113,12 +120,12 @@ impl Arcs {
                     self.learn(chain, end, wished, true);
                 }
             }
-            if self.points.len() > count {
-                // once more, to end at the points that they have led to
-                continue;
-            }
+            // those that come by the points that they have led to are followed once more, to end there
+            let fresh = self.stops().split_off(count);
             for (ray, curve) in rays.into_iter().zip(followed) {
-                self.take(chain, ray, curve, &mut passing);
+                if !curve.nodes.iter().any(|n| is_at(chain, n, &fresh)) {
+                    self.take(chain, ray, curve, &mut passing);
+                }
             }
         }
         passing
@@ -155,13 +162,10 @@ impl Arcs {
         self.respected = self.points.len();
         let done = &mut self.done;
         self.arcs.retain(|arc| {
-            let through = |n: &Node| {
-                points
-                    .iter()
-                    .any(|p| length(&chain.difference(&p.at, &n.at)) < p.radius)
-            };
-            let inner = &arc.curve.nodes[1..arc.curve.nodes.len() - 1];
-            let cut = inner.iter().any(through);
+            let through = |n: &Node| is_at(chain, n, &points);
+            // an arc that begins where it ends has one node
+            let inner = arc.curve.nodes.get(1..arc.curve.nodes.len() - 1);
+            let cut = inner.is_some_and(|nodes| nodes.iter().any(through));
             if cut {
                 for (p, r) in arc.ends.iter().flatten() {
                     done[*p][*r] = false;
@@ -269,6 +273,12 @@ impl Arcs {
         let tangent = point.rays[ray].tangent().map(|t| -t);
         Node::crossing(at, tangent, AT_POINT * point.cut)
     }
+}
+
+/// Whether a node lies where walks end that run into one of some points.
+fn is_at(chain: &Chain, node: &Node, points: &[Stop]) -> bool {
+    let near = |p: &Stop| length(&chain.difference(&p.at, &node.at)) < p.radius;
+    points.iter().any(near)
 }
 
 fn falls(curve: &Curve, column: usize) -> bool {

@@ -48,6 +48,9 @@ const LEAST_RADIUS: f64 = 3.0;
 const DIRECTIONS: usize = 48;
 const MORE_DIRECTIONS: usize = 6;
 
+/// Directions that lead nowhere before the others are given up.
+const MOST_IN_VAIN: usize = 288;
+
 /// Seen from the pose, places on spheres of half the radius may differ by so much, and by so little a curve is straight.
 const MOST_BENT: f64 = 0.2;
 const STRAIGHT: f64 = 1e-6;
@@ -66,6 +69,10 @@ pub(super) const AT_POINT: f64 = 3.0;
 
 /// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
 const MOST_STEPS: usize = 40;
+
+/// Steps on a sphere that are longer than this part of its radius after so many of them lead nowhere.
+const WANDERING_AFTER: usize = 15;
+const WANDERING: f64 = 1e-2;
 
 /// A step [rad, or parts of the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
 const LAST_STEP: f64 = 1e-15;
@@ -96,7 +103,7 @@ pub(super) struct ChangePoint {
     pub partner: Vec<Option<usize>>,
     /// Where curves are cut that run into it.
     pub cut: f64,
-    /// Freedoms of the motions out of it: none where it stands alone.
+    /// The most freedoms of the motions out of it: none where it stands alone, two or more where it lies on a surface.
     pub finite: usize,
 }
 
@@ -271,14 +278,11 @@ impl Chain {
         let cut = CUT.max(CUT_TIMES * place.passing());
         let mut found = ChangePoint { at: place.at, rays: Vec::new(), partner: Vec::new(), cut, finite: 0 };
         for &radius in RADII.iter().filter(|&&r| r > LEAST_RADIUS * cut) {
-            let ways = self.ways_out(&place, radius);
-            found.finite = ways.iter().map(|w| w.1).max().unwrap_or(0);
-            if found.finite > 1 {
-                return Some(found);
-            }
+            let (ways, finite) = self.ways_out(&place, radius);
+            found.finite = finite;
             let rays: Vec<Ray> = ways
                 .iter()
-                .filter_map(|(at, _)| self.ray(&place, at, radius))
+                .filter_map(|at| self.ray(&place, at, radius))
                 .collect();
             let straight = rays.len() == ways.len();
             if straight || rays.len() > found.rays.len() {
@@ -292,14 +296,19 @@ impl Chain {
         Some(found)
     }
 
-    /// Where the closure holds on a sphere about a place, each once, with the freedoms there.
-    fn ways_out(&self, place: &Place, radius: f64) -> Vec<(Configuration, usize)> {
-        let mut found: Vec<(Configuration, usize)> = Vec::new();
-        for direction in directions(place) {
+    /// Where curves cut a sphere about a place, each once, and the most freedoms found on it: surfaces have no ways to tell apart, but
+    /// curves may run into them.
+    fn ways_out(&self, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
+        let mut found: Vec<Configuration> = Vec::new();
+        let mut finite = 0;
+        for (tried, direction) in directions(place).into_iter().enumerate() {
+            if tried == MOST_IN_VAIN && found.is_empty() && finite == 0 {
+                break;
+            }
             let Some(at) = self.on_sphere(place, &direction, radius) else {
                 continue;
             };
-            let known = |f: &(Configuration, usize)| length(&self.difference(&f.0, &at)) < SAME_WAY * radius;
+            let known = |f: &Configuration| length(&self.difference(f, &at)) < SAME_WAY * radius;
             if found.iter().any(known) {
                 continue;
             }
@@ -309,20 +318,24 @@ impl Chain {
                 .take(6)
                 .filter(|&&v| v > NO_FREEDOM * radius * values[0])
                 .count();
-            found.push((at, self.columns - rank));
-            // a surface has no ways to tell apart
-            if self.columns - rank > 1 {
+            let freedoms = self.columns - rank;
+            finite = finite.max(freedoms);
+            if freedoms == 1 {
+                found.push(at);
+            }
+            // all that is free there is one surface's
+            if freedoms > 1 && freedoms == place.free.len() {
                 break;
             }
         }
-        found
+        (found, finite)
     }
 
     /// The solution of the closure at a distance from a place that Newton's method finds from a direction.
     fn on_sphere(&self, place: &Place, direction: &Columns, radius: f64) -> Option<Configuration> {
         let mut at = self.moved(&place.at, &direction.map(|x| x * radius));
         let mut before = f64::INFINITY;
-        for _ in 0..MOST_STEPS {
+        for step in 0..MOST_STEPS {
             let placed = self.place(&at);
             let off = self.difference(&place.at, &at);
             let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
@@ -348,7 +361,8 @@ impl Chain {
             let mut by = [0.0; COLUMNS];
             by[..self.columns].copy_from_slice(&least_squares(&columns, &right, NO_RANK));
             let size = length(&by);
-            if !size.is_finite() {
+            // where curves touch, steps halve at least
+            if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
                 return None;
             }
             // no farther than the sphere is large, and so never across it

@@ -312,22 +312,15 @@ impl Account<'_> {
         let slides = &self.survey.finder.slides;
         let apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
         apart
-<<<<<<< HEAD
-            && self.known.simple().all(|&at| {
-                let off = (at - angle).rem_euclid(TAU);
-                off.min(TAU - off) > CLEAR
-            })
-=======
             && self
                 .known
-                .iter()
+                .simple()
                 .copied()
                 .chain(self.survey.afar.iter().map(|a| a.input))
                 .all(|at| {
                     let off = (at - angle).rem_euclid(TAU);
                     off.min(TAU - off) > CLEAR
                 })
->>>>>>> work-a
     }
 
     /// Whether two lists hold the same solutions: each has one in the other that is far nearer than all others, and no two have one.

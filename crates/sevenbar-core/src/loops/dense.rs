@@ -176,6 +176,12 @@ fn reflect<N: Number>(v: &[N; ROWS], inverse: N, x: &mut [N; ROWS], from: usize)
     }
 }
 
+/// Columns whose cosine is less are square to each other: rounding of their product of seven terms alone makes as much.
+const SQUARE: f64 = 4.0 * f64::EPSILON;
+
+/// Most sweeps over all pairs of columns; ten are many.
+const MOST_SWEEPS: usize = 60;
+
 /// Singular values, falling, and right singular vectors of a matrix given column by column (one-sided Jacobi).
 pub(super) fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>) {
     let n = columns.len();
@@ -184,7 +190,7 @@ pub(super) fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>)
         .map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect())
         .collect();
     let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
-    for _ in 0..60 {
+    for _ in 0..MOST_SWEEPS {
         let mut turned = false;
         for p in 0..n {
             for q in p + 1..n {
@@ -193,7 +199,7 @@ pub(super) fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>)
                     product(&a[q], &a[q]),
                     product(&a[p], &a[q]),
                 );
-                if pq.abs() <= 1e-16 * (pp * qq).sqrt() || pq == 0.0 {
+                if pq.abs() <= SQUARE * (pp * qq).sqrt() || pq == 0.0 {
                     continue;
                 }
                 turned = true;

@@ -177,12 +177,18 @@ impl Loop {
         let chain = self.reduced.chain.as_ref()?;
         let input = self.chain_column(column)?;
         let finder = modes::ModeFinder::new(chain, input);
-        let mut found = finder.once(value * self.inward(column));
+        let value = value * self.inward(column);
+        let mut found = finder.once(value);
+        let mut completeness = finder.completeness();
+        if found.modes.is_empty() && finder.is_degenerate() {
+            found.modes.extend(finder.one_by_search(value));
+            completeness = Completeness::Searched;
+        }
         found.misfits.sort_by(f64::total_cmp);
         let closed = |at| (self.joint_values(at), chain.residual(&chain.place(at)));
         Some(Modes {
             modes: found.modes.iter().map(closed).collect(),
-            completeness: finder.completeness(),
+            completeness,
             misfits: found.misfits,
         })
     }

@@ -11,7 +11,7 @@ use super::geometry::Form;
 use super::paths::{BRISK, CAREFUL, JOINTS, Pace, Parameters, Slides, Solution, UNKNOWNS, follow};
 use super::phases::Watch;
 use super::poles::{poles, untold_three};
-use super::polish::{Settled, polish};
+use super::polish::{self, Settled, polish};
 use super::reduce::Z_TO_X;
 use super::starts::{Class, Random, distinct, general_count};
 use crate::rigid::Pose;
@@ -61,6 +61,9 @@ pub(super) const CIRCLE: f64 = 1.05;
 
 /// Starts of the search where there is no algebraic way.
 const SEARCH_STARTS: usize = 1500;
+
+/// The same where paths were lost: most starts lead to a pose where there is one, and each costs more.
+const SPARE_STARTS: usize = 300;
 
 /// Turns to each side within which a screw joint is searched.
 pub(super) const SCREW_TURNS: f64 = 1.0;
@@ -176,6 +179,24 @@ impl<'a> ModeFinder<'a> {
         }
     }
 
+    /// Whether fewer solutions stand alone than the geometry has: others lie on curves or surfaces, to which no path leads, as those of
+    /// a loop with two freedoms do.
+    pub fn is_degenerate(&self) -> bool {
+        let fewer = |c: &Closure| self.generic(c).solutions.len() < c.class.count();
+        self.closure.as_ref().is_some_and(fewer)
+    }
+
+    /// A mode by search, also where there is an algebraic way and the passive joints have freedoms to spare; none where none is found.
+    pub fn one_by_search(&self, value: f64) -> Option<Configuration> {
+        let mut random = Random(0x5ea4c4);
+        let mut found = (0..SPARE_STARTS).filter_map(|_| {
+            let rough = self.anywhere(value, &mut random);
+            polish::polish_with_spare(self.chain, self.input, &rough)
+        });
+        let found = found.find(|at| self.chain.counts(at));
+        self.in_order(found.into_iter().collect()).pop()
+    }
+
     /// One that follows all paths of a general closure, whatever the geometry.
     #[cfg(test)]
     pub fn from_general_starts(chain: &'a Chain, input: usize) -> Self {
@@ -242,7 +263,7 @@ impl<'a> ModeFinder<'a> {
     }
 
     /// The same, some of them rough to [`POLISHED_MOVE`].
-    fn rough_at(&self, value: f64) -> Vec<Configuration> {
+    pub fn rough_at(&self, value: f64) -> Vec<Configuration> {
         let Some(closure) = &self.closure else {
             return self.search(value);
         };
@@ -402,29 +423,34 @@ impl<'a> ModeFinder<'a> {
         Some(out)
     }
 
+    /// Any configuration with the input at a value; screws within [`SCREW_TURNS`].
+    fn anywhere(&self, value: f64, random: &mut Random) -> Configuration {
+        let mut rough = Configuration::ZERO;
+        for (joint, &column) in self.chain.joints.iter().zip(&self.chain.first) {
+            let centred = 2.0 * random.uniform() - 1.0;
+            match joint {
+                Joint::Slide => rough.values[column] = centred,
+                Joint::Screw(_) => {
+                    rough.values[column] = centred * SCREW_TURNS * std::f64::consts::TAU;
+                }
+                Joint::Turn => rough.values[column] = centred * std::f64::consts::PI,
+                Joint::Ball(b) => {
+                    let angle = |r: &mut Random| std::f64::consts::TAU * r.uniform();
+                    rough.balls[*b] = ball_rotation(&[angle(random), angle(random), angle(random)]);
+                }
+            }
+        }
+        rough.values[self.input] = value;
+        rough
+    }
+
     /// Newton from many places; screws within [`SCREW_TURNS`]. Redundant constraints may keep some of them open.
     fn search(&self, value: f64) -> Vec<Configuration> {
         let chain = self.chain;
         let mut random = Random(0x5ea4c4);
         let mut modes: Vec<Configuration> = Vec::new();
         for _ in 0..SEARCH_STARTS {
-            let mut rough = Configuration::ZERO;
-            for (joint, &column) in chain.joints.iter().zip(&chain.first) {
-                let centred = 2.0 * random.uniform() - 1.0;
-                match joint {
-                    Joint::Slide => rough.values[column] = centred,
-                    Joint::Screw(_) => {
-                        rough.values[column] = centred * SCREW_TURNS * std::f64::consts::TAU;
-                    }
-                    Joint::Turn => rough.values[column] = centred * std::f64::consts::PI,
-                    Joint::Ball(b) => {
-                        let angle = |r: &mut Random| std::f64::consts::TAU * r.uniform();
-                        rough.balls[*b] =
-                            ball_rotation(&[angle(&mut random), angle(&mut random), angle(&mut random)]);
-                    }
-                }
-            }
-            rough.values[self.input] = value;
+            let rough = self.anywhere(value, &mut random);
             let in_range = |m: &Configuration| {
                 chain.joints.iter().zip(&chain.first).all(|(joint, &c)| {
                     !matches!(joint, Joint::Screw(_))

@@ -6,7 +6,7 @@
 //! be closed to rounding, in every loop.
 
 use super::chain::{COLUMNS, Chain, Columns, Configuration, squared_up};
-use super::dense::{Factored, ROWS, singular_values};
+use super::dense::{Factored, ROWS, least_squares, singular_values};
 
 /// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
 pub(super) const CLOSED: f64 = 1e-11;
@@ -24,6 +24,11 @@ pub(super) const NO_RANK: f64 = 10.0 * AGREE;
 
 /// A move [rad, or parts of the size] after which the next would be rounding.
 const SETTLED: f64 = 1e-12;
+
+/// Most steps; a pose that is still so far from closing [rad, or parts of the size] after so many of them will not close.
+const MOST_STEPS: usize = 60;
+const HOPELESS_AFTER: usize = 25;
+const HOPELESS: f64 = 1e-3;
 
 /// A pose that closes as well as it can with the input held.
 pub(super) struct Settled {
@@ -68,7 +73,7 @@ pub(super) fn unyielding(columns: &[Vec<f64>], rank: usize) -> Vec<Vec<f64>> {
 pub(super) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: f64) -> Option<Settled> {
     let mut at = *rough;
     let mut best = f64::INFINITY;
-    for step in 0..60 {
+    for step in 0..MOST_STEPS {
         let placed = chain.place(&at);
         let residual = chain.residual(&placed);
         if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
@@ -90,7 +95,7 @@ pub(super) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         }
         let by = Factored::new(columns, chain.columns).solve(right);
         let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
-        if !longest.is_finite() || (step > 25 && residual > 1e-3) {
+        if !longest.is_finite() || (step > HOPELESS_AFTER && residual > HOPELESS) {
             return None;
         }
         if longest < SETTLED && residual >= CLOSED {
@@ -110,6 +115,41 @@ pub(super) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         .fold(0.0, |m: f64, d| m.max(d.abs()));
     let misfit = misfit(chain, &at)?;
     (gone <= reach).then_some(Settled { at, misfit })
+}
+
+/// The same where the other joints have freedoms to spare: each step is the shortest of those that lead as near.
+pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configuration) -> Option<Configuration> {
+    let mut at = *rough;
+    let mut best = f64::INFINITY;
+    for step in 0..MOST_STEPS {
+        let placed = chain.place(&at);
+        let residual = chain.residual(&placed);
+        // a pose that closes by a square is as near as rounding lets it come, not where it first closes
+        if residual < CLOSED && (residual >= 0.5 * best || residual < 1e-15) {
+            return Some(at);
+        }
+        best = best.min(residual);
+        if step > HOPELESS_AFTER && residual > HOPELESS {
+            return None;
+        }
+        let mut columns = chain.screws(&at);
+        columns[input].fill(0.0);
+        let by = least_squares(&columns, &placed.error.map(|e| -e), NO_RANK);
+        let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
+        if !longest.is_finite() {
+            return None;
+        }
+        let factor = if longest > 1.0 { 1.0 / longest } else { 1.0 };
+        let mut moved = [0.0; COLUMNS];
+        for (m, b) in moved.iter_mut().zip(&by) {
+            *m = b * factor;
+        }
+        at = chain.moved(&at, &moved);
+        for ball in &mut at.balls {
+            *ball = squared_up(ball);
+        }
+    }
+    None
 }
 
 /// The closure error that is left in redundant constraints; `None` for a pose that is open in others too.
