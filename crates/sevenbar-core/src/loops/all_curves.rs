@@ -7,7 +7,7 @@ use super::change_points::ChangePoint;
 use super::counting::{Count, Known, Uncounted};
 use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;
-use super::modes::{Completeness, ModeFinder};
+use super::modes::{Completeness, ModeFinder, REAL};
 use super::polish::{self, CLOSED, NO_RANK, rank, unyielding};
 use super::survey::Survey;
 use super::walk::Start;
@@ -32,6 +32,9 @@ const SEED_JOINTS: usize = 2;
 /// An open range narrower than this [rad] is that of one singular pose, and open with any joint. About solutions that run to infinity at
 /// one value of a joint ranges are wider, and another joint may have an account of them.
 const WIDE_RANGE: f64 = 1e-4;
+
+/// Imaginary parts [rad] that solutions which are real at one input may have beside it, as a part of the distance.
+const NEARLY_REAL: f64 = 20.0;
 
 /// Two branch points become one in a pose that stands alone, one on each side of the real inputs.
 const BRANCH_POINTS_OF_POSE: i64 = 2;
@@ -266,7 +269,9 @@ impl Curves {
                 return true;
             }
             let mut met = 0;
-            for place in finder.rough_at(0.5 * (open.from + open.to)) {
+            let (middle, wide) = (0.5 * (open.from + open.to), open.to - open.from);
+            // solutions that meet at one real input are complex beside it
+            for place in finder.rough_at(middle, REAL.max(NEARLY_REAL * wide)) {
                 if self.holds(chain, &place) || !self.branches(chain, &place, false) {
                     continue;
                 }

@@ -10,7 +10,7 @@
 use super::around::{Around, Circle, Place};
 use super::chain::Configuration;
 use super::locating::{Branching, branch_points};
-use super::modes::{CIRCLE, SAME_MODE, Unknown};
+use super::modes::{CIRCLE, REAL as REAL_SOLUTION, SAME_MODE, Unknown};
 use super::paths::{CAREFUL, Slides, Solution, UNKNOWNS};
 use super::phases::FACTORS;
 use super::starts::distinct;
@@ -522,7 +522,14 @@ impl Account<'_> {
                 continue;
             }
             let pose = (found.tau.im.abs() < REAL)
-                .then(|| finder.configuration(&found.at, &self.survey.algebraic.zeros, found.tau.re))
+                .then(|| {
+                    finder.configuration(
+                        &found.at,
+                        &self.survey.algebraic.zeros,
+                        found.tau.re,
+                        REAL_SOLUTION,
+                    )
+                })
                 .flatten();
             // with an idle link turned over it is no pose of a curve; the one that is will be found, too
             if pose.as_ref().is_some_and(|p| !finder.chain.counts(p)) {

@@ -47,7 +47,7 @@ pub(super) struct Polished {
 }
 
 /// A solution whose turns or slides have larger imaginary parts than this is not tried as a real one.
-const REAL: f64 = 1e-5;
+pub(super) const REAL: f64 = 1e-5;
 
 /// A real solution may move by this much [rad, or parts of the size] when it is polished on the chain itself.
 const POLISHED_MOVE: f64 = 1e-3;
@@ -251,7 +251,7 @@ impl<'a> ModeFinder<'a> {
         let found = follow(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
         let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
         if ends.len() == closure.class.count() {
-            self.polished(&self.real_ones(&ends, &shift, value))
+            self.polished(&self.real_ones(&ends, &shift, value, REAL))
         } else {
             self.at(value)
         }
@@ -259,11 +259,11 @@ impl<'a> ModeFinder<'a> {
 
     /// All modes with the input at this value [rad, or parts of the size].
     pub fn at(&self, value: f64) -> Polished {
-        self.polished(&self.rough_at(value))
+        self.polished(&self.rough_at(value, REAL))
     }
 
-    /// The same, some of them rough to [`POLISHED_MOVE`].
-    pub fn rough_at(&self, value: f64) -> Vec<Configuration> {
+    /// The same, some of them rough to [`POLISHED_MOVE`]: solutions whose imaginary parts are below `real` [rad, or parts of the size].
+    pub fn rough_at(&self, value: f64, real: f64) -> Vec<Configuration> {
         let Some(closure) = &self.closure else {
             return self.search(value);
         };
@@ -294,7 +294,7 @@ impl<'a> ModeFinder<'a> {
                 break;
             }
         }
-        self.real_ones(&ends, &shift, value)
+        self.real_ones(&ends, &shift, value, real)
     }
 
     /// All modes at the values `2 pi k / count` of an input that turns, some of them rough to [`POLISHED_MOVE`], and the paths by
@@ -315,18 +315,24 @@ impl<'a> ModeFinder<'a> {
                 let ends = distinct(&self.slides, ends, SAME_MODE);
                 // two paths that end near each other may have become one
                 if ends.len() < want {
-                    return self.rough_at(value(k));
+                    return self.rough_at(value(k), REAL);
                 }
-                self.real_ones(&ends, &shift, value(k))
+                self.real_ones(&ends, &shift, value(k), REAL)
             })
             .collect();
         (modes, Some(circle))
     }
 
     /// The modes among solutions, rough to [`POLISHED_MOVE`].
-    fn real_ones(&self, ends: &[Solution], shift: &[Complex64; UNKNOWNS], value: f64) -> Vec<Configuration> {
+    fn real_ones(
+        &self,
+        ends: &[Solution],
+        shift: &[Complex64; UNKNOWNS],
+        value: f64,
+        real: f64,
+    ) -> Vec<Configuration> {
         ends.iter()
-            .filter_map(|end| self.configuration(end, shift, value))
+            .filter_map(|end| self.configuration(end, shift, value, real))
             .collect()
     }
 
@@ -389,12 +395,13 @@ impl<'a> ModeFinder<'a> {
         modes
     }
 
-    /// The joints of a real solution; `None` for one that is not real, or in which an added joint moved.
+    /// The joints of a solution that is real within so much [rad, or parts of the size]; `None` for another, or where an added joint moved.
     pub fn configuration(
         &self,
         solution: &Solution,
         shift: &[Complex64; UNKNOWNS],
         value: f64,
+        within: f64,
     ) -> Option<Configuration> {
         let mut out = Configuration::ZERO;
         out.values[self.input] = value;
@@ -402,16 +409,16 @@ impl<'a> ModeFinder<'a> {
         for (i, unknown) in self.unknowns.iter().enumerate() {
             let real = if self.slides[i] {
                 let x = solution[i];
-                (x.im.abs() < REAL * (1.0 + x.re.abs())).then_some(x.re)?
+                (x.im.abs() < within * (1.0 + x.re.abs())).then_some(x.re)?
             } else {
                 let size = solution[i].norm_sqr().sqrt();
-                ((size - 1.0).abs() < REAL).then_some((solution[i] * shift[i].conj()).arg())?
+                ((size - 1.0).abs() < within).then_some((solution[i] * shift[i].conj()).arg())?
             };
             match *unknown {
                 Unknown::Column(c) => out.values[c] = real,
                 Unknown::BallTurn(b, k) => turns[b][k] = real,
                 Unknown::Added => {
-                    if real.abs() > REAL {
+                    if real.abs() > within {
                         return None;
                     }
                 }
