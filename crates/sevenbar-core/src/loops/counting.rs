@@ -5,7 +5,7 @@
 //! counts them. Where more are counted than known, the path is led nearer and the range halved, and Newton's method started
 //! from the solutions on it.
 //!
-//! Source: docs/theory_many.md, (12) to (16), and (20).
+//! Source: docs/theory_many.md, (12) to (16), (20).
 
 use super::around::{Around, Circle, Place};
 use super::chain::Configuration;

@@ -199,7 +199,8 @@ pub(super) fn singular_values(columns: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<f64>>)
                     product(&a[q], &a[q]),
                     product(&a[p], &a[q]),
                 );
-                if pq.abs() <= SQUARE * (pp * qq).sqrt() || pq == 0.0 {
+                // what is not a number is not turned
+                if !(pq.abs() > SQUARE * (pp * qq).sqrt() && pq.is_finite()) {
                     continue;
                 }
                 turned = true;

@@ -30,6 +30,9 @@ const MOST_STEPS: usize = 60;
 const HOPELESS_AFTER: usize = 25;
 const HOPELESS: f64 = 1e-3;
 
+/// Steps after which it is seen whether a pose comes nearer to closing.
+const LOOK: usize = 8;
+
 /// A pose that closes as well as it can with the input held.
 pub(super) struct Settled {
     pub at: Configuration,
@@ -121,6 +124,7 @@ pub(super) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
 pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configuration) -> Option<Configuration> {
     let mut at = *rough;
     let mut best = f64::INFINITY;
+    let mut looked = f64::INFINITY;
     for step in 0..MOST_STEPS {
         let placed = chain.place(&at);
         let residual = chain.residual(&placed);
@@ -129,8 +133,15 @@ pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configurati
             return Some(at);
         }
         best = best.min(residual);
-        if step > HOPELESS_AFTER && residual > HOPELESS {
+        if !residual.is_finite() {
             return None;
+        }
+        if step % LOOK == LOOK - 1 {
+            // even where it closes by a square each step halves what is left
+            if best > 0.5 * looked {
+                return None;
+            }
+            looked = best;
         }
         let mut columns = chain.screws(&at);
         columns[input].fill(0.0);
