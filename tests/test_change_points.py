@@ -293,3 +293,18 @@ def test_closed_form_and_general_way_tell_the_same_poses(method: Any) -> None:
     fold = np.arctan2(1, 0.5)
     np.testing.assert_allclose(motion.change_point_inputs, [pi - fold, 2 * pi - fold], atol=1e-7)
     assert [(len(point.circuits), point.ways) for point in motion.change_points] == [(2, 4)] * 2
+
+
+def test_axes_on_one_regulus_are_shaky() -> None:
+    """Six lines of one family of a hyperboloid have three infinitesimal freedoms; near closing is no motion."""
+    rng = np.random.default_rng(5)
+    for _ in range(8):
+        a, b, c = rng.uniform(0.5, 2, 3)
+        turn = rng.uniform(0, 2 * np.pi, 6)
+        at = np.stack([a * np.cos(turn), b * np.sin(turn), 0 * turn], axis=1)
+        along = np.stack([-a * np.sin(turn), b * np.cos(turn), c + 0 * turn], axis=1)
+        loop = sb.from_axes(
+            [{"kind": "R", "at": p.tolist(), "axis": s.tolist()} for p, s in zip(at, along, strict=True)]
+        )
+        mobility = loop.mobility()
+        assert (mobility.finite, mobility.rank, loop.motion(24).motion_type) == (0, 3, "rigid")

@@ -82,6 +82,11 @@ const UNSTEADY: f64 = 1e-6;
 /// A part of the greatest slope below which nothing is solved for.
 const NO_SLOPE: f64 = 1e-9;
 
+/// A closure error [rad, or parts of the size] up to which it is rounding, and the part of it that is left at half the distance from a
+/// pose where the loop is only shaky: a quarter, by the second order, or less.
+const ROUNDED: f64 = 1e-13;
+const LEAST_FALL: f64 = 0.5;
+
 /// A singular value below this part of the radius and of the greatest is a freedom all along.
 const NO_FREEDOM: f64 = 1e-4;
 
@@ -296,6 +301,17 @@ impl Chain {
         Some(found)
     }
 
+    /// Whether a place on a sphere closes only because it is near: at half the distance far less is left open. On a motion what is left
+    /// is rounding, or what redundant constraints miss each other by, and the same everywhere.
+    fn opens_with_distance(&self, place: &Place, at: &Configuration, radius: f64) -> bool {
+        let open = |at: &Configuration| self.residual(&self.place(at));
+        let inward = self.difference(&place.at, at).map(|x| x / radius);
+        open(at) > ROUNDED
+            && self
+                .on_sphere(place, &inward, 0.5 * radius)
+                .is_some_and(|nearer| open(&nearer) < LEAST_FALL * open(at))
+    }
+
     /// Where curves cut a sphere about a place, each once, and the most freedoms found on it: surfaces have no ways to tell apart, but
     /// curves may run into them.
     fn ways_out(&self, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
@@ -309,7 +325,7 @@ impl Chain {
                 continue;
             };
             let known = |f: &Configuration| length(&self.difference(f, &at)) < SAME_WAY * radius;
-            if found.iter().any(known) {
+            if found.iter().any(known) || self.opens_with_distance(place, &at, radius) {
                 continue;
             }
             let (values, _) = singular_values(&self.screws(&at));
