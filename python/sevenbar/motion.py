@@ -161,7 +161,7 @@ class Count:
     dead_centres: int
     #: Complex ones near the real values, located and counted off.
     complex_branch_points: int
-    #: Solutions that run to infinity near the real values, kept out of the count.
+    #: Joints, of those watched, that become infinite near the real values; kept out of the count.
     poles: int
     #: Ranges that do not balance; none where circuits are `counted`.
     open: tuple[OpenRange, ...]

@@ -87,7 +87,7 @@ pub struct Count {
     pub dead_centres: usize,
     /// Complex ones that were located and counted off.
     pub complex_branch_points: usize,
-    /// Solutions that run to infinity within the first circle, kept out by a path nearer to the real inputs.
+    /// Joints, of those watched, that become infinite within the first circle; kept out by a path nearer to the real inputs.
     pub poles: usize,
     /// Ranges that do not balance, none where all do.
     pub open: Vec<Open>,
