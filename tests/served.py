@@ -14,8 +14,9 @@ START, END = 600.0, 600.0
 
 
 def _hear_the_terminal():
-    """What a shell starts in the background is deaf to SIGINT, and so would be all that tests start."""
+    """What a shell starts in the background, or `nohup`, is deaf to signals, and so would be all that tests start."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 class Served:
