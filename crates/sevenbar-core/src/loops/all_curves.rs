@@ -387,8 +387,8 @@ impl Curves {
                 self.take_together(chain, &[mode], self.wished[0]);
             }
         }
-        self.forget_parts(chain);
         self.curves.extend(self.arcs.joined(chain, self.wished[0]));
+        self.forget_parts(chain);
         self.change_points = std::mem::take(&mut self.arcs.points);
         let finite = if self.curves.is_empty() {
             self.arcs.finite
@@ -514,12 +514,15 @@ impl Curves {
         lies_on_any(chain, &self.curves, curve.plainest())
     }
 
-    /// Forgets the curves between change points that are parts of later ones: those led on where these ended, within rounding.
+    /// Forgets the curves between change points that are parts of others: those led on where these ended, within rounding.
     fn forget_parts(&mut self, chain: &Chain) {
         let mut k = 0;
         while k < self.curves.len() {
-            let (curve, later) = (&self.curves[k], &self.curves[k + 1..]);
-            if curve.end == End::Singular && later.iter().any(|c| lies_on(chain, c, curve.plainest())) {
+            let curve = &self.curves[k];
+            let mut others = self.curves[..k].iter().chain(&self.curves[k + 1..]);
+            // of two that are parts of each other, as they end at change points a rounding apart, the longer stays
+            let part_of = |c: &Curve| c.length() >= curve.length() && lies_on(chain, c, curve.plainest());
+            if curve.end == End::Singular && others.any(part_of) {
                 self.curves.remove(k);
             } else {
                 k += 1;

@@ -185,6 +185,11 @@ impl Curve {
         &best.unwrap_or(&self.nodes[0]).at
     }
 
+    /// How far it leads [rad, and parts of the size].
+    pub fn length(&self) -> f64 {
+        self.nodes.iter().map(|n| n.step).sum()
+    }
+
     /// Whether it passes change points.
     pub fn crosses(&self) -> bool {
         self.nodes.iter().any(Node::is_crossing)
@@ -192,13 +197,12 @@ impl Curve {
 
     /// Whether a column stands still, but for rounding, all along.
     pub fn rests(&self, column: usize) -> bool {
-        let (mut low, mut high, mut long) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for node in &self.nodes {
             low = low.min(node.at.values[column]);
             high = high.max(node.at.values[column]);
-            long += node.step;
         }
-        high - low < STILL * long
+        high - low < STILL * self.length()
     }
 
     /// What each column gains from the first node to the last.
