@@ -8,7 +8,7 @@ use super::counting::{Count, Known, Uncounted};
 use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;
 use super::modes::{Completeness, ModeFinder, REAL};
-use super::polish::{self, CLOSED, NO_RANK, rank, unyielding};
+use super::polish::{CLOSED, NO_RANK, rank, unyielding};
 use super::survey::Survey;
 use super::walk::Start;
 use std::f64::consts::TAU;
@@ -276,9 +276,8 @@ impl Curves {
                     continue;
                 }
                 if let Some(point) = self.arcs.at(chain, &place) {
-                    let columns = chain.screws(&self.arcs.points[point].at);
-                    let rank = rank(&singular_values(&columns).0, NO_RANK);
-                    self.find(chain, &columns, rank);
+                    let pose = self.arcs.points[point].at;
+                    self.find_at(chain, &pose);
                     met += BRANCH_POINTS_OF_POSE;
                 }
             }
@@ -396,14 +395,19 @@ impl Curves {
             1
         };
         // all modes may have been change points
-        if let Some(curve) = self.curves.first() {
-            let columns = chain.screws(curve.plainest());
-            let rank = rank(&singular_values(&columns).0, NO_RANK);
-            self.find(chain, &columns, rank);
+        if let Some(pose) = self.curves.first().map(|c| *c.plainest()) {
+            self.find_at(chain, &pose);
         }
         if let Some(found) = &mut self.found {
             found.finite = found.finite.min(finite);
         }
+    }
+
+    /// Looks at the rank of a pose.
+    fn find_at(&mut self, chain: &Chain, pose: &Configuration) {
+        let columns = chain.screws(pose);
+        let rank = rank(&singular_values(&columns).0, NO_RANK);
+        self.find(chain, &columns, rank);
     }
 
     /// Holds the greatest rank of all poses, and what goes with it.
@@ -438,10 +442,8 @@ impl Curves {
                 let pose = self
                     .arcs
                     .at(chain, mode)
-                    .map_or(mode, |p| &self.arcs.points[p].at);
-                let columns = chain.screws(pose);
-                let rank = polish::rank(&singular_values(&columns).0, NO_RANK);
-                self.find(chain, &columns, rank);
+                    .map_or(*mode, |p| self.arcs.points[p].at);
+                self.find_at(chain, &pose);
                 continue;
             }
             self.find(chain, &columns, rank);

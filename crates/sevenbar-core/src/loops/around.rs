@@ -256,6 +256,20 @@ impl<'a> Around<'a> {
     }
 }
 
+/// Up to eight solutions with `e^(i tau)` of their inputs, side by side; a lane without one has the last.
+#[inline(always)]
+pub(super) fn side_by_side<V: Vector>(at: &[(Solution, Complex64)]) -> ([Lanes<V>; UNKNOWNS], Lanes<V>) {
+    let lanes = |pick: &dyn Fn(&(Solution, Complex64)) -> Complex64| {
+        let (mut re, mut im): (Reals, Reals) = ([0.0; LANES], [0.0; LANES]);
+        for k in 0..LANES {
+            let z = pick(&at[k.min(at.len() - 1)]);
+            (re[k], im[k]) = (z.re, z.im);
+        }
+        Lanes::<V>::load(&re, &im)
+    };
+    (std::array::from_fn(|i| lanes(&|at| at.0[i])), lanes(&|at| at.1))
+}
+
 /// Turns the frame's axes `a`, `b` by the angle whose cosine and sine are given.
 #[inline(always)]
 fn turn_real<V: Vector>(a: &mut Triple<V>, b: &mut Triple<V>, [cosine, sine]: [f64; 2]) {

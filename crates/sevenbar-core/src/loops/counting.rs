@@ -212,6 +212,12 @@ fn within(angle: f64, from: f64, to: f64) -> bool {
     (angle - from).rem_euclid(TAU) < to - from
 }
 
+/// How far two angles are apart [rad], whole turns aside.
+fn apart(a: f64, b: f64) -> f64 {
+    let off = (a - b).rem_euclid(TAU);
+    off.min(TAU - off)
+}
+
 /// The square of how far two solutions are apart [parts of their values, or of the size].
 fn square_apart(slides: &Slides, a: &Solution, b: &Solution) -> f64 {
     let off = |i: usize| {
@@ -310,17 +316,14 @@ impl Account<'_> {
     /// Whether a border at an angle may be: its real solutions are all apart, and no dead centre is near.
     fn is_clear(&self, angle: f64, ends: &[Place]) -> bool {
         let slides = &self.survey.finder.slides;
-        let apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
-        apart
+        let all_apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
+        all_apart
             && self
                 .known
                 .simple()
                 .copied()
                 .chain(self.survey.afar.iter().map(|a| a.input))
-                .all(|at| {
-                    let off = (at - angle).rem_euclid(TAU);
-                    off.min(TAU - off) > CLEAR
-                })
+                .all(|at| apart(at, angle) > CLEAR)
     }
 
     /// Whether two lists hold the same solutions: each has one in the other that is far nearer than all others, and no two have one.
@@ -466,11 +469,8 @@ impl Account<'_> {
             last.to = b.angle;
             last.missing = last.missing.zip(missing).map(|(x, y)| x + y);
             // one on the border itself is counted on one side, and known on the other
-            let on_border = |tau: Complex64| {
-                let off = (tau.re - a.angle).rem_euclid(TAU);
-                off.min(TAU - off) < CLEAR
-            };
-            if last.missing == Some(0) && self.located.iter().any(|b| on_border(b.tau)) {
+            let on_border = |b: &Branching| apart(b.tau.re, a.angle) < CLEAR;
+            if last.missing == Some(0) && self.located.iter().any(on_border) {
                 self.open.pop();
             }
         } else {

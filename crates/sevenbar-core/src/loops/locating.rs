@@ -5,10 +5,9 @@
 //!
 //! Source: docs/theory_many.md, (15) and (16).
 
-use super::around::{Around, Place};
-use super::lanes::Lanes;
+use super::around::{Around, Place, side_by_side};
 use super::paths::{Slides, Solution, UNKNOWNS};
-use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
+use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 use num_complex::Complex64;
 
 /// Most corrections: where two branch points look like one they halve the distance only.
@@ -56,16 +55,8 @@ struct Linearise<'a> {
 impl LaneKernel for Linearise<'_> {
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let lanes = |pick: &dyn Fn(usize) -> Complex64| {
-            let (mut re, mut im): (Reals, Reals) = ([0.0; LANES], [0.0; LANES]);
-            for k in 0..LANES {
-                let z = pick(k.min(self.at.len() - 1));
-                (re[k], im[k]) = (z.re, z.im);
-            }
-            Lanes::<V>::load(&re, &im)
-        };
-        let x: [Lanes<V>; UNKNOWNS] = std::array::from_fn(|i| lanes(&|k| self.at[k].0[i]));
-        let linear = self.closure.linearise(&x, lanes(&|k| self.at[k].1));
+        let (x, input) = side_by_side::<V>(self.at);
+        let linear = self.closure.linearise(&x, input);
         let rows = linear.rows.map(|row| row.map(|x| (x.re.store(), x.im.store())));
         for k in 0..self.at.len() {
             let get = |r: usize, c: usize| Complex64::new(rows[r][c].0[k], rows[r][c].1[k]);

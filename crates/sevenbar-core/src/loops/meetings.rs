@@ -7,14 +7,13 @@
 //!
 //! Source: docs/theory_many.md, (12).
 
-use super::around::Around;
+use super::around::{Around, side_by_side};
 use super::chain::{Chain, Configuration};
 use super::curve::Curve;
-use super::lanes::Lanes;
 use super::modes::Unknown;
-use super::paths::{Solution, UNKNOWNS};
+use super::paths::Solution;
 use super::survey::Survey;
-use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
+use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 use num_complex::Complex64;
 
 /// Halvings of a step, down to rounding.
@@ -31,14 +30,8 @@ impl LaneKernel for Determinants<'_> {
     #[inline(always)]
     fn run<V: Vector>(self) {
         for block in self.at.chunks(LANES) {
-            let lanes = |pick: &dyn Fn(&(Solution, Complex64)) -> Complex64| {
-                let of = |part: fn(Complex64) -> f64| -> Reals {
-                    std::array::from_fn(|k| part(pick(&block[k.min(block.len() - 1)])))
-                };
-                Lanes::<V>::load(&of(|z| z.re), &of(|z| z.im))
-            };
-            let x: [Lanes<V>; UNKNOWNS] = std::array::from_fn(|i| lanes(&|at| at.0[i]));
-            let (.., determinant) = self.closure.linearise(&x, lanes(&|at| at.1)).solve();
+            let (x, input) = side_by_side::<V>(block);
+            let (.., determinant) = self.closure.linearise(&x, input).solve();
             self.out.extend_from_slice(&determinant.re.store()[..block.len()]);
         }
     }
