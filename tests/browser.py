@@ -85,7 +85,12 @@ class Pages:
         page.locator(".tabler-icon-cloud-check").filter(visible=True).wait_for()
         # viser's notice that the processor draws lies over the canvas
         notice = page.locator(".mantine-Notification-root", has_text="Software WebGL")
-        notice.get_by_role("button").click()
+        notice.wait_for()
+        # a click is lost where the page is still being put together
+        end = time.monotonic() + PATIENCE
+        while notice.count() and time.monotonic() < end:
+            notice.get_by_role("button").evaluate_all("buttons => buttons.forEach(button => button.click())")
+            page.wait_for_timeout(100)
         notice.wait_for(state="detached")
         return page
 

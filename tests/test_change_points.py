@@ -234,7 +234,9 @@ def test_longer_loops_that_close_stretched_only_are_rigid(joints: int) -> None:
     rows = planar_joints(*lengths, round(sum(lengths), 6))
     sides = [radians(x) for x in (20, 15, 30, 10, 25, 12)[: joints - 1]]
     ball = sb.from_dh("R" * joints, length=[0] * joints, twist=[*sides, sum(sides)], offset=[0] * joints)
-    for loop in (rows, ball):
+    uneven = [1.6, 2.6, 2.6, 2.6, 0.9, 0.1][7 - joints :]
+    winding = planar_joints(*uneven, round(sum(uneven), 6))
+    for loop in (rows, ball, winding):
         motion = loop.motion(24)
         assert (motion.motion_type, loop.mobility().finite) == ("rigid", 0)
         assert [point.isolated for point in motion.change_points] == [True]

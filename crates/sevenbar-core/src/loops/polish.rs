@@ -30,6 +30,9 @@ const MOST_STEPS: usize = 60;
 const HOPELESS_AFTER: usize = 25;
 const HOPELESS: f64 = 1e-3;
 
+/// Most steps where there are freedoms to spare: towards a pose that stands alone among links of very different lengths the way winds.
+const MOST_WITH_SPARE: usize = 240;
+
 /// Steps after which it is seen whether a pose comes nearer to closing.
 const LOOK: usize = 8;
 
@@ -125,7 +128,7 @@ pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configurati
     let mut at = *rough;
     let mut best = f64::INFINITY;
     let mut looked = f64::INFINITY;
-    for step in 0..MOST_STEPS {
+    for step in 0..MOST_WITH_SPARE {
         let placed = chain.place(&at);
         let residual = chain.residual(&placed);
         // a pose that closes by a square is as near as rounding lets it come, not where it first closes
