@@ -27,8 +27,9 @@ const SAME_SAMPLE: f64 = 1e-9;
 const SAME_VALUE: f64 = 1e-14;
 const SAME_EXTREME: f64 = 1e-6;
 
-/// Refinements of a bracket.
-const MOST_REFINEMENTS: usize = 40;
+/// Refinements of a bracket, and those after which every other halves it.
+const MOST_REFINEMENTS: usize = 60;
+const UNHALVED: usize = 8;
 
 /// The lowest and highest velocity, acceleration and jerk of the output; none where there are rows without rates.
 ///
@@ -171,11 +172,12 @@ impl Search<'_, '_> {
         let side = usize::from(low.slope > high.slope);
         // rounding of values hides the place; that of slopes does not
         let mut flattest: Option<Sample> = None;
+        let mut before = None;
         for step in 0..MOST_REFINEMENTS {
-            let input = if step % 3 == 2 {
+            let input = if step >= UNHALVED && step % 2 == 0 {
                 0.5 * (low.input + high.input)
             } else {
-                (low.input * high.slope - high.input * low.slope) / (high.slope - low.slope)
+                flat_between(&low, &high, before.as_ref())
             };
             let inside = start + (input - start).rem_euclid(self.span);
             let Some(row) = passes.row(0, inside, &UNIT) else {
@@ -188,11 +190,12 @@ impl Search<'_, '_> {
             if here.slope.abs() < NO_SLOPE || (high.input - low.input).abs() < SAME_INPUT {
                 break;
             }
-            if here.slope * low.slope > 0.0 {
-                low = here;
+            let end = if here.slope * low.slope > 0.0 {
+                &mut low
             } else {
-                high = here;
-            }
+                &mut high
+            };
+            before = Some(std::mem::replace(end, here));
         }
         if let Some(Sample { input, value, .. }) = flattest {
             let end = &mut ends[side];
@@ -202,6 +205,22 @@ impl Search<'_, '_> {
                 *end = [value, input];
             }
         }
+    }
+}
+
+/// Where the slope is zero between two samples: the input as a parabola of the slopes of these and a third, where that is between them,
+/// else as a line.
+fn flat_between(low: &Sample, high: &Sample, third: Option<&Sample>) -> f64 {
+    let chord = (low.input * high.slope - high.input * low.slope) / (high.slope - low.slope);
+    let Some(third) = third else { return chord };
+    let part = |at: &Sample, a: &Sample, b: &Sample| {
+        at.input * a.slope * b.slope / ((at.slope - a.slope) * (at.slope - b.slope))
+    };
+    let bent = part(low, high, third) + part(high, low, third) + part(third, low, high);
+    if bent > low.input && bent < high.input {
+        bent
+    } else {
+        chord
     }
 }
 
