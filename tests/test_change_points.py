@@ -109,7 +109,7 @@ def test_a_folding_four_bar_is_one_circuit_of_two_turns_where_the_branches_chang
     (circuit,) = motion.circuits
     assert circuit.turns == 2
     (point,) = motion.change_points
-    assert (point.circuits, point.ways, point.isolated) == ((0,), 4, False)
+    assert (point.circuits, point.ways, point.freedoms, point.isolated) == ((0,), 4, 1, False)
 
 
 def test_a_row_at_a_change_point_has_its_pose_and_no_rates() -> None:
@@ -278,7 +278,9 @@ def test_a_sarrus_linkage_of_equal_links_passes_the_poses_in_which_it_folds(long
     """Folded, each leg turns by itself: surfaces of poses, into which the circuits run, and out again."""
     motion = is_whole(sarrus(1.2, long))
     assert len(motion.circuits) == 2
-    assert [(point.ways, len(point.circuits)) for point in motion.change_points] == [(2, 1)] * 4
+    assert [(p.ways, len(p.circuits), p.freedoms) for p in motion.change_points] == [(2, 1, 2)] * 4
+    assert "not followed, begin in 4 of the change points" in motion.established
+    assert "there it can also move with 2 freedoms" in sb.report.markdown(motion)
 
 
 def planar_with_balls(*places: tuple[float, float]) -> sb.Linkage:

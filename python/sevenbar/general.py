@@ -420,6 +420,9 @@ def _established(raw: Mapping[str, Any], columns: Sequence[str], count: Count | 
         text += "each lies on a circuit"
         if raw["still"]:
             text += f", but {raw['still']} from which no motion could be followed"
+        if free := sum(freedoms > 1 for *_, freedoms in raw["change_points"]):
+            text += "; motions with more than one freedom, not followed, "
+            text += f"begin in {free} of the change points"
     elif raw["finite"] > 1:
         text += f"the loop moves out of them with {raw['finite']} freedoms"
     else:

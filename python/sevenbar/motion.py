@@ -63,7 +63,8 @@ class ChangePoint:
 
     `q` (columns,) are its joint values [rad in (-pi, pi], or length], `input` that of the input; `circuits`
     the numbers of those that meet there; `ways` how many curves lead out of it, two for each branch that
-    passes. An isolated pose has none.
+    passes. An isolated pose has none. `freedoms` is the most that a motion out of it has: 1 where all are
+    circuits, more where one begins that the input does not determine, which is not followed.
 
     Source: docs/theory.md, (19) to (22).
     """
@@ -72,6 +73,7 @@ class ChangePoint:
     q: Floats
     circuits: tuple[int, ...]
     ways: int
+    freedoms: int
 
     @property
     def isolated(self) -> bool:
@@ -79,11 +81,13 @@ class ChangePoint:
         return self.ways == 0
 
 
-def change_points_from(raw: Sequence[tuple[Any, Sequence[int], int]], column: int) -> tuple[ChangePoint, ...]:
-    """Change points from the core's values of all columns, circuits and ways; `column`: the input."""
+def change_points_from(
+    raw: Sequence[tuple[Any, Sequence[int], int, int]], column: int
+) -> tuple[ChangePoint, ...]:
+    """Change points as the core has them (values, circuits, ways, freedoms); `column`: the input."""
     points = (
-        ChangePoint(float(values[column]), np.array(values), tuple(circuits), ways)
-        for values, circuits, ways in raw
+        ChangePoint(float(values[column]), np.array(values), tuple(circuits), ways, freedoms)
+        for values, circuits, ways, freedoms in raw
     )
     return tuple(sorted(points, key=lambda point: point.input % math.tau))
 

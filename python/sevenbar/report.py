@@ -88,7 +88,13 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "motion_type": motion.motion_type,
         "limits": motion.limits.tolist(),
         "change_points": [
-            {"input": p.input, "q": p.q.tolist(), "circuits": list(p.circuits), "ways": p.ways}
+            {
+                "input": p.input,
+                "q": p.q.tolist(),
+                "circuits": list(p.circuits),
+                "ways": p.ways,
+                "freedoms": p.freedoms,
+            }
             for p in motion.change_points
         ],
         "mobility": {

@@ -161,6 +161,9 @@ def _change_points(motion: Motion) -> list[tuple[str, str]]:
         where = "  ".join(show(x) for x in motion.change_point_inputs)
         what = "branches meet there; the least change of a dimension decides how it goes on"
         lines.append(("change point", f"input {where}: {what}"))
+    free = max((point.freedoms for point in meeting), default=0)
+    if free > 1:
+        lines.append(("", f"there it can also move with {free} freedoms, which no circuit shows"))
     alone = [show(point.input) for point in motion.change_points if point.isolated]
     if alone:
         lines.append(("isolated pose", f"input {'  '.join(alone)}: no motion leads out of it"))

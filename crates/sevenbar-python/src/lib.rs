@@ -167,8 +167,8 @@ impl Rssr {
             .map(|&at| {
                 let (values, circuits) = self.0.change_point(&motion, at);
                 // two branches cross
-                let ways = if circuits.is_empty() { 0 } else { 4 };
-                (values, circuits, ways)
+                let (ways, freedoms) = if circuits.is_empty() { (0, 0) } else { (4, 1) };
+                (values, circuits, ways, freedoms)
             })
             .collect();
         result.set_item("change_points", change_points)?;

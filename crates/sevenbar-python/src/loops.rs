@@ -190,7 +190,7 @@ impl Loop {
         let change_points: Vec<_> = motion
             .change_points
             .into_iter()
-            .map(|p| (p.values, p.circuits, p.ways))
+            .map(|p| (p.values, p.circuits, p.ways, p.freedoms))
             .collect();
         result.set_item("change_points", change_points)?;
         Ok(result)

@@ -47,6 +47,8 @@ pub struct ChangePoint {
     pub circuits: Vec<usize>,
     /// How many ways lead out of it.
     pub ways: usize,
+    /// The most freedoms of a motion out of it; none where it stands alone.
+    pub freedoms: usize,
 }
 
 /// What a loop does.
@@ -154,6 +156,7 @@ impl Loop {
                     .filter(|&k| point.is_on(chain, &passes[k].curve))
                     .collect(),
                 ways: point.rays.len(),
+                freedoms: point.finite,
             })
             .collect();
         let outer = |inner: usize| (0..self.columns).find(|&c| self.chain_column(c) == Some(inner));
