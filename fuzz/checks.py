@@ -273,7 +273,8 @@ def modes_are_on_circuits(motion: sb.Motion, modes: sb.Modes) -> None:
         size = motion.circuits[0].size if motion.circuits else 1.0
         return np.concatenate([np.cos(q[:, turns]), np.sin(q[:, turns]), q[:, slides] / size], axis=1)
 
-    poses = [circuit.q[_posed(circuit)] for circuit in motion]
+    # a row whose balls' turns are undefined has its other joints
+    poses = [circuit.q[circuit.status != "no-solution"] for circuit in motion]
     poses += [np.atleast_2d(point.q) for point in motion.change_points]
     known = np.concatenate(poses) if poses else np.zeros((0, modes.q.shape[1]))
     apart = cKDTree(place(known)).query(place(modes.q), p=np.inf)[0] if len(known) else np.inf

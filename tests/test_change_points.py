@@ -283,6 +283,19 @@ def test_a_sarrus_linkage_of_equal_links_passes_the_poses_in_which_it_folds(long
     assert "there it can also move with 2 freedoms" in sb.report.markdown(motion)
 
 
+@pytest.mark.parametrize("error", [0.0, 1e-11, -1e-11, 1.7e-9, -1e-7, 1e-6])
+def test_six_axes_at_right_angles_or_nearly_so(error: float) -> None:
+    """Three motions meet in one pose, one of them with the input at rest, or all but."""
+    twists = [-pi / 2, pi / 2 - error, 0] * 2
+    motion = is_whole(sb.from_dh("R" * 6, length=[0.5, 1, 0.5] * 2, twist=twists, offset=[-1, 0, 0] * 2))
+    assert len(motion.circuits) == (2 if error else 3)
+    for circuit in motion:
+        assert circuit.closed
+        # what comes back has turned as often one way as the other
+        for kind in ("input", "output"):
+            assert sum(limit.kind == kind for limit in circuit.dead_centres) in (0, 2)
+
+
 def planar_with_balls(*places: tuple[float, float]) -> sb.Linkage:
     """An RSSR whose axes are parallel: a planar four-bar, the balls in its plane."""
     at = [[x, y, 0.0] for x, y in places]

@@ -38,6 +38,10 @@ const CUT: f64 = 2e-5;
 /// Curves that pass at a distance are cut so many times as far out, where both are straight.
 const CUT_TIMES: f64 = 30.0;
 
+/// Norm of the screws' inverse at which curves are cut where it grows faster than usual, as where three of them touch: beyond, rounding
+/// hides them from each other.
+const HIDDEN: f64 = 1e7;
+
 /// Radii of the sphere, the next where curves do not run straight into the pose from the one before [rad, or parts of the size].
 const RADII: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
 
@@ -97,6 +101,8 @@ pub(super) struct Ray {
     pub start: Start,
     /// Seen from the pose, the places on the sphere and on the one of half its radius, in parts of the radius.
     seen: [Columns; 2],
+    /// How near to the pose it can be followed [rad, or parts of the size].
+    hidden: f64,
 }
 
 /// A pose at which the motion is not smooth.
@@ -298,6 +304,10 @@ impl Chain {
             }
         }
         found.partner = partners(&found.rays);
+        let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
+        if hidden < RADII[0] / LEAST_RADIUS {
+            found.cut = found.cut.max(hidden);
+        }
         Some(found)
     }
 
@@ -415,13 +425,18 @@ impl Chain {
         if first > MOST_BENT || second > 0.75 * first + STRAIGHT + 2.0 * passing * passing {
             return None;
         }
-        let (_, vectors) = singular_values(&self.screws(at));
+        let (values, vectors) = singular_values(&self.screws(at));
         let mut direction = [0.0; COLUMNS];
         direction[..self.columns].copy_from_slice(&vectors[self.columns - 1]);
         if dot(&direction, &seen[0]) < 0.0 {
             direction = direction.map(|x| -x);
         }
-        Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]] })
+        // the norm grows as a power of the distance; `outer` is at a quarter of it now
+        let norm = |values: &[f64]| values[self.columns - 2].recip();
+        let (far, near) = (norm(&values), norm(&singular_values(&self.screws(&outer)).0));
+        let power = ((near / far).log2() / 2.0).max(1.0);
+        let hidden = radius * (far / HIDDEN).powf(1.0 / power);
+        Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden })
     }
 }
 

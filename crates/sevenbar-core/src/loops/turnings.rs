@@ -9,6 +9,9 @@ const AT_REST: f64 = 1e-13;
 /// A column whose part of the unit tangent is below this stands still.
 const STILL: f64 = 1e-9;
 
+/// Places between which a column moves by less than this [rad, or parts of the size] are rounding where it rests.
+const UNMOVED: f64 = 1e-12;
+
 /// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
 const SAME_PLACE: f64 = 1e-6;
 
@@ -34,6 +37,47 @@ pub(super) struct Turning {
 impl Curve {
     /// Where a column changes direction, in order.
     pub fn turnings(&self, chain: &Chain, column: usize) -> Vec<Turning> {
+        if self.rests(column) {
+            return Vec::new();
+        }
+        let mut found = self.turnings_by(chain, column, 0.0);
+        // a column that comes back turned once more: at a change point beside which it nearly rests
+        if self.end == End::Closed && found.len() % 2 == 1 {
+            let more = self.turnings_by(chain, column, STILL);
+            if more.len() % 2 == 0 {
+                found = more;
+            }
+        }
+        self.forget_unmoved(&mut found, column);
+        found
+    }
+
+    /// Forgets places in a row, two by two, between which a column does not move: rates that are rounding have no sign.
+    fn forget_unmoved(&self, found: &mut Vec<Turning>, column: usize) {
+        let gained = match self.end {
+            End::Closed => self.gained()[column],
+            _ => f64::INFINITY,
+        };
+        while found.len() > 1 {
+            let count = found.len();
+            let moved = |k: usize| {
+                let [one, next] = [k, (k + 1) % count].map(|k| found[k].node.at.values[column]);
+                (next - one + if k + 1 < count { 0.0 } else { gained }).abs()
+            };
+            let Some(least) = (0..count).min_by(|&a, &b| moved(a).total_cmp(&moved(b))) else {
+                break;
+            };
+            if moved(least) > UNMOVED {
+                break;
+            }
+            let next = (least + 1) % count;
+            found.remove(least.max(next));
+            found.remove(least.min(next));
+        }
+    }
+
+    /// The same, where a column turns back at a change point as its rates beside have it, the first of them that is not `still`.
+    fn turnings_by(&self, chain: &Chain, column: usize, still: f64) -> Vec<Turning> {
         let mut found = Vec::new();
         let mut marks: Vec<(f64, f64)> = Vec::new();
         let rounded =
@@ -43,7 +87,7 @@ impl Curve {
         for (segment, pair) in self.nodes.windows(2).enumerate() {
             let (a, b) = (&pair[0], &pair[1]);
             if a.is_crossing() || b.is_crossing() {
-                if a.is_crossing() && self.turns_back_over(segment, column) {
+                if a.is_crossing() && self.turns_back_over(segment, column, still) {
                     found.push(Turning { segment, node: *a });
                 }
                 blurred = None;
@@ -158,8 +202,8 @@ impl Curve {
             .unwrap_or(Turning { segment: least, node: self.nodes[least] })
     }
 
-    /// Whether a column turns back at the node of a change point, as its rates at a distance have it.
-    fn turns_back_over(&self, node: usize, column: usize) -> bool {
+    /// Whether a column turns back at the node of a change point, as its rates at a distance have it, the first that is not `still`.
+    fn turns_back_over(&self, node: usize, column: usize, still: f64) -> bool {
         let last = self.nodes.len() - 1;
         let beside = |ahead: bool| {
             let mut gone = 0.0;
@@ -174,8 +218,9 @@ impl Curve {
                     (false, false) => k - 1,
                 };
                 gone += self.nodes[if ahead { k.max(1) - 1 } else { k }].step;
-                if gone > BESIDE || k == node {
-                    return self.nodes[k].rates[0][column];
+                let rate = self.nodes[k].rates[0][column];
+                if (gone > BESIDE && rate.abs() > still) || k == node {
+                    return rate;
                 }
             }
         };
