@@ -42,9 +42,9 @@ impl Curve {
         }
         let mut found = self.turnings_by(chain, column, 0.0);
         // a column that comes back turned once more: at a change point beside which it nearly rests
-        if self.end == End::Closed && found.len() % 2 == 1 {
+        if self.end == End::Closed && !found.len().is_multiple_of(2) {
             let more = self.turnings_by(chain, column, STILL);
-            if more.len() % 2 == 0 {
+            if more.len().is_multiple_of(2) {
                 found = more;
             }
         }
