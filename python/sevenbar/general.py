@@ -14,7 +14,6 @@ from sevenbar import _core
 from sevenbar.errors import RequestError
 from sevenbar.mobility import Mobility, redundant_constraints
 from sevenbar.motion import (
-    STATUSES,
     ChangePoint,
     Circuit,
     Count,
@@ -28,6 +27,7 @@ from sevenbar.motion import (
     Words,
     change_points_from,
     circuit_from,
+    status_words,
 )
 from sevenbar.written import Freedom
 
@@ -232,9 +232,11 @@ class GeneralLoop:
             order = np.append(order[:1], order[:0:-1])
             raw = _run_backwards(raw, order, kinds)
         q = raw["joints"][0]
-        status = np.array(STATUSES)[raw["status"]]
+        status = status_words(raw["status"])
         # the pose of a row may be known where a ball's turns are not
-        status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
+        undefined = np.isnan(q).any(axis=1)
+        if undefined.any():
+            status[(status == "ok") & undefined] = "turns-undefined"
         words = [
             word(kinds[column], rocks=span is not None, endless=is_endless(raw, span))
             for column, span in zip(columns, (raw["input"], raw["output"]), strict=True)

@@ -28,6 +28,8 @@ Words = npt.NDArray[np.str_]
 #: balls' turns, which a row with the pose but no rates may lack, too.
 STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
 
+_STATUS_WORDS = np.array(STATUSES)
+
 #: The status of a row of a trace on the coupler where the spin's rule names no direction.
 SPIN_UNDEFINED = "spin-undefined"
 
@@ -528,6 +530,11 @@ def _circuit_columns(circuit: Circuit, linkage: Linkage, unit: str) -> dict[str,
     return columns
 
 
+def status_words(numbers: Integers) -> Words:
+    """The status of each row by the core's number."""
+    return _STATUS_WORDS[numbers]
+
+
 def circuit_from(
     raw: Mapping[str, Any],
     *,
@@ -551,10 +558,9 @@ def circuit_from(
         velocity = sampled_extremes(dq[:, output_column], inputs)
         acceleration = sampled_extremes(ddq[:, output_column], inputs)
         jerk = sampled_extremes(dddq[:, output_column], inputs)
-    common = {
-        "status": np.array(STATUSES)[raw["status"]],
-        "output_range": raw["output"],
-    }
+    if "status" not in own:
+        own["status"] = status_words(raw["status"])
+    own.setdefault("output_range", raw["output"])
     return Circuit(
         index=index,
         turns=raw["turns"],
@@ -577,7 +583,7 @@ def circuit_from(
         output_turns=linkage.column_kinds[output_column] == "turn",
         size=size,
         _frames=linkage.point_frames,
-        **(common | own),
+        **own,
     )
 
 
@@ -587,8 +593,11 @@ def driven_time(inputs: Floats, speed: float, law: Law | None) -> Floats:
         return np.tile(law.t, len(inputs) // law.t.size)
     if inputs.size == 0:
         return np.array([])
-    steps = np.nan_to_num(np.abs(np.diff(inputs)))
-    return np.concatenate([[0.0], np.cumsum(steps)]) / abs(speed)
+    steps = np.abs(inputs[1:] - inputs[:-1])
+    steps[np.isnan(steps)] = 0.0
+    time = np.zeros(len(inputs))
+    np.cumsum(steps, out=time[1:])
+    return time / abs(speed)
 
 
 def scaled_extremes(raw: list[tuple[float, float]] | None, factor: float) -> Extremes | None:

@@ -308,14 +308,14 @@ impl Curves {
 
     /// Those modes that lie on no curve yet.
     fn unknown(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
-        modes.iter().filter(|m| !self.holds(chain, m)).copied().collect()
+        let mut modes = not_on_any(chain, &self.curves, modes.to_vec());
+        modes.retain(|m| !self.arcs.hold(chain, m));
+        modes
     }
 
     /// The same, the curves ahead aside too.
     fn unforeseen(&self, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
-        let mut modes = self.unknown(chain, modes);
-        modes.retain(|m| !lies_on_any(chain, &self.ahead, m));
-        modes
+        not_on_any(chain, &self.ahead, self.unknown(chain, modes))
     }
 
     /// Follows the closed curves through what is to come, many pieces side by side.
@@ -337,20 +337,20 @@ impl Curves {
         self.curves.iter().any(|c| lies_on(chain, c, mode)) || self.arcs.hold(chain, mode)
     }
 
-    /// The curve ahead on which a mode lies, if there is one, in this direction there.
-    fn taken_ahead(&mut self, chain: &Chain, (mode, direction): &Start) -> Option<Curve> {
-        let (k, node) = self
-            .ahead
-            .iter()
-            .enumerate()
-            .find_map(|(k, c)| Some((k, place_on(chain, c, mode)?)))?;
-        let backwards = dot(&node.rates[0], direction) < 0.0;
-        let curve = self.ahead.swap_remove(k);
-        Some(if backwards {
+    /// Which of the curves ahead leads over a mode, and the rates there.
+    fn foreseen(&self, chain: &Chain, mode: &Configuration) -> Option<(usize, Node)> {
+        let mut ahead = self.ahead.iter().enumerate();
+        ahead.find_map(|(k, curve)| Some((k, *place_on(chain, curve, mode)?)))
+    }
+
+    /// One of the curves ahead, the other way where it is told backwards.
+    fn taken_ahead(&mut self, chain: &Chain, which: usize, backwards: bool) -> Curve {
+        let curve = self.ahead.swap_remove(which);
+        if backwards {
             chain.turned_round(&curve, &[])
         } else {
             curve
-        })
+        }
     }
 
     /// Follows the motions through modes, those aside that lie on one already followed; the given column rises at first.
@@ -430,6 +430,13 @@ impl Curves {
                 self.still += 1;
                 continue;
             }
+            let foreseen = self.foreseen(chain, mode);
+            let whole = self.found.as_ref().is_some_and(|f| f.rank + 1 == chain.columns);
+            if let Some((which, node)) = foreseen.filter(|(_, n)| whole && n.inverse_norm < SHARP) {
+                starts.push((*mode, node.rates[0]));
+                curves.push(Some(self.taken_ahead(chain, which, node.rates[0][rising] < 0.0)));
+                continue;
+            }
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
             let rank = rank(&values, NO_RANK);
@@ -460,7 +467,11 @@ impl Curves {
                 direction = direction.map(|d| -d);
             }
             starts.push((*mode, direction));
-            curves.push(self.taken_ahead(chain, &(*mode, direction)));
+            curves.push(
+                foreseen.map(|(which, node)| {
+                    self.taken_ahead(chain, which, dot(&node.rates[0], &direction) < 0.0)
+                }),
+            );
         }
         let left: Vec<Start> = starts
             .iter()
@@ -551,13 +562,40 @@ pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> boo
     place_on(chain, curve, mode).is_some()
 }
 
+/// Those modes that lie on none of the curves.
+fn not_on_any(chain: &Chain, curves: &[Curve], mut modes: Vec<Configuration>) -> Vec<Configuration> {
+    for curve in curves {
+        if modes.is_empty() {
+            break;
+        }
+        // in a row, for the nodes are far apart in memory
+        let reaches: Vec<f64> = reaches(curve).collect();
+        modes.retain(|mode| place_within(chain, curve, reaches.iter().copied(), mode).is_none());
+    }
+    modes
+}
+
 /// The node of a curve from which a step leads over a mode.
 pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
+    place_within(chain, curve, reaches(curve), mode)
+}
+
+/// The most by which each step of a curve changes a turn.
+fn reaches(curve: &Curve) -> impl Iterator<Item = f64> {
+    curve.nodes.iter().map(|node| REACH * node.step)
+}
+
+fn place_within<'a>(
+    chain: &Chain,
+    curve: &'a Curve,
+    reaches: impl Iterator<Item = f64>,
+    mode: &Configuration,
+) -> Option<&'a Node> {
     // no nearer to the mode than this, in the turn that is farthest off
     let mut least = 0.0;
-    for node in &curve.nodes {
-        let reach = REACH * node.step;
+    for (k, reach) in reaches.enumerate() {
         if least <= reach {
+            let node = &curve.nodes[k];
             least = chain.farthest_turn(&node.at, mode);
             if least <= reach && chain.passes_through(node, mode).is_some() {
                 return Some(node);

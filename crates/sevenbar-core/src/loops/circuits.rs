@@ -408,12 +408,14 @@ impl<'a> Passes<'a> {
         rows
     }
 
-    /// Rows at the nodes of the first pass, the last left out.
-    pub fn node_rows(&self) -> Vec<Row> {
+    /// Rows at those nodes of the first pass from which a step leads over less than `step` of the input.
+    pub fn node_rows(&self, step: f64) -> Vec<Row> {
         let pass = &self.passes[0];
-        let nodes = &self.curve.nodes[pass.from..pass.to];
-        let mut rows = Vec::with_capacity(nodes.len());
-        self.rows_at(0, nodes.iter().map(|n| n.at.values[self.input]), &mut rows);
+        let value = |k: usize| self.curve.nodes[k].at.values[self.input];
+        let near = |a: usize, b: usize| (value(a) - value(b)).abs() < step;
+        let dense = |k: &usize| near(*k, k + 1) || (*k > pass.from && near(*k, k - 1));
+        let mut rows = Vec::new();
+        self.rows_at(0, (pass.from..pass.to).filter(dense).map(value), &mut rows);
         rows
     }
 

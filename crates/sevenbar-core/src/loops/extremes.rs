@@ -1,6 +1,6 @@
 //! The greatest and the least of the output's rates along a circuit on which the input goes round.
 //!
-//! Rows on the grid and at the nodes of the curve, which stand close where rates change fast, bracket the zeros of the next
+//! Rows on the grid and at the nodes of the curve, where these stand closer since rates change fast, bracket the zeros of the next
 //! derivative, and in these the extremes are; the jerk's, whose derivative no row has, by the rows between lesser or greater
 //! neighbours. Only those are refined that may be the greatest or the least.
 //!
@@ -33,14 +33,15 @@ const UNHALVED: usize = 8;
 
 /// The lowest and highest velocity, acceleration and jerk of the output; none where there are rows without rates.
 ///
-/// Inputs are given in the turns of the rows, which follow each other from the first on.
+/// Inputs are given in the turns of the rows, which follow each other from the first on, a `step` apart.
 pub(super) fn output_extremes(
     passes: &Passes,
     rows: &[Row],
     output: usize,
     gained: &Columns,
+    step: f64,
 ) -> [Option<Ends>; ORDERS] {
-    let at_nodes = passes.node_rows();
+    let at_nodes = passes.node_rows(step);
     let Some(first) = rows.first().map(|r| r.at.values[passes.input]) else {
         return [None; ORDERS];
     };

@@ -264,7 +264,7 @@ impl Loop {
         }
         let crosses = passes.curve.crosses();
         let extremes = if driven_round && !crosses && law.is_none() {
-            output_extremes(passes, &rows, b, &gained)
+            output_extremes(passes, &rows, b, &gained, grid.1)
         } else {
             [None; ORDERS]
         };
