@@ -28,7 +28,7 @@ def of():
 
 
 def test_the_shares_of_the_types_and_the_way_to_the_next_one_are_printed():
-    run = sevenbar("map", "rssr", "--over", "L1=10cm:40cm", "--over", "L3=300..800")
+    run = sevenbar("map", "rssr", "--over", "L1=10:40cm", "--over", "L3=300..800")
     assert (run.returncode, run.stderr) == (0, "")
     lines = [re.sub(r" +", " ", line).strip() for line in run.stdout.splitlines()]
     # the triangle below the line L3 = 2 L1
@@ -93,7 +93,7 @@ def test_json_is_printed_alone():
     assert json.loads(run.stdout)["format"] == 1
 
 
-RANGE = "as in 'L1=100:400' or 'L1=10cm:40cm'"
+RANGE = "as in 'L1=100:400' or 'L1=10:40cm'"
 MISTAKES = {
     ("rssr",): f"over: 0 dimensions given where a map has two; give a range for each of two, {RANGE}",
     (

@@ -69,12 +69,22 @@ def amount(text: str, sizes: Mapping[str, float], plain: str) -> float | None:
         >>> amount("1 in", length_sizes("mm"), "mm")
         25.4
     """
-    match = _QUANTITY.fullmatch(text.replace("\u00b0", "deg"))
-    if match is None:
+    parts = split_quantity(text)
+    if parts is None:
         return None
-    unit = match[2] or plain
-    value = float(match[1]) * sizes.get(unit, math.nan)
+    number, unit = parts
+    value = float(number) * sizes.get(unit or plain, math.nan)
     return value if math.isfinite(value) else None
+
+
+def split_quantity(text: str) -> tuple[str, str] | None:
+    """The number of a text and its unit, empty where there is none; `None` for what begins with no number.
+
+    >>> split_quantity("12 mm"), split_quantity("90\u00b0"), split_quantity("wide")
+    (('12', 'mm'), ('90', 'deg'), None)
+    """
+    match = _QUANTITY.fullmatch(text.replace("\u00b0", "deg"))
+    return None if match is None else (match[1], match[2])
 
 
 def _quotient(size: float, other: float) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 
 from sevenbar.errors import RequestError, TableError, shown, suggestion
 from sevenbar.motion import Floats, Integers
+from sevenbar.ranges import split_name
 from sevenbar.table import Table, name_and_unit, read_table, read_text
 from sevenbar.units import MeasuredUnit, measured_unit
 
@@ -163,9 +164,9 @@ def pairs(given: Iterable[str], option: str) -> dict[str, str]:
     """`{"angle": "deg"}` of words like "angle=deg"; `RequestError` for another word, or one given twice."""
     found: dict[str, str] = {}
     for word in given:
-        quantity, equals, value = word.partition("=")
-        quantity = quantity.strip().lower()
-        if not equals or not value.strip() or quantity not in QUANTITIES:
+        name, value = split_name(word) or ("", "")
+        quantity = name.lower()
+        if quantity not in QUANTITIES:
             example = "angle=deg" if option == "--unit" else "angle=2"
             raise RequestError(
                 f"{option}: {shown(word)} is not understood; give one of {', '.join(QUANTITIES)} and its "
@@ -173,7 +174,7 @@ def pairs(given: Iterable[str], option: str) -> dict[str, str]:
             )
         if quantity in found:
             raise RequestError(f"{option}: {quantity} is given twice; give it once")
-        found[quantity] = value.strip()
+        found[quantity] = value
     return found
 
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from sevenbar.draft import Dimension
 from sevenbar.errors import RequestError, shown
 from sevenbar.motion import Floats, Integers
+from sevenbar.ranges import split_grid, split_name, split_range
 
 #: Most values of one axis that are listed: the sweep's description holds each of them.
 MOST_LISTED = 1_000_000
@@ -171,22 +172,21 @@ def axis_from_text(text: str) -> tuple[str, Grid | Span | list[str]]:
 
     Raises `RequestError` for a text of another form.
 
-        >>> axis_from_text("L1=20cm:30cm:51")
+        >>> axis_from_text("L1=20:30cm:51")
         ('L1', Grid(low='20cm', high='30cm', count=51))
     """
-    name, equals, values = (part.strip() for part in text.partition("="))
-    if not (name and equals and values):
+    parts = split_name(text)
+    if parts is None:
         raise RequestError(
             f"over: {shown(text)} names no values; give a name and {FORMS}, as in L1=200:300:51"
         )
+    name, values = parts
     if ".." in values:
-        ends = [part.strip() for part in values.split("..")]
-        if len(ends) == 2 and all(ends):
+        if ends := split_range(values):
             return name, Span(*ends)
     elif ":" in values:
-        ends = [part.strip() for part in values.split(":")]
-        if len(ends) == 3 and all(ends) and ends[2].isdecimal():
-            return name, Grid(ends[0], ends[1], int(ends[2]))
+        if points := split_grid(values):
+            return name, Grid(*points)
     else:
         listed = [part.strip() for part in values.split(",")]
         if all(listed):

@@ -29,7 +29,7 @@ def map_(
     linkage: Source,
     over: Annotated[
         list[str] | None,
-        typer.Option(help="A dimension and its range, as in L1=100:400 or L1=10cm:40cm; give it twice."),
+        typer.Option(help="A dimension and its range, as in L1=100:400 or L1=10:40cm; give it twice."),
     ] = None,
     measure: Annotated[
         list[str] | None, typer.Option(help="Draw contours of this measure too; may be repeated.")

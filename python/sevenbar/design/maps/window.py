@@ -11,9 +11,10 @@ import numpy as np
 from sevenbar.draft import Dimension, Draft
 from sevenbar.errors import RequestError, shown
 from sevenbar.motion import Floats
+from sevenbar.ranges import split_named, split_range
 
 #: What a range looks like, for messages.
-EXAMPLE = "as in 'L1=100:400' or 'L1=10cm:40cm'"
+EXAMPLE = "as in 'L1=100:400' or 'L1=10:40cm'"
 
 #: A range narrower than this share of its values is lost in their rounding.
 NARROWEST = 1e-9
@@ -61,17 +62,7 @@ Range = str | Sequence[float]
 
 def split_ranges(given: Sequence[str]) -> dict[str, str]:
     """Ranges by dimension from words like 'L1=100:400'; raises `RequestError` for another form."""
-    ranges: dict[str, str] = {}
-    for word in given:
-        name, equals, span = (part.strip() for part in word.partition("="))
-        if not (name and equals and span):
-            raise RequestError(
-                f"over: {shown(word)} is not a range of a dimension; give NAME=LOW:HIGH, {EXAMPLE}"
-            )
-        if name in ranges:
-            raise RequestError(f"over: {shown(name)} is given twice; leave one out")
-        ranges[name] = span
-    return ranges
+    return split_named("over", given, "a range of a dimension", f"give NAME=LOW:HIGH, {EXAMPLE}")
 
 
 def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[Axis, Axis]:
@@ -95,9 +86,8 @@ def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[Axis, Axis]:
 def _axis(dimension: Dimension, given: Range) -> Axis:
     where = f"over: {dimension.name}"
     if isinstance(given, str):
-        # ".." as in sweeps, where two colons make a grid
-        ends = [part.strip() for part in given.replace("..", ":").split(":")]
-        if len(ends) != 2 or not all(ends):
+        ends = split_range(given)
+        if ends is None:
             raise RequestError(f"{where}: {shown(given)} is not a range; give LOW:HIGH, {EXAMPLE}")
         low, high = (dimension.read(end) for end in ends)
     else:

@@ -12,6 +12,7 @@ import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.folder import check_targets
 from sevenbar.options import Figures, Force, InputJoint, Samples, Source, Speed, figure_formats, tell_written
+from sevenbar.ranges import split_name, split_range
 
 if TYPE_CHECKING:
     from sevenbar.design.points.least import LeastPoint
@@ -131,10 +132,10 @@ def parsed_box(text: str) -> list[tuple[float, float]]:
     """The sides of a box written '-200:200,0:50,7'; a number alone is given. Raises `RequestError`."""
     sides = []
     for part in text.split(","):
-        ends = [_number(word) for word in part.split(":")]
-        if len(ends) > 2 or not all(math.isfinite(value) for value in ends):
+        low, high = (_number(end) for end in split_range(part) or (part, part))
+        if not (math.isfinite(low) and math.isfinite(high)):
             break
-        sides.append((ends[0], ends[-1]))
+        sides.append((low, high))
     if len(sides) != 3 or text.count(",") != 2:
         raise RequestError(
             f"--box: {shown(text)} is no box; give three sides low:high, as in '-200:200,-200:200,0:50'"
@@ -151,13 +152,13 @@ def parsed_masses(given: list[str]) -> dict[str, float]:
     """Masses written NAME=KILOGRAMS; `RequestError` for others, and for a point given twice."""
     found: dict[str, float] = {}
     for text in given:
-        name, sign, value = text.rpartition("=")
-        kilograms = _number(value.strip().removesuffix("kg"))
-        if not sign or not name.strip() or not math.isfinite(kilograms):
+        name, value = split_name(text) or ("", "")
+        kilograms = _number(value.removesuffix("kg"))
+        if not math.isfinite(kilograms):
             raise RequestError(f"--mass: {shown(text)} is no mass; give a point and kilograms, as in P=2.5")
-        if name.strip() in found:
-            raise RequestError(f"--mass: point {shown(name.strip())} is given twice; leave one out")
-        found[name.strip()] = kilograms
+        if name in found:
+            raise RequestError(f"--mass: point {shown(name)} is given twice; leave one out")
+        found[name] = kilograms
     return found
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shlex
 import sys
 from pathlib import Path
@@ -13,6 +12,7 @@ import typer
 from sevenbar.errors import RequestError, shown
 from sevenbar.folder import check_targets
 from sevenbar.options import Figures, Force, figure_formats, tell_written
+from sevenbar.ranges import split_range
 from sevenbar.units import ANGLES, amount, length_sizes
 
 if TYPE_CHECKING:
@@ -182,13 +182,8 @@ def numbers(option: str, text: str) -> tuple[float, float]:
 
 
 def _pair(option: str, text: str, sizes: dict[str, float], plain: str, example: str) -> tuple[float, float]:
-    parts = text.split(":")
-    if len(parts) == 2:
-        first, second = (part.strip() for part in parts)
-        # a unit at the end is that of both
-        unit = second.lstrip("+-.eE0123456789 ")
-        low = amount(first, sizes, unit if unit in sizes else plain)
-        high = amount(second, sizes, plain)
-        if low is not None and high is not None and math.isfinite(low) and math.isfinite(high):
+    if ends := split_range(text):
+        low, high = (amount(end, sizes, plain) for end in ends)
+        if low is not None and high is not None:
             return low, high
     raise RequestError(f"{option}: {shown(text)} is not a range; give two values, as in {example}")

@@ -21,6 +21,7 @@ from sevenbar.options import (
     tell_written,
     words,
 )
+from sevenbar.ranges import split_name, split_range
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.candidates import Candidate
@@ -40,7 +41,7 @@ def path(
     ] = None,
     bound: Annotated[
         list[str] | None,
-        typer.Option(help="Bounds of a dimension, as in L1=100:400 or L1=10cm:40cm; may be repeated."),
+        typer.Option(help="Bounds of a dimension, as in L1=100:400 or L1=10:40cm; may be repeated."),
     ] = None,
     place: Annotated[bool, typer.Option("--place", help="The linkage may stand anywhere in space.")] = False,
     timing: Annotated[
@@ -142,13 +143,13 @@ def _where(name: str | None, link: int | None, at: str | None) -> Where:
 
 
 def _bound(word: str) -> tuple[str, tuple[str, str]]:
-    """Name and bounds of words like "L1=100:400" and "L1=10cm:40cm"."""
-    name, _, text = word.partition("=")
-    ends = [end.strip() for end in text.split(":")]
-    if len(ends) != 2 or not all(ends):
-        example = "L1=100:400 or L1=10cm:40cm"
+    """Name and bounds of words like "L1=100:400" and "L1=10:40cm"."""
+    parts = split_name(word)
+    ends = split_range(parts[1]) if parts else None
+    if parts is None or ends is None:
+        example = "L1=100:400 or L1=10:40cm"
         raise RequestError(f"--bound: {shown(word)} is not understood; give the two ends, as in {example}")
-    return name.strip(), (ends[0], ends[1])
+    return parts[0], ends
 
 
 def _limits(transmission: str | None, size: str | None, motion_type: str | None, unit: str) -> Limits:

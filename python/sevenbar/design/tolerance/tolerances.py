@@ -13,6 +13,7 @@ import numpy as np
 from sevenbar.draft import Dimension
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.motion import Floats
+from sevenbar.ranges import split_name
 from sevenbar.units import LENGTHS
 
 #: ISO 2768-1, table 1: permissible deviations [mm] of linear dimensions up to each size [mm], from 0.5 mm on.
@@ -155,11 +156,13 @@ def parsed(given: Sequence[str]) -> dict[str, float | str]:
     """Tolerances of a command line, `L1=0.5`; raises `RequestError` for one without name or value."""
     found: dict[str, float | str] = {}
     for word in given:
-        name, equals, value = (part.strip() for part in word.partition("="))
-        if not (name and equals and value):
+        parts = split_name(word)
+        if parts is None:
             raise RequestError(
                 f"--tolerance: {shown(word)} is not a name and a half width; give one as in {_EXAMPLES}"
             )
+        name, value = parts
+        # the last of one name counts, after patterns that were given before it
         found.pop(name, None)
         found[name] = value
     return found
