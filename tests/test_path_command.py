@@ -13,7 +13,7 @@ import pytest
 
 import sevenbar as sb
 from commands import mistake, sevenbar
-from sevenbar.design.synthesis.path_table import read_path
+from sevenbar.design.curve_table import read_curve
 from sevenbar.draft import Draft
 from sevenbar.errors import TableError
 
@@ -69,7 +69,7 @@ def test_a_design_is_written_opens_and_makes_the_path(tmp_path):
         ((*ASKED, "--bound", "P.v=1:2"), "bounds: P.v begins at -55 mm, outside 1:2"),
         ((*ASKED, "--vary", "twist_1"), "vary: twist_1 cannot change alone without opening the loop"),
         ((*ASKED, "--phase"), "--phase: inputs have no say without --timing"),
-        ((*ASKED, "--timing"), "no column for the input 'theta_1'"),
+        ((*ASKED, "--timing"), "has no column for the input 'theta_1'; add one, or leave --timing out"),
         ((*ASKED, "--bound", "P.v=1cm:2cm"), "bounds: P.v begins at -55 mm, outside 10:20"),
         (
             (*ASKED, "--bound", "P.v=1deg:2"),
@@ -100,19 +100,21 @@ def test_tables_of_every_naming_hold_the_same_points(tmp_path):
         ("theta_1 [deg],P_x [m],P_y [m],P_z [m]", np.column_stack([inputs * 1e3, PATH]), 1e-3),
     ):
         timed = head.startswith("theta")
-        points, read = read_path(table(tmp_path, head, rows, scale), LINKAGE, point="P", timed=timed)
+        points, read = read_curve(table(tmp_path, head, rows, scale), LINKAGE, "theta_1", point="P")
         assert points == pytest.approx(PATH, abs=1e-11)
         if timed:
             assert read == pytest.approx(CIRCUIT.input, abs=1e-12)
-    flat, _ = read_path(table(tmp_path, "x_mm,y_mm", PATH[:, :2]), LINKAGE)
+        else:
+            assert read is None
+    flat, _ = read_curve(table(tmp_path, "x_mm,y_mm", PATH[:, :2]), LINKAGE, "theta_1")
     assert flat[:, 2].tolist() == [0.0] * 12
 
 
 @pytest.mark.parametrize(
     ("head", "told"),
     [
-        ("x,y,z", "column 'x': it has no unit; write it as in 'name [mm]'"),
-        ("x [deg],y [mm],z [mm]", "column 'x [deg]': 'deg' is no unit of it"),
+        ("x,y,z", "column 'x': has no unit; write it as in 'x [mm]'"),
+        ("x [deg],y [mm],z [mm]", "column 'x [deg]': 'deg' is not a unit of a length; give one, as in [mm]"),
         ("a [mm],b [mm],c [mm]", "no column for x; the columns are 'a [mm]', 'b [mm]', 'c [mm]'"),
         ("Q x [mm],R x [mm],y [mm]", "line 1: 'Q x [mm]' and 'R x [mm]' both hold x"),
         ("", "has no header, so the unit of its numbers is not known"),
@@ -120,14 +122,14 @@ def test_tables_of_every_naming_hold_the_same_points(tmp_path):
 )
 def test_a_table_without_units_or_names_is_told_of(tmp_path, head, told):
     with pytest.raises(TableError, match=re.escape(told)):
-        read_path(table(tmp_path, head), LINKAGE)
+        read_curve(table(tmp_path, head), LINKAGE, "theta_1")
 
 
 def test_a_gap_in_a_table_is_told_with_its_line(tmp_path):
     rows = PATH.copy()
     rows[3, 1] = np.nan
     with pytest.raises(TableError, match=r"line 5: no number in column 'y \[mm\]'"):
-        read_path(table(tmp_path, rows=rows), LINKAGE)
+        read_curve(table(tmp_path, rows=rows), LINKAGE, "theta_1")
 
 
 @pytest.mark.slow

@@ -186,11 +186,26 @@ def test_what_is_said_of_a_name_that_is_taken(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_path_from_the_tables_of_sevenbar_leads_back_to_its_point(tmp_path):
+    """With the input's column and the other columns that such a table has."""
+    linkage = sb.load("seven_r")
+    (name,) = [each.name for each in linkage.points]
+    columns = linkage.motion(24).columns()
+    first = columns["circuit"] == 0
+    table = tmp_path / "motion.csv"
+    with table.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*(values[first].tolist() for values in columns.values()), strict=True))
+    found = json.loads(run("point", "seven_r", "--link", 4, CUBE, "--curve", table, "--json"))
+    assert found["at"] == pytest.approx(list(linkage.points[0].at), abs=1e-9), name
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("x [mm],y [mm]\n1,2\n", "no column 'z'; the columns are 'x [mm]', 'y [mm]'; name them as in"),
-        ("x,y,z\n1,2,3\n", "column 'x' has no unit; write it as in 'x [mm]'"),
+        ("x [mm],z [mm]\n1,2\n", "no column for y; the columns are 'x [mm]', 'z [mm]'; name them as in"),
+        ("x,y,z\n1,2,3\n", "column 'x': has no unit; write it as in 'x [mm]'"),
         (
             "x [mm],y [deg],z [mm]\n1,2,3\n",
             "column 'y [deg]': 'deg' is not a unit of a length; give one, as in [mm]",

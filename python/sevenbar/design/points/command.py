@@ -58,8 +58,8 @@ def point(
     ] = False,
 ) -> None:
     """Find the point of a link with the least acceleration, or with a wanted path (extra 'design')."""
+    from sevenbar.design.curve_table import read_curve
     from sevenbar.design.points import findings, nearest_path_point
-    from sevenbar.design.points.curve_file import read_curve
 
     endings = figure_formats(figures, out)
     if least is not None and curve is not None:
@@ -69,7 +69,7 @@ def point(
     check_targets([out / "point.toml"] if out is not None else [], force=force)
     motion = _motion(loaded, 360, input_joint, speed, law)
     if curve is not None:
-        places, inputs = read_curve(curve, motion)
+        places, inputs = read_curve(curve, motion.linkage, motion.input)
         called = name or "nearest_path"
         nearest = nearest_path_point(
             motion, link, places, sides, inputs=inputs, circuit=circuit, branch=branch

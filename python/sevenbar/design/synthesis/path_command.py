@@ -70,9 +70,9 @@ def path(
     ] = False,
 ) -> None:
     """Linkages of a type whose point goes through wanted points in order (extra 'design')."""
+    from sevenbar.design.curve_table import read_curve
     from sevenbar.design.synthesis import path_report
     from sevenbar.design.synthesis.path import check_counts, generated, path_task
-    from sevenbar.design.synthesis.path_table import read_path
     from sevenbar.design.synthesis.told import targets
     from sevenbar.draft import Draft
     from sevenbar.files import text_of
@@ -80,7 +80,12 @@ def path(
     endings = figure_formats(figures, out)
     draft = Draft.of(text_of(linkage), linkage)
     check_targets([] if out is None else targets(out, designs, endings), force=force)
-    points, inputs = read_path(wanted, draft.linkage, point=point or "", timed=timing)
+    drive = draft.linkage.drive.joint
+    points, inputs = read_curve(wanted, draft.linkage, drive, point=point or "")
+    if timing and inputs is None:
+        raise RequestError(
+            f"--timing: {wanted} has no column for the input '{drive}'; add one, or leave --timing out"
+        )
     if phase and not timing:
         raise RequestError("--phase: inputs have no say without --timing; give both, or leave --phase out")
     task = path_task(
@@ -89,7 +94,7 @@ def path(
         _where(point, link, at),
         vary=words(vary) if vary is not None else None,
         bounds=dict(_bound(word) for word in words(bound or [])),
-        timing=inputs,
+        timing=inputs if timing else None,
         phase=phase,
         place=place,
         limits=_limits(transmission, size, motion_type, draft.linkage.length_unit),

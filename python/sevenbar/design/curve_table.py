@@ -1,0 +1,102 @@
+"""A wanted curve from a table of text: columns x, y, z with their units, perhaps the input at each place."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+
+from sevenbar.linkage import Linkage
+from sevenbar.motion import Floats
+from sevenbar.table import Table, read_table
+from sevenbar.units import measured_unit
+
+
+def read_curve(
+    path: str | os.PathLike[str], linkage: Linkage, input_joint: str, *, point: str = ""
+) -> tuple[Floats, Floats | None]:
+    """The places (n, 3) [length] of a table in the report frame, and its inputs (n,) [rad, or length].
+
+    A header names the columns and their units: `x [mm], y [mm], z [mm]`, or `P_x_mm, P_y_mm, P_z_mm` as in
+    Sevenbar's own tables (those of `point` where there are several); z may be left out: then it is 0. The
+    input's column has the name of its joint, or `input`; the inputs are `None` where there is none.
+
+    Raises `TableError` with the line and what is wrong.
+    """
+    table = read_table(Path(path), "a wanted curve")
+    unit = linkage.length_unit
+    numbers: dict[int, Floats] = {}
+    columns = []
+    for letter in "xyz":
+        place = _place(table, letter, point, unit)
+        if place is not None:
+            numbers[place] = table.numbers(place) * _size(table, place, unit, kind="slide")
+            columns.append(numbers[place])
+        elif letter == "z":
+            columns.append(np.zeros(len(table.rows)))
+        else:
+            raise table.wrong(
+                f"no column for {letter}; {table.header}; "
+                f"name them as in 'x [{unit}], y [{unit}], z [{unit}]'"
+            )
+    inputs = None
+    place = _input(table, input_joint)
+    if place is not None:
+        kind = linkage.column_kinds[linkage.columns.index(input_joint)]
+        inputs = numbers[place] = table.numbers(place) * _size(table, place, unit, kind=kind)
+    table.refuse_gaps(numbers, "leave the row out")
+    return np.column_stack(columns), inputs
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^\w.]+|_", " ", name).lower().strip()
+
+
+def _names(table: Table) -> list[str]:
+    return [_plain(table.name_and_unit(place)[0]) for place in range(len(table.names))]
+
+
+def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
+    """The column of a coordinate: of the point where it is named, else the one that is called so."""
+    names = _names(table)
+    if not any(names) and len(names) >= len("xyz"):
+        example = f"x [{unit}], y [{unit}], z [{unit}]"
+        raise table.wrong(
+            f"has no header, so the unit of its numbers is not known; write '{example}' above them"
+        )
+    for wanted in (_plain(f"{point} {letter}"), letter):
+        if wanted in names:
+            return names.index(wanted)
+    found = [place for place, name in enumerate(names) if name.endswith(f" {letter}")]
+    if len(found) > 1:
+        both = " and ".join(table.labels[place] for place in found[:2])
+        raise table.wrong(
+            f"line {table.header_line}: {both} both hold {letter}; leave one out, "
+            "or name the point that is meant"
+        )
+    return found[0] if found else None
+
+
+def _input(table: Table, joint: str) -> int | None:
+    """The column of the input; not that of its velocity, which has its name too."""
+    names = _names(table)
+    for wanted in (_plain(joint), "input"):
+        for place, name in enumerate(names):
+            unit = measured_unit(table.name_and_unit(place)[1])
+            if name == wanted and (unit is None or unit.order == 0):
+                return place
+    return None
+
+
+def _size(table: Table, place: int, length_unit: str, *, kind: str) -> float:
+    """What one of a column's unit is in the length unit, or in radians."""
+    name, written = table.name_and_unit(place)
+    what, example = ("a length", length_unit) if kind == "slide" else ("an angle", "deg")
+    if not written:
+        raise table.wrong(f"has no unit; write it as in '{name} [{example}]'", column=place)
+    unit = measured_unit(written)
+    if unit is None or (unit.kind, unit.order) != (kind, 0):
+        raise table.wrong(f"'{written}' is not a unit of {what}; give one, as in [{example}]", column=place)
+    return unit.size_in(length_unit)
