@@ -14,6 +14,7 @@ import numpy.typing as npt
 from sevenbar import _core
 from sevenbar.general import expanded, merged, pair, size_of, word
 from sevenbar.motion import Floats, Integers
+from sevenbar.schema import following_coupler
 
 if TYPE_CHECKING:
     from sevenbar.linkage import Linkage
@@ -46,6 +47,17 @@ DRIVEN = 0
 
 #: Words of the motion types of linkages or circuits.
 Words = npt.NDArray[np.object_]
+
+
+def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -> Floats:
+    """The dimensions (6, n) of n RSSRs, in the order of `RSSR_ROWS`, from numbers or arrays (n,) by name.
+
+    `follows`: L2 follows from the others, as where a file leaves it out.
+    """
+    rows = dict(own)
+    if follows:
+        rows["L2"] = following_coupler(rows["M"], rows["N"], rows["L1"], rows["L3"])
+    return np.array([np.broadcast_to(rows[name], count) for name in RSSR_ROWS], dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

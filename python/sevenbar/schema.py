@@ -5,10 +5,11 @@ This is the only model of the file format; `check` turns its errors into the mes
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
+import numpy as np
+import numpy.typing as npt
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -68,6 +69,16 @@ def _key(meaning: str, unit: str = "") -> Any:
     return Field(description=meaning, json_schema_extra={"unit": unit} if unit else None)
 
 
+def following_coupler(
+    m: npt.ArrayLike, n: npt.ArrayLike, crank: npt.ArrayLike, rocker: npt.ArrayLike
+) -> npt.NDArray[np.float64]:
+    """L2 [length] of an RSSR that leaves it out, numbers or arrays: `L2^2 = (L1 - M)^2 + L3^2 + N^2`.
+
+    Source: Sun and Zhou, eq. (7).
+    """
+    return np.hypot(np.hypot(np.subtract(crank, m), rocker), n)
+
+
 class RssrForm(_Form):
     """The layout of Sun and Zhou, Figure 2; L2 left out is `|A1 B1|` as in eq. (7)."""
 
@@ -84,7 +95,9 @@ class RssrForm(_Form):
     @property
     def coupler(self) -> float:
         """L2 [length], given or from `L2^2 = (L1 - M)^2 + L3^2 + N^2`."""
-        return math.hypot(self.L1 - self.M, self.L3, self.N) if self.L2 is None else self.L2
+        if self.L2 is not None:
+            return self.L2
+        return float(following_coupler(self.M, self.N, self.L1, self.L3))
 
 
 class JointForm(_Form):

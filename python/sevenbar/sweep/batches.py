@@ -10,7 +10,17 @@ import numpy.typing as npt
 
 from sevenbar.errors import SevenbarError
 from sevenbar.linkage import Linkage
-from sevenbar.many import INVALID, RSSR_ROWS, WORDS, Motions, Words, loop_motions, rssr_motions, rssr_types
+from sevenbar.many import (
+    INVALID,
+    RSSR_ROWS,
+    WORDS,
+    Motions,
+    Words,
+    loop_motions,
+    rssr_motions,
+    rssr_rows,
+    rssr_types,
+)
 from sevenbar.motion import Floats, Integers
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, Plan
@@ -78,11 +88,10 @@ def _dimensions(plan: Plan, values: Floats) -> tuple[Floats, Floats]:
     linkage = plan.draft.linkage
     swept = {axis.dimension.place: row for axis, row in zip(plan.space.axes, values, strict=True)}
     own = {name: swept.get(("rssr", name), linkage.dimensions[name]) for name in RSSR_ROWS}
-    if ("rssr", "L2") not in swept and "L2" not in plan.draft.raw["rssr"]:
-        own["L2"] = np.sqrt((own["L1"] - own["M"]) ** 2 + own["L3"] ** 2 + own["N"] ** 2)
+    follows = ("rssr", "L2") not in swept and "L2" not in plan.draft.raw["rssr"]
     speed = swept.get(("drive", "speed"), linkage.drive.speed)
-    shape = values.shape[1:]
-    return np.stack([np.broadcast_to(own[name], shape) for name in RSSR_ROWS]), np.broadcast_to(speed, shape)
+    count = values.shape[1]
+    return rssr_rows(own, count, follows=follows), np.broadcast_to(speed, count)
 
 
 def _of_types(plan: Plan, dimensions: Floats, threads: int) -> Block:

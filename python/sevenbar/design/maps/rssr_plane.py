@@ -10,7 +10,7 @@ from sevenbar.design.maps.critical import NEARLY_REAL, ROUNDING, critical_gaps
 from sevenbar.design.maps.plane import Kind, Plane, Progress, Take
 from sevenbar.design.maps.window import Axis
 from sevenbar.draft import Draft
-from sevenbar.many import CODES, RSSR_ROWS, rssr_motions, rssr_types
+from sevenbar.many import CODES, RSSR_ROWS, rssr_motions, rssr_rows, rssr_types
 from sevenbar.measures import Measure
 from sevenbar.motion import Floats, Integers
 
@@ -45,13 +45,12 @@ class RssrPlane(Plane):
 
     def dimensions(self, points: Floats) -> Floats:
         """M, N, L1, L2, L3, D at each point, (6, n)."""
-        values = {row: np.full(len(points), value) for row, value in self._constant.items()}
-        for axis, shares in zip(self.axes, points.T, strict=True):
-            if axis.dimension.label in self._moved:
-                values[axis.dimension.label] = axis.value(shares)
-        if self._follows:
-            values["L2"] = np.hypot(np.hypot(values["L1"] - values["M"], values["L3"]), values["N"])
-        return np.array([values[row] for row in RSSR_ROWS])
+        moved = {
+            axis.dimension.label: axis.value(shares)
+            for axis, shares in zip(self.axes, points.T, strict=True)
+            if axis.dimension.label in self._moved
+        }
+        return rssr_rows({**self._constant, **moved}, len(points), follows=self._follows)
 
     def numbers_at(self, points: Floats) -> Integers:
         """The number of the kind at each point as it is, (n,)."""

@@ -20,6 +20,7 @@ import numpy as np
 from sevenbar.draft import Draft
 from sevenbar.linkage import Linkage, Point
 from sevenbar.motion import Floats
+from sevenbar.schema import following_coupler
 
 #: Below this sine of the angle between a coupler and the axis before it another axis holds its spin.
 SPIN_UNDEFINED = 1e-8
@@ -137,7 +138,7 @@ class PointWord:
         """The coupler where a file leaves it out: `L2^2 = (L1 - M)^2 + L3^2 + N^2`."""
         numbers = {key: self._numbers["rssr", key] for key in ("M", "N", "L1", "L3")}
         m, n, crank, rocker = (values[number] for number in numbers.values())
-        length = math.sqrt((crank - m) ** 2 + rocker**2 + n**2)
+        length = float(following_coupler(m, n, crank, rocker))
         parts = {"M": m - crank, "N": n, "L1": crank - m, "L3": rocker}
         return Amount(length, dimensions={numbers[key]: part / length for key, part in parts.items()})
 
