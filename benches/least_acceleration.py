@@ -9,8 +9,9 @@ import time
 import numpy as np
 
 import sevenbar as sb
+from sevenbar.arrays import Floats
 from sevenbar.design.points import least_acceleration_point
-from sevenbar.motion import Circuit, Floats
+from sevenbar.motion import Circuit
 
 LINK, SIDE = 4, 200.0
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import sevenbar as sb
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 from sevenbar.studio.curves import panels
 from sevenbar.studio.panel import Panel
 from sevenbar.studio.picture import GRID

@@ -11,7 +11,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar import gallery, skeleton
-from sevenbar.motion import Floats, Motion
+from sevenbar.arrays import Floats
+from sevenbar.motion import Motion
 from sevenbar.scene import INPUT, OUTPUT
 from sevenbar.skeleton import LINK_ENDS, Chain, Skeleton
 from sevenbar.studio.poses import stretched, turns

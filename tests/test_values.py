@@ -14,12 +14,13 @@ import pytest
 
 import sevenbar as sb
 from sevenbar import gallery
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.expression import function_of
 from sevenbar.design.synthesis.wish import wish_of_function
 from sevenbar.draft import Draft
 from sevenbar.errors import RequestError
 from sevenbar.measures import MEASURES, Measure, measures_named
-from sevenbar.motion import Circuit, Floats, Law
+from sevenbar.motion import Circuit, Law
 
 SAMPLES = 24
 

@@ -19,9 +19,10 @@ from matplotlib.artist import Artist
 from PIL import Image
 
 from sevenbar import plot, scene, skeleton
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
 from sevenbar.figure import STYLE, new_figure, shown_value, slides, title, written_whole
-from sevenbar.motion import Circuit, Floats, Motion, chosen_circuit
+from sevenbar.motion import Circuit, Motion, chosen_circuit
 
 Picture = npt.NDArray[np.uint8]
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from sevenbar import _core
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.motion import (
     SPIN_UNDEFINED,
     Circuit,
     Extremes,
-    Floats,
     Law,
     Modes,
     Motion,

@@ -14,8 +14,9 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import OutputError, shown
-from sevenbar.motion import Circuit, Floats, Motion
+from sevenbar.motion import Circuit, Motion
 from sevenbar.skeleton import short
 
 #: What a figure can be written as.

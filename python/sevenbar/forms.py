@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.linkage import Drive, Joint, Linkage, Point, inverse, pose
-from sevenbar.motion import Floats
 from sevenbar.proportions import disproportions
 
 if TYPE_CHECKING:

@@ -11,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar import _core
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.mobility import Mobility, redundant_constraints
 from sevenbar.motion import (
     ChangePoint,
     Circuit,
     Count,
-    Floats,
     Integers,
     Law,
     Modes,

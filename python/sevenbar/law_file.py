@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
 from sevenbar.linkage import MOST_SAMPLES, Linkage
-from sevenbar.motion import Floats, Law
+from sevenbar.motion import Law
 from sevenbar.table import Table, read_table
 from sevenbar.units import measured_unit
 

@@ -10,21 +10,12 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.closed_form import ClosedForm
 from sevenbar.errors import NotCoveredError, RequestError, no_joint, shown
 from sevenbar.general import GeneralLoop
 from sevenbar.mobility import Mobility
-from sevenbar.motion import (
-    Circuit,
-    Floats,
-    Law,
-    Modes,
-    Motion,
-    Output,
-    finite_array,
-    finite_number,
-    real_array,
-)
+from sevenbar.motion import Circuit, Law, Modes, Motion, Output
 from sevenbar.units import sliding_speed, turning_speed
 from sevenbar.written import FREEDOMS, Freedom, column_names
 

@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar import _core
+from sevenbar.arrays import Floats
 from sevenbar.general import expanded, merged, pair, size_of, word
-from sevenbar.motion import Floats, Integers
+from sevenbar.motion import Integers
 from sevenbar.schema import following_coupler
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 
 
 @dataclass(frozen=True)

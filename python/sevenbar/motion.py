@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence, Sized
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal
-from numbers import Real
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import MissingExtraError, RequestError, shown
 
 if TYPE_CHECKING:
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from sevenbar.linkage import Linkage
     from sevenbar.mobility import Mobility
 
-Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 Words = npt.NDArray[np.str_]
 
@@ -628,51 +626,3 @@ def chosen_circuit(motion: Motion, index: int) -> Circuit:
         allowed = "0" if count == 1 else f"0 to {count - 1}"
         raise RequestError(f"circuit: {shown(index)} is not a circuit of this motion; give {allowed}")
     return motion.circuits[index]
-
-
-def finite_array(name: str, values: npt.ArrayLike) -> Floats:
-    """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
-    array = real_array(name, values)
-    bad = np.flatnonzero(~np.isfinite(array))
-    if bad.size:
-        raise RequestError(f"{name}[{bad[0]}]: {array[bad[0]]} is not a finite number")
-    return array
-
-
-def finite_number(name: str, value: npt.ArrayLike) -> float:
-    """One finite number, or `RequestError`."""
-    array = real_array(name, value)
-    if array.size != 1:
-        raise RequestError(f"{name}: {array.size} values where one belongs; give one number")
-    number = float(array[0])
-    if not math.isfinite(number):
-        raise RequestError(f"{name}: {number} is not a finite number")
-    return number
-
-
-def real_array(name: str, values: npt.ArrayLike) -> Floats:
-    """A one-dimensional array of real numbers, finite or not, or `RequestError`; a number is an array of one.
-
-    NumPy alone would take texts, truth values and `None` for numbers.
-    """
-    try:
-        given = np.asarray(values)
-        array = np.ascontiguousarray(given, dtype=np.float64) if _is_real(given) else None
-    except (TypeError, ValueError, OverflowError):
-        array = None
-    if array is None:
-        wanted = (
-            "an array of numbers" if isinstance(values, Sized) and not isinstance(values, str) else "a number"
-        )
-        raise RequestError(f"{name}: {shown(values)} is not {wanted}; give {wanted}")
-    if given.ndim > 1:
-        raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give one dimension")
-    return array.reshape(-1)
-
-
-def _is_real(array: npt.NDArray[Any]) -> bool:
-    # integers beyond 64 bits come as objects, as do a caller's own kinds of numbers
-    return array.dtype.kind in "iuf" or (
-        array.dtype.kind == "O"
-        and all(isinstance(x, Real | Decimal) and not isinstance(x, bool) for x in array.flat)
-    )

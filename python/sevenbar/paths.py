@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.figure import (
     CIRCUIT_COLOURS,
@@ -26,7 +27,7 @@ from sevenbar.figure import (
     title,
 )
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Floats, Integers, Modes, Motion, chosen_circuit
+from sevenbar.motion import Circuit, Integers, Modes, Motion, chosen_circuit
 from sevenbar.scene import INPUT, OUTPUT, chain_bars, chain_keys, prepare_view, put, stage_chain
 from sevenbar.skeleton import chain, frames_of, one_pose, short, walk
 

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.figure import (
     CIRCUIT_COLOURS,
@@ -32,7 +33,7 @@ from sevenbar.figure import (
     title,
     told_range,
 )
-from sevenbar.motion import Circuit, Extremes, Floats, Motion, chosen_circuit
+from sevenbar.motion import Circuit, Extremes, Motion, chosen_circuit
 from sevenbar.paths import joints, modes_overview, point_path
 from sevenbar.scene import bars, label, link_keys, put, stage
 from sevenbar.skeleton import Skeleton, skeleton, walk

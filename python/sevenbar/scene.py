@@ -12,8 +12,9 @@ from matplotlib.patheffects import Normal, withStroke
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[import-untyped]
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats, Motion
+from sevenbar.motion import Motion
 from sevenbar.skeleton import A0, B0, LINK_ENDS, A, B, Chain, Skeleton, short
 
 #: Colours of Okabe and Ito, told apart by colour-blind readers too.

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 from sevenbar.table import Table, read_table
 from sevenbar.units import measured_unit
 

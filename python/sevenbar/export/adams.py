@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
 from sevenbar.linkage import inverse
 from sevenbar.linkage import pose as matrix
-from sevenbar.motion import Floats
 from sevenbar.units import LENGTHS
 
 #: The names ADAMS has for length units; micrometres are written in millimetres.

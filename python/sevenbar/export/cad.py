@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, OutputError
 from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid, across
-from sevenbar.motion import Floats
 from sevenbar.units import LENGTHS
 
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
-from sevenbar.motion import Floats
 from sevenbar.units import LENGTHS
 
 #: Of steel [kg/m^3].

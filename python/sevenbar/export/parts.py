@@ -11,9 +11,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.export.pose import Pose, shortest_link, size_of
 from sevenbar.linkage import inverse
-from sevenbar.motion import Floats
 from sevenbar.scene import GROUND, JOINT, chain_colours
 from sevenbar.skeleton import CYLINDER
 

@@ -8,9 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Floats, Law, Motion, chosen_circuit
+from sevenbar.motion import Circuit, Law, Motion, chosen_circuit
 from sevenbar.skeleton import Chain, chain, frames_along
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.

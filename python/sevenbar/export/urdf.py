@@ -10,10 +10,10 @@ from xml.etree import ElementTree as Xml
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.linkage import Joint
-from sevenbar.motion import Floats
 from sevenbar.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the next link's.

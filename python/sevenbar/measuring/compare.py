@@ -14,11 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.linkage import Linkage
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
-from sevenbar.motion import Floats, Law
+from sevenbar.motion import Law
 from sevenbar.units import sliding_speed, turning_speed
 
 #: What may be aligned.

@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from sevenbar.arrays import Floats
 from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure
 from sevenbar.measuring.calibrate import Calibration
 from sevenbar.measuring.compare import Comparison
 from sevenbar.measuring.measured import Ends
-from sevenbar.motion import Floats
 from sevenbar.skeleton import short
 
 COMPUTED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.6, "zorder": 2}

@@ -15,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, TableError, shown, suggestion
-from sevenbar.motion import Floats, Integers
+from sevenbar.motion import Integers
 from sevenbar.ranges import split_name
 from sevenbar.table import Table, name_and_unit, read_table, read_text
 from sevenbar.units import MeasuredUnit, measured_unit

@@ -29,9 +29,9 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 
 #: Arrays of real numbers, or of complex ones within a complex step.
 Numbers = npt.NDArray[Any]

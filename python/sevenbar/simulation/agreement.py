@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
 from sevenbar.simulation.joint_values import Bodies, JointValues, joint_values

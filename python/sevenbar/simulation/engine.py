@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
-from sevenbar.motion import Floats
 
 #: Told of steps done and steps in all.
 Progress = Callable[[int, int], None]

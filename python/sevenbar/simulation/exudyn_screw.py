@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import pose
-from sevenbar.motion import Floats
 from sevenbar.simulation.prototype import GROUND, Connection
 
 

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
+from sevenbar.arrays import Floats
 from sevenbar.figure import CIRCUIT_COLOURS, STYLE, input_label, new_figure, shown_value, slides
-from sevenbar.motion import Floats
 from sevenbar.simulation.agreement import Simulation
 from sevenbar.skeleton import short
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Joint, Linkage
-from sevenbar.motion import Floats
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import inverse
-from sevenbar.motion import Floats
 from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
 from sevenbar.units import LENGTHS
 

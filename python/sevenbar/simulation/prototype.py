@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.linkage import Linkage, inverse, pose
-from sevenbar.motion import Circuit, Floats
+from sevenbar.motion import Circuit
 from sevenbar.skeleton import frames_along
 
 #: The number of the ground among the bodies.

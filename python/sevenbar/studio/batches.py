@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 from sevenbar.studio.poses import Colours, Poses
 from sevenbar.studio.shapes import mesh
 

@@ -10,9 +10,10 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.figure import CIRCUIT_COLOURS, input_label, shown_value, slides, told_range
-from sevenbar.motion import Extremes, Floats, Motion, chosen_circuit
+from sevenbar.motion import Extremes, Motion, chosen_circuit
 from sevenbar.plot import inputs_between, place_of
 from sevenbar.studio.axis import Axis, axis
 from sevenbar.studio.panel import Panel

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 from sevenbar.skeleton import A0, AXIS, B0, LINK_ENDS, Chain, Skeleton
 
 #: Two places, from and to.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 from sevenbar.studio.axis import Axis
 from sevenbar.studio.picture import FONT, GROUND, HALO, INK, Frame, breadth, words
 

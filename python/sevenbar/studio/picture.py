@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 from sevenbar.skeleton import short
 from sevenbar.studio.axis import Axis
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.motion import Floats, Integers
+from sevenbar.arrays import Floats
+from sevenbar.motion import Integers
 
 #: For each shape of `shapes.mesh`: orientations wxyz (N, 4), positions (N, 3), scales (N, 3).
 Poses = dict[str, tuple[Floats, Floats, Floats]]

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.figure import shown_value, slides
-from sevenbar.motion import Circuit, Floats, Motion, Trace
+from sevenbar.motion import Circuit, Motion, Trace
 from sevenbar.skeleton import Walk, along, walk
 
 #: What a column has, by the order of its derivative, as the figures call them.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import viser
 
+from sevenbar.arrays import Floats
 from sevenbar.figure import CIRCUIT_COLOURS
-from sevenbar.motion import Floats
 from sevenbar.skeleton import places_of
 from sevenbar.studio.controls import Asked
 from sevenbar.studio.session import Session

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 
 #: Corners (v, 3) and triangles (f, 3), counter-clockwise seen from outside.
 Mesh = tuple[Floats, npt.NDArray[np.int64]]

@@ -10,8 +10,8 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.colors import to_rgb
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 from sevenbar.scene import GROUND, JOINT, POINT_COLOURS, chain_colours
 from sevenbar.skeleton import Skeleton
 from sevenbar.studio.layout import NOWHERE, JointPlaces, Layout, Pair, layout

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from viser import GridHandle, LineSegmentsHandle, SceneApi
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 from sevenbar.scene import PATH, POINT_COLOURS, chain_colours, view
 from sevenbar.skeleton import A, Chain, Skeleton
 from sevenbar.studio.batches import Batches, Labels

@@ -8,8 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Floats, Motion, Trace
+from sevenbar.motion import Circuit, Motion, Trace
 from sevenbar.skeleton import Skeleton, Walk, along, skeleton, walk
 from sevenbar.summary import joint_text
 

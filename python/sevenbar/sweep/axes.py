@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.draft import Dimension
 from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Floats, Integers
+from sevenbar.motion import Integers
 from sevenbar.ranges import split_grid, split_name, split_range
 
 #: Most values of one axis that are listed: the sweep's description holds each of them.

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import SevenbarError
 from sevenbar.linkage import Linkage
 from sevenbar.many import (
@@ -21,7 +22,7 @@ from sevenbar.many import (
     rssr_rows,
     rssr_types,
 )
-from sevenbar.motion import Floats, Integers
+from sevenbar.motion import Integers
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, Plan
 

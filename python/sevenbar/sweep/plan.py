@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from sevenbar import __version__
+from sevenbar.arrays import Floats
 from sevenbar.draft import Draft
 from sevenbar.linkage import Linkage
 from sevenbar.many import simd_level
 from sevenbar.measures import MEASURES, Measure, measures_named
-from sevenbar.motion import Floats, Motion
+from sevenbar.motion import Motion
 from sevenbar.sweep.axes import Given, whole_number
 from sevenbar.sweep.space import Space
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, RequestError, shown
-from sevenbar.motion import Floats
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.block import NO_CIRCUIT, Block, limit_names, per_circuit
 from sevenbar.sweep.ordinary import analysed

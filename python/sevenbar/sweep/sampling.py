@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
-from sevenbar.motion import Floats
 
 Words = npt.NDArray[np.uint64]
 

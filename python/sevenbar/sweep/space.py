@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.motion import Floats
 from sevenbar.sweep.axes import Axis, Given, axis_of, whole_number
 from sevenbar.sweep.sampling import MOST_SOBOL, latin_points, random_points, sobol_points
 

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions, within
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
@@ -17,7 +18,7 @@ from sevenbar.design.maps.window import Axis, Range, axes_of
 from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, shown
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats, Integers, Motion
+from sevenbar.motion import Integers, Motion
 
 #: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
 GRID, LOOP_GRID = 61, 25

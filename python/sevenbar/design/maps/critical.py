@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 
 #: Powers of the trigonometric polynomial whose zeros are the critical angles, and samples that give it.
 DEGREE, SAMPLES = 4, 16

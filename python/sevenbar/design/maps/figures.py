@@ -14,13 +14,13 @@ from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 
+from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
 from sevenbar.design.maps.lettering import LINE, RASTER, names, take
 from sevenbar.design.maps.plane import Kind
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.figure import STYLE, new_figure
-from sevenbar.motion import Floats
 from sevenbar.skeleton import short
 
 #: Sheets of paper, width and height [inch].

@@ -10,10 +10,10 @@ import numpy as np
 from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
+from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, Step
 from sevenbar.design.maps.heights import Heights
 from sevenbar.folder import fill_folder, write_csv
-from sevenbar.motion import Floats
 from sevenbar.page import Facts, number_table
 from sevenbar.report import json_text
 

@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
+from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.outline import within
-from sevenbar.motion import Floats
 
 #: Places across a map where the name of a region is tried.
 RASTER = 160

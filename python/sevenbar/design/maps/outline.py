@@ -10,8 +10,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.maps.mesh import Mesh, Node
-from sevenbar.motion import Floats
 
 Place = tuple[float, float]
 

@@ -10,11 +10,12 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.maps.window import Axis
 from sevenbar.draft import Draft
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.measures import Measure, rows_of
-from sevenbar.motion import Floats, Integers, Motion
+from sevenbar.motion import Integers, Motion
 
 #: Counts the motions that were solved, and those in sight.
 Progress = Callable[[int, int], None]

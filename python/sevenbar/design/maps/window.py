@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.draft import Dimension, Draft
 from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Floats
 from sevenbar.ranges import split_named, split_range
 
 #: What a range looks like, for messages.

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
-from sevenbar.motion import Floats
 
 #: What Clarabel is asked for, relative and absolute, in scaled variables; below, rounding is in its way.
 TOLERANCE = 1e-9

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Circuit, Floats, Law, Motion, Trace, chosen_circuit, finite_array
+from sevenbar.motion import Circuit, Law, Motion, Trace, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
 ORDERS = ("position", "velocity", "acceleration", "jerk")

@@ -12,13 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from sevenbar.arrays import Floats
 from sevenbar.design.points.cycle import Cycle
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import ZERO, LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles
 from sevenbar.figure import CIRCUIT_COLOURS, LINE_STYLES, STYLE, input_label, new_figure, slides
-from sevenbar.motion import Floats
 from sevenbar.scene import prepare_view
 from sevenbar.skeleton import short
 

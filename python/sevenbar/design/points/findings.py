@@ -10,6 +10,7 @@ import numpy as np
 from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
+from sevenbar.arrays import Floats
 from sevenbar.design.points.cycle import Cycle, told_input
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import LeastPoint
@@ -17,7 +18,6 @@ from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles, poles_of
 from sevenbar.figure import save, slides
 from sevenbar.folder import fill_folder, write_columns
-from sevenbar.motion import Floats
 from sevenbar.page import Facts, number_table
 from sevenbar.report import json_text
 

@@ -19,9 +19,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.motion import Floats, Motion, finite_array
+from sevenbar.motion import Motion
 from sevenbar.units import LENGTHS
 
 

@@ -16,11 +16,12 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, told_input
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Floats, Integers, Motion, finite_array
+from sevenbar.motion import Integers, Motion
 
 #: Starts along each side of the box: from the 27 points of a grid the basins of a closed curve are met.
 STARTS = 3

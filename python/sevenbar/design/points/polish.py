@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.design.points.cone import lower_bound
 from sevenbar.design.points.cycle import ORDERS, Cycle
-from sevenbar.motion import Floats
 
 #: Steps of Newton's method; each doubles the digits, of which the interior-point method gives the first four.
 STEPS = 5

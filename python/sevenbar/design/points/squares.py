@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
-from sevenbar.motion import Floats
 
 
 def least_squares_in(constant: Floats, gradient: Floats, low: Floats, high: Floats) -> tuple[Floats, float]:

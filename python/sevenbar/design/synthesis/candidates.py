@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.closure import row_of, transmissions
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.draft import Draft
@@ -18,7 +19,7 @@ from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.files import loads
 from sevenbar.folder import fill_folder, write_csv
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Floats, Integers, Motion
+from sevenbar.motion import Circuit, Integers, Motion
 
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.
 CHECK_SAMPLES = 720

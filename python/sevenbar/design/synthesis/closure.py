@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.draft import Draft
-from sevenbar.motion import Floats
 
 #: The dimensions of a design, in the order of its row.
 NAMES = ("M", "N", "L1", "L2", "L3", "D")

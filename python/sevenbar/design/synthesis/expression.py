@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.motion import Floats
 
 #: Longest text of a function; a parser's depth is bounded with it.
 LONGEST = 200

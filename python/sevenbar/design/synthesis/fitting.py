@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.closure import (
     output_slopes,
     outputs,
@@ -32,7 +33,6 @@ from sevenbar.design.synthesis.closure import (
 from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits, size_room, turning_room
 from sevenbar.design.synthesis.programs import MISSED, Heights, lowered
 from sevenbar.design.synthesis.wish import Wish
-from sevenbar.motion import Floats
 
 #: Columns of a row (6,) that are unknown: all but L3.
 FREE = (0, 1, 2, 3, 5)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -31,7 +32,6 @@ from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
 from sevenbar.design.synthesis.precision import designs_of, reflected, system, through
 from sevenbar.design.synthesis.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import MissingExtraError, RequestError
-from sevenbar.motion import Floats
 
 #: What a design must keep to where nothing else is asked for.
 USUAL = Limits(transmission_lowest=math.radians(30))

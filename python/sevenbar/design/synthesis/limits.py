@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.closure import transmission_slopes, transmissions
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.motion import Floats
 
 #: What a linkage can be asked to be, seen from its input.
 MOTION_TYPES = ("crank-rocker", "double-crank", "rocker-crank", "double-rocker")

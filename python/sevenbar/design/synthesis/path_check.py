@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked
 from sevenbar.design.synthesis.path_match import STILL, Placing, placed
 from sevenbar.design.synthesis.path_refine import Refined
@@ -16,7 +17,7 @@ from sevenbar.design.synthesis.path_task import PathTask
 from sevenbar.draft import Draft
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats, Law
+from sevenbar.motion import Law
 
 #: How much further off than the solution, in parts of its error and of the path's extent, the points may be
 #: on one pass: more, and the solution lies on several.

@@ -22,10 +22,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.path_word import PointWord, Step
 from sevenbar.draft import Draft
 from sevenbar.linkage import Point
-from sevenbar.motion import Floats
 
 #: Newton's steps on the closure: the most, the longest [rad, or parts of the size], the error that ends.
 MOST_STEPS, LONGEST, CLOSED = 12, 0.25, 1e-13

@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate
 from sevenbar.design.synthesis.path_check import made
 from sevenbar.design.synthesis.path_task import PathTask
 from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure
-from sevenbar.motion import Floats
 from sevenbar.scene import prepare_view
 from sevenbar.skeleton import short
 

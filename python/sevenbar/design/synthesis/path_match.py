@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.motion import Floats, Integers
+from sevenbar.arrays import Floats
+from sevenbar.motion import Integers
 
 #: Places along the wanted path, and along a curve, at which shapes are compared.
 SHAPE, CURVE = 24, 96

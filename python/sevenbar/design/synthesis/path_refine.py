@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.synthesis.path_match import STILL, Placing, placed
 from sevenbar.design.synthesis.path_search import Seed
 from sevenbar.design.synthesis.path_task import PathTask
-from sevenbar.motion import Floats
 
 #: Evaluations of a first look, and of a design that is kept.
 LOOK, WHOLE = 40, 400

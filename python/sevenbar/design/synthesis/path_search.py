@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.path_match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.design.synthesis.path_task import PathTask
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
-from sevenbar.motion import Circuit, Floats, Integers
+from sevenbar.motion import Circuit, Integers
 
 #: Inputs of a turn at which a start's circuits are looked at.
 SAMPLES = 72

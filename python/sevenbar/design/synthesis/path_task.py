@@ -11,12 +11,12 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.design.synthesis.path_closure import PointClosure
 from sevenbar.draft import Dimension, Draft
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
 from sevenbar.linkage import Linkage, Point
-from sevenbar.motion import Floats, finite_array
 
 #: Points of a wanted path: fewer say nothing of a curve; more only cost time, each is an unknown.
 FEWEST_POINTS, MOST_POINTS = 3, 200

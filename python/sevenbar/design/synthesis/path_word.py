@@ -17,9 +17,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.draft import Draft
 from sevenbar.linkage import Linkage, Point
-from sevenbar.motion import Floats
 from sevenbar.schema import following_coupler
 
 #: Below this sine of the angle between a coupler and the axis before it another axis holds its spin.

@@ -28,7 +28,7 @@ import math
 
 import numpy as np
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 
 #: Points that determine a design with both zeros given, and with neither.
 FIXED_ZEROS_MOST, FREE_ZEROS_MOST = 5, 7

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.motion import Floats
+from sevenbar.arrays import Floats
 
 #: Most programs.
 MOST_STEPS = 60

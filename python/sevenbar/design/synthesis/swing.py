@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -35,7 +36,6 @@ from sevenbar.design.synthesis.limits import Limits, size_room, turning_room
 from sevenbar.design.synthesis.precision import reflected
 from sevenbar.design.synthesis.programs import Heights, lowered
 from sevenbar.errors import RequestError
-from sevenbar.motion import Floats
 
 #: Designs of the global search, and inputs of a turn at which they are looked at.
 SEARCHED, LOOKED_AT = 16384, 72

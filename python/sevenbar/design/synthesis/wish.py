@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.synthesis.precision import FEWEST, FREE_ZEROS_MOST, chebyshev
 from sevenbar.errors import RequestError
-from sevenbar.motion import Floats, finite_array
 from sevenbar.table import read_table
 from sevenbar.units import measured_unit
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.loop import Loop, Poses
 from sevenbar.design.tolerance.outputs import QUANTITIES, values_of
-from sevenbar.motion import Floats
 
 #: Steps in which a change is made where it is too great for one.
 PARTS = 8

@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import CLASSES, in_class
 from sevenbar.draft import Dimension
@@ -26,7 +27,6 @@ from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.linkage import Linkage
 from sevenbar.measuring.extremes import ExtremesComparison, compare_extremes
 from sevenbar.measuring.measured import Ends, MeasuredExtremes
-from sevenbar.motion import Floats
 
 #: Steps of the fixed J on the exact extremes, and the step [parts of the size] that ends them.
 MOST_STEPS, SETTLED = 40, 1e-9

@@ -8,11 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import plain, told_name, unit_of
 from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure
-from sevenbar.motion import Floats, Integers
+from sevenbar.motion import Integers
 from sevenbar.skeleton import short
 
 #: Bars beyond the first so many share one, and their height [inch].

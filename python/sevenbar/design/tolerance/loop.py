@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.numbers import BALL_AXES, Numbered
 from sevenbar.design.tolerance.rigid import (
     Numbers,
@@ -40,7 +41,7 @@ from sevenbar.design.tolerance.rigid import (
     then,
 )
 from sevenbar.errors import NotCoveredError
-from sevenbar.motion import Floats, Integers
+from sevenbar.motion import Integers
 
 #: The complex step: its square is nothing beside 1.
 STEP = 1e-30

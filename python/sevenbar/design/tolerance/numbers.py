@@ -17,6 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.rigid import (
     Numbers,
     Rigid,
@@ -30,7 +31,6 @@ from sevenbar.design.tolerance.rigid import (
 )
 from sevenbar.draft import Dimension, Draft
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 from sevenbar.written import FREEDOMS
 
 #: The axes of a ball's turns, and that of all other columns.

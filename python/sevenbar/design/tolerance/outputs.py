@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.loop import STEP, Loop, Poses
 from sevenbar.design.tolerance.numbers import BALL_AXES
 from sevenbar.design.tolerance.rigid import Numbers, about, cross, moved, product
-from sevenbar.motion import Floats
 
 #: The quantities of a joint, by the order of the derivative, and what time does to their units.
 QUANTITIES = ("position", "velocity", "acceleration")

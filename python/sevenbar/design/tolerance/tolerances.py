@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.draft import Dimension
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.motion import Floats
 from sevenbar.ranges import split_name
 from sevenbar.units import LENGTHS
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
-from sevenbar.motion import Floats
 
 
 def told_name(linear: Linear) -> str:

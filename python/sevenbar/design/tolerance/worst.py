@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.exact import Designs
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.linkage import Linkage
-from sevenbar.motion import Floats
 
 
 @dataclass(frozen=True, eq=False)

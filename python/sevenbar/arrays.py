@@ -1,0 +1,65 @@
+"""Numbers and arrays that callers give: finite reals, or one clear message."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sized
+from decimal import Decimal
+from numbers import Real
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.errors import RequestError, shown
+
+#: An array of real numbers; each docstring says of what shape and unit.
+Floats = npt.NDArray[np.float64]
+
+
+def finite_array(name: str, values: npt.ArrayLike) -> Floats:
+    """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
+    array = real_array(name, values)
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise RequestError(f"{name}[{bad[0]}]: {array[bad[0]]} is not a finite number")
+    return array
+
+
+def finite_number(name: str, value: npt.ArrayLike) -> float:
+    """One finite number, or `RequestError`."""
+    array = real_array(name, value)
+    if array.size != 1:
+        raise RequestError(f"{name}: {array.size} values where one belongs; give one number")
+    number = float(array[0])
+    if not math.isfinite(number):
+        raise RequestError(f"{name}: {number} is not a finite number")
+    return number
+
+
+def real_array(name: str, values: npt.ArrayLike) -> Floats:
+    """A one-dimensional array of real numbers, finite or not, or `RequestError`; a number is an array of one.
+
+    NumPy alone would take texts, truth values and `None` for numbers.
+    """
+    try:
+        given = np.asarray(values)
+        array = np.ascontiguousarray(given, dtype=np.float64) if _is_real(given) else None
+    except (TypeError, ValueError, OverflowError):
+        array = None
+    if array is None:
+        wanted = (
+            "an array of numbers" if isinstance(values, Sized) and not isinstance(values, str) else "a number"
+        )
+        raise RequestError(f"{name}: {shown(values)} is not {wanted}; give {wanted}")
+    if given.ndim > 1:
+        raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give one dimension")
+    return array.reshape(-1)
+
+
+def _is_real(array: npt.NDArray[Any]) -> bool:
+    # integers beyond 64 bits come as objects, as do a caller's own kinds of numbers
+    return array.dtype.kind in "iuf" or (
+        array.dtype.kind == "O"
+        and all(isinstance(x, Real | Decimal) and not isinstance(x, bool) for x in array.flat)
+    )
