@@ -296,6 +296,16 @@ def test_six_axes_at_right_angles_or_nearly_so(error: float) -> None:
             assert sum(limit.kind == kind for limit in circuit.dead_centres) in (0, 2)
 
 
+def test_what_moves_but_for_rounding_is_told_to_move_by_mobility_too() -> None:
+    """The rows of a folded loop with two idle turns, twists a billionth off: of full rank, but closed all along."""
+    rows = [(0, 0, 2), (2, 0, 1), (0, 89.9999999, -1), (1, 89.9999999, 0)] * 2
+    lengths, twists, offsets = zip(*rows, strict=True)
+    loop = sb.from_dh("R" * 8, length=lengths, twist=[radians(twist) for twist in twists], offset=offsets)
+    motion = loop.motion(SAMPLES)
+    assert len(motion.circuits) == 1
+    assert motion.mobility.finite == loop.mobility().finite == 1
+
+
 def planar_with_balls(*places: tuple[float, float]) -> sb.Linkage:
     """An RSSR whose axes are parallel: a planar four-bar, the balls in its plane."""
     at = [[x, y, 0.0] for x, y in places]

@@ -394,9 +394,12 @@ impl Curves {
         } else {
             1
         };
-        // all modes may have been change points
-        if let Some(pose) = self.curves.first().map(|c| *c.plainest()) {
-            self.find_at(chain, &pose);
+        // all modes may have been change points, or rigid but for what redundant constraints may miss each other by
+        let one = self.found.as_ref().is_some_and(|f| f.rank + 1 == chain.columns);
+        if let Some(curve) = self.curves.first().filter(|_| !one) {
+            let rank = chain.columns - 1;
+            let redundant = wrenches(&chain.screws(curve.plainest()), rank);
+            self.found = Some(Found { rank, redundant, finite });
         }
         if let Some(found) = &mut self.found {
             found.finite = found.finite.min(finite);
