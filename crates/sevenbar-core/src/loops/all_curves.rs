@@ -343,7 +343,7 @@ impl Curves {
         ahead.find_map(|(k, curve)| Some((k, *place_on(chain, curve, mode)?)))
     }
 
-    /// One of the curves ahead, the other way where it is told backwards.
+    /// One of the curves ahead, turned round if `backwards`.
     fn taken_ahead(&mut self, chain: &Chain, which: usize, backwards: bool) -> Curve {
         let curve = self.ahead.swap_remove(which);
         if backwards {
@@ -394,7 +394,7 @@ impl Curves {
         } else {
             1
         };
-        // all modes may have been change points, or rigid but for what redundant constraints may miss each other by
+        // all modes may have been change points, or of full rank within what redundant constraints may miss each other by
         let one = self.found.as_ref().is_some_and(|f| f.rank + 1 == chain.columns);
         if let Some(curve) = self.curves.first().filter(|_| !one) {
             let rank = chain.columns - 1;
