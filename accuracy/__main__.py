@@ -11,7 +11,7 @@ from typing import Any
 
 from accuracy import figures, page, run
 from accuracy.circumstances import ROOT
-from sevenbar import gallery
+from sevenbar.description import gallery
 
 #: What the results keep in all digits.
 WHOLE = ("input", "ours", "steps", "distances")

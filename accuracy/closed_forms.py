@@ -19,7 +19,7 @@ from accuracy.gallery_rows import seeded
 from accuracy.quantiles import Row, summary
 from accuracy.reference_loops import Loop
 from accuracy.series import Series, acos, asin, atan2, cos_sin, sqrt
-from sevenbar import gallery
+from sevenbar.description import gallery
 
 #: Digits of every formula.
 DIGITS = 40

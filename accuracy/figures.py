@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from accuracy.quantiles import QUANTITIES, ROUNDING
-from sevenbar.figure import STYLE
+from sevenbar.drawing.figure import STYLE
 
 Results = Mapping[str, Any]
 

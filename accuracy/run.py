@@ -21,7 +21,7 @@ from accuracy import (
 from accuracy.circumstances import circumstances
 from accuracy.dead_centres import DISTANCES
 from accuracy.gallery_rows import SEED, Amount
-from sevenbar import gallery
+from sevenbar.description import gallery
 from sevenbar.errors import SevenbarError
 
 

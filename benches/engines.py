@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import sevenbar as sb
-from sevenbar.gallery import names
+from sevenbar.description.gallery import names
 from sevenbar.simulation.agreement import Simulation
 from sevenbar.simulation.run import ENGINES, simulate
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from benches.outcome import Plot
-from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure, save
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure, save
 
 #: Width and height [inch].
 SIZE = (6.4, 3.6)

@@ -7,8 +7,8 @@ import numpy as np
 import sevenbar as sb
 from fuzz.checks import Broken, hold
 from fuzz.rssrs import Floats, description
-from sevenbar.forms import from_description
-from sevenbar.many import CODES, INVALID, WORDS, Motions, loop_motions, rssr_motions, rssr_types
+from sevenbar.description.forms import from_description
+from sevenbar.kinematics.batches import CODES, INVALID, WORDS, Motions, loop_motions, rssr_motions, rssr_types
 
 #: One linkage in so many is held against its own motion.
 RSSRS_CROSSED, LOOPS_CROSSED = 200, 25

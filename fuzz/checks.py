@@ -17,9 +17,9 @@ from scipy.spatial import cKDTree
 
 import sevenbar as sb
 from accuracy.reference_loops import Loop
-from sevenbar import report
-from sevenbar.measures import MEASURES, rows_of
-from sevenbar.summary import summary
+from sevenbar.kinematics.measures import MEASURES, rows_of
+from sevenbar.reporting import report
+from sevenbar.reporting.summary import summary
 
 #: Closure error of a row: radians, lengths in parts of the size. Promised by the tests of circuits.
 CLOSED = 1e-10

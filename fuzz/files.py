@@ -12,8 +12,8 @@ import sevenbar as sb
 from fuzz.checks import hold, judged
 from fuzz.messages import family, look_at
 from fuzz.mutations import mutated, seeds
+from sevenbar.description.files import decoded
 from sevenbar.errors import SevenbarError
-from sevenbar.files import decoded
 
 #: Of the files that load, one in so many has its mobility counted, and one in so many is analysed whole.
 COUNTED, ANALYSED = 200, 2000

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from fuzz import random_loops
-from sevenbar.gallery import names, text
-from sevenbar.written import FREEDOMS
+from sevenbar.description.gallery import names, text
+from sevenbar.description.written import FREEDOMS
 
 Description = dict[str, Any]
 Draw = Callable[[np.random.Generator], Description]

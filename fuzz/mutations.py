@@ -6,7 +6,7 @@ import random
 import re
 from collections.abc import Callable
 
-from sevenbar.gallery import names, text
+from sevenbar.description.gallery import names, text
 
 #: A token: a comment, a text, a number, a word, a line's end, blanks, or any other character.
 _TOKEN = re.compile(

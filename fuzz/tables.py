@@ -11,10 +11,10 @@ import numpy as np
 
 from fuzz.checks import hold
 from fuzz.messages import family, look_at
+from sevenbar.description.files import loads
+from sevenbar.description.gallery import text
+from sevenbar.description.law_file import load_law
 from sevenbar.errors import SevenbarError
-from sevenbar.files import loads
-from sevenbar.gallery import text
-from sevenbar.law_file import load_law
 from sevenbar.measuring.measured import Ends, Measured, read_measured
 
 #: Cells that programs and people leave.

@@ -23,8 +23,8 @@ from fuzz.checks import Broken, judged
 from fuzz.messages import family, look_at
 from fuzz.tally import Finding, Tally
 from fuzz.toml import written
+from sevenbar.description.forms import from_description
 from sevenbar.errors import SevenbarError
-from sevenbar.forms import from_description
 
 #: Tells which case is at hand: its number, -1 for a whole batch, `None` between two.
 Mark = Callable[[int | None], None]

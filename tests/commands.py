@@ -6,7 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from sevenbar.cli import main
+from sevenbar.commands.cli import main
 
 
 def sevenbar(*arguments, cwd=None, before=""):
@@ -16,7 +16,7 @@ def sevenbar(*arguments, cwd=None, before=""):
     documentation call the program itself.
     """
     if before:
-        code = f"import sys\n{before}\nfrom sevenbar.cli import main\nmain()"
+        code = f"import sys\n{before}\nfrom sevenbar.commands.cli import main\nmain()"
         command = [sys.executable, "-c", code, *map(str, arguments)]
         return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=600, check=False)
     out, err, argv = io.StringIO(), io.StringIO(), sys.argv

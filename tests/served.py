@@ -87,5 +87,14 @@ class Studio(Served):
     """`sevenbar studio ARGUMENTS`, on a free port and without opening a browser."""
 
     def __init__(self, *arguments, folder):
-        command = [sys.executable, "-m", "sevenbar.cli", "studio", *arguments, "--port", "0", "--no-open"]
+        command = [
+            sys.executable,
+            "-m",
+            "sevenbar.commands.cli",
+            "studio",
+            *arguments,
+            "--port",
+            "0",
+            "--no-open",
+        ]
         super().__init__(command, folder)

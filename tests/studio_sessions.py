@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 import sevenbar as sb
-from sevenbar.gallery import text
-from sevenbar.studio.session import Session
+from sevenbar.description.gallery import text
+from sevenbar.studio.state.session import Session
 
 DOUBLE_ROCKER = (
     "format = 1\n[drive]\nspeed = '2 rad/s'\n[rssr]\nM = 700\nN = 700\nL1 = 500\nL3 = 550\nD = 100\n"

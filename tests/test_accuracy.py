@@ -26,7 +26,7 @@ from accuracy import (
 from accuracy.forty_digits import joint_errors, reference
 from accuracy.quantiles import QUANTITIES, ROUNDING, Row, quantiles, summary
 from accuracy.series import Series, acos, asin, atan2, cos_sin, sqrt
-from sevenbar import gallery
+from sevenbar.description import gallery
 
 ROOT = Path(__file__).parent.parent
 

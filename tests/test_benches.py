@@ -295,7 +295,7 @@ def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
     """Also where its last message comes so late that the page seemed to be at rest before."""
     from benches.cases import studio
     from benches.cases.studio_client import updates
-    from sevenbar.files import text_of
+    from sevenbar.description.files import text_of
     from sevenbar.studio import tab as tab_module
     from sevenbar.studio.server import StudioServer
 

@@ -14,8 +14,8 @@ from accuracy import reference_rssr
 from accuracy.reference_loops import Loop
 from fuzz.random_linkages import Dimensions
 from fuzz.random_loops import general
+from sevenbar.description.gallery import text
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError
-from sevenbar.gallery import text
 from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.measured import Measured
 from sevenbar.measuring.rewrite import calibrated_toml

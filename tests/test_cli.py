@@ -13,8 +13,8 @@ from rich.console import Console
 
 import sevenbar as sb
 from commands import mistake, sevenbar
-from sevenbar import report
-from sevenbar.gallery import names
+from sevenbar.description.gallery import names
+from sevenbar.reporting import report
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text(encoding="utf-8"))
@@ -194,7 +194,7 @@ def test_an_animation_goes_into_the_folder_that_is_made_for_the_report(tmp_path)
 @pytest.mark.slow
 def test_an_animation_that_fails_leaves_no_report_in_its_folder(tmp_path):
     broken = (
-        "import sevenbar.animate as a\n"
+        "import sevenbar.drawing.animate as a\n"
         "def fails(*_):\n    yield from ()\n    raise a.OutputError('no picture')\n"
         "a._pictures = fails"
     )

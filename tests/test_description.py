@@ -8,7 +8,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.errors import DescriptionError, RequestError, SevenbarError
-from sevenbar.units import sliding_speed
+from sevenbar.text.units import sliding_speed
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 DIMENSIONS = (EXAMPLES / "rssr.toml").read_text(encoding="utf-8")

@@ -27,8 +27,8 @@ WITH_EXAMPLES = [
 #: Those whose examples take seconds.
 LONG = (
     "sevenbar.design.maps.heights",
-    "sevenbar.design.synthesis.function",
-    "sevenbar.design.synthesis.swing",
+    "sevenbar.design.synthesis.function.generation",
+    "sevenbar.design.synthesis.function.swing",
 )
 
 
@@ -43,7 +43,9 @@ def test_docstring_examples_give_what_they_show(name):
 
 
 def test_the_modules_with_examples_are_found():
-    assert {"sevenbar.linkage", "sevenbar.design.points.least", "sevenbar.units"} <= set(WITH_EXAMPLES)
+    assert {"sevenbar.kinematics.linkage", "sevenbar.design.points.least", "sevenbar.text.units"} <= set(
+        WITH_EXAMPLES
+    )
 
 
 def test_the_examples_of_the_readme_print_what_their_comments_say():
@@ -63,7 +65,7 @@ def test_the_examples_of_the_readme_print_what_their_comments_say():
 
 
 def test_the_report_in_the_readme_is_the_report_of_today():
-    command = [sys.executable, "-m", "sevenbar.cli", "analyze", "examples/rssr.toml"]
+    command = [sys.executable, "-m", "sevenbar.commands.cli", "analyze", "examples/rssr.toml"]
     report = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     numbers_of_rounding = re.compile(r"\d\.\de-1\d")
     lines = [numbers_of_rounding.sub("~", line.rstrip()) for line in report.splitlines()]
@@ -85,7 +87,7 @@ def test_what_a_page_prints_is_what_its_commands_print_today(name, count, tmp_pa
     assert len(commands) == count
     for index, command in enumerate(commands):
         words = shlex.split(command.replace("DIR", str(tmp_path / str(index))))
-        run = [sys.executable, "-m", "sevenbar.cli", *words]
+        run = [sys.executable, "-m", "sevenbar.commands.cli", *words]
         printed = subprocess.run(run, cwd=ROOT, capture_output=True, text=True, check=True).stdout
         for line in printed.partition("\nwritten:")[0].splitlines():
             told = re.sub(r" +", " ", rounding.sub("~", line)).strip()
@@ -135,7 +137,7 @@ def test_the_designs_of_the_page_on_synthesis_are_those_of_today():
     shown = re.findall(r"^    \$ sevenbar (.*)\n\n((?:    (?!\$).*\n|\n)+)", page, flags=re.MULTILINE)
     assert len(shown) == 2
     for command, text in shown:
-        run = [sys.executable, "-m", "sevenbar.cli", *shlex.split(command)]
+        run = [sys.executable, "-m", "sevenbar.commands.cli", *shlex.split(command)]
         printed = subprocess.run(run, cwd=ROOT, capture_output=True, text=True, check=True).stdout
         told, today = ([word for word in part.split() if set(word) != {"─"}] for part in (text, printed))
         for there, here in zip(told, today, strict=True):

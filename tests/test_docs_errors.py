@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from sevenbar import cli, errors
-from sevenbar.motion import SPIN_UNDEFINED, STATUSES
-from sevenbar.summary import COMPLETE
+from sevenbar import errors
+from sevenbar.commands import cli
+from sevenbar.kinematics.motion import SPIN_UNDEFINED, STATUSES
+from sevenbar.reporting.summary import COMPLETE
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")

@@ -13,8 +13,10 @@ import jsonschema
 import pytest
 
 import sevenbar as sb
-from sevenbar import errors, gallery
-from sevenbar.schema import TABLES, LinkageForm, json_schema
+from sevenbar import errors
+from sevenbar.description import gallery
+from sevenbar.description.forms import from_description
+from sevenbar.description.schema import TABLES, LinkageForm, json_schema
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -39,7 +41,7 @@ def told():
 
 def public():
     """Every public name: of the package, of its packages, and of its modules that are imported on demand."""
-    places = [sb, *(importlib.import_module(f"sevenbar.{name}") for name in sb._ON_DEMAND)]
+    places = [sb, *map(importlib.import_module, sb._ON_DEMAND.values())]
     for module in pkgutil.walk_packages(sb.__path__, "sevenbar."):
         if module.ispkg and ".studio" not in module.name:
             places.append(importlib.import_module(module.name))
@@ -127,4 +129,4 @@ def test_the_json_schema_takes_the_files_that_the_program_takes():
     ):
         assert not takes(right | mistake), mistake
         with pytest.raises(errors.DescriptionError):
-            sb.forms.from_description(right | mistake)
+            from_description(right | mistake)

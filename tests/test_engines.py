@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.gallery import names
 from sevenbar.errors import EngineError
-from sevenbar.gallery import names
 from sevenbar.simulation.agreement import agreement
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
 from sevenbar.simulation.prototype import GROUND, Connection, prototype

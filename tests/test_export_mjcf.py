@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
 from sevenbar.export import export
-from sevenbar.gallery import names
 
 
 def opened(path):

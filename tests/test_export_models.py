@@ -13,10 +13,10 @@ import yourdfpy
 
 import adams_reader
 import sevenbar as sb
+from sevenbar.description.gallery import names
 from sevenbar.errors import OutputError, RequestError
 from sevenbar.export import FORMATS, export
-from sevenbar.gallery import names
-from sevenbar.units import LENGTHS
+from sevenbar.text.units import LENGTHS
 
 #: In the quick tests; the slow ones take the whole gallery.
 QUICK = ["rssr", "rsur", "rssp", "rscr", "screw_drill"]

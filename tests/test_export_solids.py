@@ -10,9 +10,9 @@ import trimesh
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 
 import sevenbar as sb
+from sevenbar.description.gallery import names
 from sevenbar.errors import OutputError
 from sevenbar.export import export
-from sevenbar.gallery import names
 
 MILLIMETRES = {"mm": 1.0, "in": 25.4}
 

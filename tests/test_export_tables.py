@@ -195,7 +195,7 @@ def test_a_missing_library_is_named_with_its_extra(motion, tmp_path, monkeypatch
 @pytest.mark.slow
 def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
     def run(*arguments):
-        command = [sys.executable, "-m", "sevenbar.cli", "export", *arguments]
+        command = [sys.executable, "-m", "sevenbar.commands.cli", "export", *arguments]
         return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False)
 
     done = run("rssr", "--to", "urdf", "--at", "30", "--samples", "24")

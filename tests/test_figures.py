@@ -13,10 +13,10 @@ import pytest
 from PIL import Image
 
 import sevenbar as sb
-from sevenbar import paths, plot, skeleton
-from sevenbar.animate import animate
+from sevenbar.description.gallery import names
+from sevenbar.drawing import paths, plot, skeleton
+from sevenbar.drawing.animate import animate
 from sevenbar.errors import RequestError
-from sevenbar.gallery import names
 
 GENERAL = [name for name in names() if name != "rssr"]
 

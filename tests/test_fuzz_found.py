@@ -11,8 +11,8 @@ import sevenbar as sb
 from accuracy.reference_loops import Loop
 from fuzz.checks import circuits_are_distinct
 from fuzz.random_linkages import random_rotation
+from sevenbar.description.forms import from_description
 from sevenbar.errors import MOST_TOLD, DescriptionError, TableError
-from sevenbar.forms import from_description
 from sevenbar.measuring.measured import Ends, read_measured
 from test_invariance import changed, joints_of
 
@@ -227,7 +227,9 @@ def test_a_mode_whose_ball_has_no_turns_says_so() -> None:
 
 
 def test_names_in_a_list_of_what_there_is_have_no_characters_that_are_not_printed() -> None:
-    text = (Path(sb.__file__).parent / "gallery" / "screw_drill.toml").read_text(encoding="utf-8")
+    text = (Path(sb.__file__).parent / "description" / "gallery" / "screw_drill.toml").read_text(
+        encoding="utf-8"
+    )
     text = text.replace('name = "pin"', 'name = "p\ufeffin"').replace(
         'output = "spindle"', 'output = "spinel"'
     )

@@ -20,9 +20,9 @@ import sevenbar as sb
 from fuzz import batches, checks, files, loops, messages, page, rssrs, summary, watch, ways
 from fuzz.tally import Finding, Tally
 from fuzz.toml import written
+from sevenbar.description.forms import from_description
+from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
-from sevenbar.forms import from_description
-from sevenbar.gallery import names
 
 #: Cases of each way: some seconds together; the others take minutes.
 SHORT = {

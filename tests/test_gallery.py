@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar import gallery
+from sevenbar.description import gallery
 
 Floats = np.ndarray
 

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 import sevenbar as sb
 from fuzz.random_linkages import random_rotation
 from fuzz.random_loops import Drawn, bennett, compound, drawn, general, planar_four_bar, spherical_four_bar
-from sevenbar.general import GeneralLoop
+from sevenbar.kinematics.general import GeneralLoop
 from strategies import linkages, wrapped
 
 Joints = list[dict[str, Any]]

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.gallery import names
+from sevenbar.description.gallery import names
+from sevenbar.drawing.skeleton import frames_of
 from sevenbar.simulation.joint_values import Bodies, joint_values
-from sevenbar.skeleton import frames_of
 
 #: Joints of every kind one after another; the loop need not close, for nothing here closes it.
 OPEN = sb.from_axes(

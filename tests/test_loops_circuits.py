@@ -18,8 +18,8 @@ import sevenbar as sb
 from accuracy.reference_loops import Loop
 from fuzz.random_linkages import Dimensions, mixed
 from fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
+from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
-from sevenbar.gallery import names
 
 #: Random linkages whose circuits are compared under half the step.
 HALVED = {"few": 12, "many": 1_000}

@@ -12,7 +12,7 @@ import sevenbar as sb
 from sevenbar.design.maps.atlas import motion_map
 from sevenbar.design.maps.heights import EXACT, measure_heights
 from sevenbar.errors import RequestError
-from sevenbar.measures import MEASURES
+from sevenbar.kinematics.measures import MEASURES
 
 DIMENSIONS = {"M": 700, "N": 700, "L1": 250, "L3": 550, "D": 0}
 OVER = {"M": (-1000, 1400), "D": (-1000, 1500)}

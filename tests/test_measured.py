@@ -7,7 +7,7 @@ import sevenbar as sb
 from sevenbar.errors import RequestError, TableError
 from sevenbar.export.tables import write_csv
 from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes, pairs, read_measured
-from sevenbar.units import measured_unit
+from sevenbar.text.units import measured_unit
 
 ENDS = Ends("crank", "rocker")
 SLIDER = Ends("crank", "slider", output_slides=True, length_unit="mm")

@@ -8,7 +8,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.measures import MEASURES, measures_named, rows_of
+from sevenbar.kinematics.measures import MEASURES, measures_named, rows_of
 
 
 def test_the_papers_crank_rocker_is_measured_as_table_1_has_it() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.gallery import names
+from sevenbar.description.gallery import names
 from sevenbar.simulation.mjcf import mjcf
 from sevenbar.simulation.prototype import prototype
 from sevenbar.simulation.run import prepared

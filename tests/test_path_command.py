@@ -13,8 +13,8 @@ import pytest
 
 import sevenbar as sb
 from commands import mistake, sevenbar
+from sevenbar.description.draft import Draft
 from sevenbar.design.curve_table import read_curve
-from sevenbar.draft import Draft
 from sevenbar.errors import TableError
 
 ROOT = Path(__file__).parent.parent
@@ -143,7 +143,7 @@ def test_the_example_of_the_page_prints_what_its_comment_says():
 
 @pytest.mark.slow
 def test_the_example_of_the_docstring_gives_what_it_shows():
-    assert doctest.testmod(importlib.import_module("sevenbar.design.synthesis.path")).failed == 0
+    assert doctest.testmod(importlib.import_module("sevenbar.design.synthesis.path.generation")).failed == 0
 
 
 @pytest.mark.slow

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.candidates import Candidate, Refusal
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.design.synthesis.path import path_generation
-from sevenbar.design.synthesis.path_check import checked_path, rotation_vector
-from sevenbar.design.synthesis.path_match import STILL, in_order, placed
-from sevenbar.design.synthesis.path_refine import Refined
-from sevenbar.design.synthesis.path_task import path_task
-from sevenbar.draft import Draft
+from sevenbar.design.synthesis.path.check import checked_path, rotation_vector
+from sevenbar.design.synthesis.path.generation import path_generation
+from sevenbar.design.synthesis.path.match import STILL, in_order, placed
+from sevenbar.design.synthesis.path.refine import Refined
+from sevenbar.design.synthesis.path.task import path_task
 from sevenbar.errors import RequestError
 
 

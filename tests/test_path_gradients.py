@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.design.synthesis.path_closure import PointClosure
-from sevenbar.design.synthesis.path_refine import PathProblem
-from sevenbar.design.synthesis.path_search import Seed
-from sevenbar.design.synthesis.path_task import path_task
-from sevenbar.draft import Draft
+from sevenbar.design.synthesis.path.closure import PointClosure
+from sevenbar.design.synthesis.path.refine import PathProblem
+from sevenbar.design.synthesis.path.search import Seed
+from sevenbar.design.synthesis.path.task import path_task
 
 #: Every form and every kind of joint: dimensions, rows, drawings; S S with its spin held, U, H, C, P.
 LINKAGES = (

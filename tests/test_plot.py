@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import sevenbar as sb
-from sevenbar import animate as animation
-from sevenbar import plot, skeleton
-from sevenbar.animate import animate
+from sevenbar.drawing import animate as animation
+from sevenbar.drawing import plot, skeleton
+from sevenbar.drawing.animate import animate
 from sevenbar.errors import MissingExtraError, OutputError, RequestError
 
 AXES = Path(__file__).parents[1] / "examples" / "rssr_axes.toml"

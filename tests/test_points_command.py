@@ -11,7 +11,7 @@ import typer
 from typer.testing import CliRunner
 
 import sevenbar as sb
-from sevenbar.design.points.command import inertia, point
+from sevenbar.commands.points import inertia, point
 from sevenbar.errors import SevenbarError
 
 ROOT = Path(__file__).parent.parent

@@ -3,14 +3,14 @@
 import pytest
 
 import sevenbar as sb
+from sevenbar.commands.function import angles, lengths
+from sevenbar.commands.path import _bound
+from sevenbar.commands.points import parsed_box, parsed_masses
+from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import axes_of, split_ranges
-from sevenbar.design.points.command import parsed_box, parsed_masses
-from sevenbar.design.synthesis.command import angles, lengths
-from sevenbar.design.synthesis.path_command import _bound
-from sevenbar.draft import Draft
 from sevenbar.errors import RequestError
-from sevenbar.ranges import split_grid, split_named, split_range
 from sevenbar.sweep.axes import axis_from_text, axis_of
+from sevenbar.text.ranges import split_grid, split_named, split_range
 
 DRAFT = Draft.of_linkage(sb.load("rssr"))
 

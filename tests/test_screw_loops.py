@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar import report
 from sevenbar.errors import RequestError
-from sevenbar.many import loop_motions
+from sevenbar.kinematics.batches import loop_motions
+from sevenbar.reporting import report
 
 Z = [0, 0, 1]
 

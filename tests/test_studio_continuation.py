@@ -16,10 +16,10 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_loops import Loop
-from sevenbar.draft import Dimension, Draft
+from sevenbar.description.draft import Dimension, Draft
+from sevenbar.description.gallery import text
 from sevenbar.errors import SevenbarError
-from sevenbar.gallery import text
-from sevenbar.studio.session import Session
+from sevenbar.studio.state.session import Session
 from studio_sessions import distance
 
 #: Poses told between two samples are that rough [rad, or parts of the size] where a circuit runs fast.

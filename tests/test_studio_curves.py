@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar import plot
-from sevenbar.figure import CIRCUIT_COLOURS
-from sevenbar.gallery import names
-from sevenbar.skeleton import walk
-from sevenbar.studio.curves import panels
-from sevenbar.studio.quantities import Walked, quantities
+from sevenbar.description.gallery import names
+from sevenbar.drawing import plot
+from sevenbar.drawing.figure import CIRCUIT_COLOURS
+from sevenbar.drawing.skeleton import walk
+from sevenbar.studio.svg.curves import panels
+from sevenbar.studio.svg.quantities import Walked, quantities
 from studio_pictures import (
     MOTIONS,
     ROCKING,

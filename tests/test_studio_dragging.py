@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sevenbar.files import text_of
-from sevenbar.skeleton import places_of
+from sevenbar.description.files import text_of
+from sevenbar.drawing.skeleton import places_of
 from sevenbar.studio.server import StudioServer
 from tab_client import TabClient
 

@@ -16,10 +16,10 @@ from PIL import ImageFont
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.studio.axis import axis
-from sevenbar.studio.curves import panels
-from sevenbar.studio.panel import Panel
-from sevenbar.studio.quantities import quantities
+from sevenbar.studio.svg.axis import axis
+from sevenbar.studio.svg.curves import panels
+from sevenbar.studio.svg.panel import Panel
+from sevenbar.studio.svg.quantities import quantities
 from studio_pictures import (
     HOSTILE,
     MOTIONS,

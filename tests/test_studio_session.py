@@ -8,10 +8,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from sevenbar.description.gallery import text
 from sevenbar.errors import DescriptionError, RequestError, SevenbarError
-from sevenbar.gallery import text
-from sevenbar.studio import session as session_module
-from sevenbar.studio.session import Session
+from sevenbar.studio.state import session as session_module
+from sevenbar.studio.state.session import Session
 from studio_sessions import drawn, opened, state
 
 L1 = ("rssr", "L1")

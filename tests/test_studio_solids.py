@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar import gallery, skeleton
 from sevenbar.arrays import Floats
-from sevenbar.motion import Motion
-from sevenbar.scene import INPUT, OUTPUT
-from sevenbar.skeleton import LINK_ENDS, Chain, Skeleton
-from sevenbar.studio.poses import stretched, turns
-from sevenbar.studio.shapes import mesh
-from sevenbar.studio.solids import Plan, plan, poses, rgb
+from sevenbar.description import gallery
+from sevenbar.drawing import skeleton
+from sevenbar.drawing.scene import INPUT, OUTPUT
+from sevenbar.drawing.skeleton import LINK_ENDS, Chain, Skeleton
+from sevenbar.kinematics.motion import Motion
+from sevenbar.studio.pictures.poses import stretched, turns
+from sevenbar.studio.pictures.shapes import mesh
+from sevenbar.studio.pictures.solids import Plan, plan, poses, rgb
 
 
 def planned(name: str, circuit: int = 0) -> tuple[Motion, Skeleton, Plan]:

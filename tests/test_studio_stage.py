@@ -12,10 +12,11 @@ import pytest
 from viser import ViserServer
 
 import sevenbar as sb
-from sevenbar import gallery, skeleton
-from sevenbar.motion import Motion
-from sevenbar.skeleton import Skeleton
-from sevenbar.studio.stage import FIELD, Stage
+from sevenbar.description import gallery
+from sevenbar.drawing import skeleton
+from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.kinematics.motion import Motion
+from sevenbar.studio.pictures.stage import FIELD, Stage
 
 
 @pytest.fixture(scope="module")

@@ -13,11 +13,11 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_loops import Loop
+from sevenbar.description.gallery import names, text
+from sevenbar.drawing.skeleton import places_of
 from sevenbar.errors import RequestError
-from sevenbar.gallery import names, text
-from sevenbar.skeleton import places_of
-from sevenbar.studio.session import Session
-from sevenbar.studio.view import View, modes_at
+from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.view import View, modes_at
 from studio_sessions import DOUBLE_ROCKER, distance, drawn, opened, state
 
 # --- modes

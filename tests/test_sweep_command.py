@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from commands import mistake, sevenbar
-from sevenbar.measures import MEASURES
+from sevenbar.kinematics.measures import MEASURES
 
 
 def test_a_sweep_prints_what_it_found_and_where_it_is(tmp_path: Path) -> None:

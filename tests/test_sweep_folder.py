@@ -14,7 +14,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import sevenbar as sb
-from sevenbar.draft import Draft
+from sevenbar.description.draft import Draft
 from sevenbar.errors import OutputError
 from sevenbar.sweep import Sweep, run, span
 from sevenbar.sweep import plan as plan_module
@@ -199,7 +199,7 @@ def test_what_fails_midway_keeps_the_finished_parts(whole: Path, tmp_path: Path)
 FULL = """
 import resource, sys
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
-from sevenbar.cli import main
+from sevenbar.commands.cli import main
 main()
 """
 
@@ -242,7 +242,7 @@ def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) ->
 @pytest.mark.parametrize("kills", [6, pytest.param(20, marks=pytest.mark.proof)])
 def test_a_sweep_killed_at_random_moments_loses_no_finished_part(kills: int, tmp_path: Path) -> None:
     sweep = [
-        sys.executable, "-m", "sevenbar.cli", "sweep", "seven_r", "--over", "twist_1=30..90", "--over",
+        sys.executable, "-m", "sevenbar.commands.cli", "sweep", "seven_r", "--over", "twist_1=30..90", "--over",
         "length_2=80..120", "--count", "400", "--seed", "3", "--measure", "motion_type,circuits,swing",
         "--samples", "24", "--part-size", "2",
     ]  # fmt: skip

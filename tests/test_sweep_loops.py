@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.draft import Draft
-from sevenbar.measures import MEASURES
+from sevenbar.description.draft import Draft
+from sevenbar.kinematics.measures import MEASURES
 from sevenbar.sweep.axes import span
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.block import Block

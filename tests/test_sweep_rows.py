@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.draft import Draft
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
-from sevenbar.measures import MEASURES
+from sevenbar.kinematics.measures import MEASURES
 from sevenbar.sweep import grid, run, span
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.ordinary import analysed as analysed_by_themselves

@@ -11,7 +11,7 @@ from scipy import stats
 from scipy.stats import qmc
 
 import sevenbar as sb
-from sevenbar.draft import Draft
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
 from sevenbar.sweep.axes import axis_from_text, grid, span
 from sevenbar.sweep.space import MOST_LINKAGES, Space

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -19,7 +20,6 @@ from sevenbar.design.synthesis.candidates import (
 )
 from sevenbar.design.synthesis.closure import draft_of
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.draft import Draft
 from sevenbar.errors import OutputError, RequestError
 
 #: A double-rocker, whose two branches meet at dead centres of the input, and the paper's crank-rocker.

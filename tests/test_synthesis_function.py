@@ -13,12 +13,12 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.synthesis.closure import NAMES
-from sevenbar.design.synthesis.expression import function_of
-from sevenbar.design.synthesis.fitting import Fit, Point
-from sevenbar.design.synthesis.function import function_generation
+from sevenbar.design.synthesis.function.expression import function_of
+from sevenbar.design.synthesis.function.fitting import Fit, Point
+from sevenbar.design.synthesis.function.generation import function_generation
+from sevenbar.design.synthesis.function.report import write_synthesis
+from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.design.synthesis.told import write_synthesis
-from sevenbar.design.synthesis.wish import wish_of_function, wish_of_pairs
 from sevenbar.errors import RequestError
 
 QUARTER = (0.0, math.pi / 2)
@@ -267,14 +267,14 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
 
 @pytest.mark.parametrize("name", ["expression", "precision"])
 def test_examples_in_docstrings_give_what_they_show(name):
-    module = importlib.import_module(f"sevenbar.design.synthesis.{name}")
+    module = importlib.import_module(f"sevenbar.design.synthesis.function.{name}")
     assert doctest.testmod(module) == (0, {"expression": 1, "precision": 1}[name])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["function", "swing"])
+@pytest.mark.parametrize("name", ["generation", "swing"])
 def test_examples_of_long_searches_give_what_they_show(name):
-    module = importlib.import_module(f"sevenbar.design.synthesis.{name}")
+    module = importlib.import_module(f"sevenbar.design.synthesis.function.{name}")
     assert doctest.testmod(module) == (0, 2)
 
 

@@ -22,7 +22,7 @@ import sevenbar as sb
 from fuzz.random_linkages import assembled_square
 from fuzz.random_loops import general
 from sevenbar import _core
-from sevenbar.many import loop_motions
+from sevenbar.kinematics.batches import loop_motions
 
 TESTS = Path(__file__).parent
 #: Where a process of its own finds what the tests share.

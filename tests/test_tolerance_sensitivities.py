@@ -11,11 +11,11 @@ import sevenbar as sb
 from accuracy import reference_rssr
 from fuzz.random_linkages import Dimensions
 from fuzz.random_loops import general, prismatic
+from sevenbar.description.gallery import names
 from sevenbar.design.tolerance.numbers import Numbered
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.errors import RequestError
-from sevenbar.gallery import names
-from sevenbar.linkage import inverse
+from sevenbar.kinematics.rigid import inverse
 
 #: Change in differences [parts of the size, rad]; their error is its square, rounding over it beside.
 CHANGE = 1e-5

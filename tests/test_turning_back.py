@@ -8,19 +8,19 @@ import pytest
 
 import adams_reader
 import sevenbar as sb
-from sevenbar import report
+from sevenbar.drawing.figure import note
+from sevenbar.drawing.plot import configuration, curves, joints
+from sevenbar.drawing.skeleton import walk
 from sevenbar.errors import RequestError
 from sevenbar.export import pose
 from sevenbar.export.adams import write_cmd
 from sevenbar.export.layout import arrange
-from sevenbar.figure import note
-from sevenbar.many import loop_motions
-from sevenbar.measures import MEASURES, rows_of
-from sevenbar.motion import Law
-from sevenbar.plot import configuration, curves, joints
+from sevenbar.kinematics.batches import loop_motions
+from sevenbar.kinematics.measures import MEASURES, rows_of
+from sevenbar.kinematics.motion import Law
+from sevenbar.reporting import report
+from sevenbar.reporting.summary import summary
 from sevenbar.simulation.course import course
-from sevenbar.skeleton import walk
-from sevenbar.summary import summary
 
 #: Places in a list of random loops with such circuits, of 2 to 10 dead centres on the way.
 WITH_SUCH = (7, 9, 13, 24, 45, 52)

@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar import gallery
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.expression import function_of
-from sevenbar.design.synthesis.wish import wish_of_function
-from sevenbar.draft import Draft
+from sevenbar.description import gallery
+from sevenbar.description.draft import Draft
+from sevenbar.design.synthesis.function.expression import function_of
+from sevenbar.design.synthesis.function.wish import wish_of_function
 from sevenbar.errors import RequestError
-from sevenbar.measures import MEASURES, Measure, measures_named
-from sevenbar.motion import Circuit, Law
+from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
+from sevenbar.kinematics.motion import Circuit, Law
 
 SAMPLES = 24
 

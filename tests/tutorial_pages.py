@@ -54,7 +54,7 @@ def printed(command, folder):
     program, *words = shlex.split(command)
     assert program == "sevenbar", command
     run = subprocess.run(
-        [sys.executable, "-m", "sevenbar.cli", *words],
+        [sys.executable, "-m", "sevenbar.commands.cli", *words],
         cwd=folder,
         capture_output=True,
         text=True,

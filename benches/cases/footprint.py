@@ -33,7 +33,7 @@ def imports(setting: Setting) -> Table:
     commands = {
         "import sevenbar": ["-c", "import sevenbar"],
         "nothing": ["-c", "pass"],
-        "sevenbar --help": ["-m", "sevenbar.cli", "--help"],
+        "sevenbar --help": ["-m", "sevenbar.commands.cli", "--help"],
         "import numpy": ["-c", "import numpy"],
     }
     absent = []

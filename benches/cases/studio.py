@@ -14,7 +14,7 @@ from benches.outcome import Cell, Outcome, Table
 from benches.setting import Setting
 
 if TYPE_CHECKING:
-    from sevenbar.draft import Place
+    from sevenbar.description.draft import Place
 
 TITLE = "The studio: from a slider to new curves"
 ABOUT = """\
@@ -43,7 +43,7 @@ def changed(tab: Any, listener: Listener, changes: int) -> tuple[list[float], li
     Each begins when all of the one before has come, and ends with frames that are its own: the first with
     curves, and that with the new value in its box. Raises `ValueError` for a length at which nothing moves.
     """
-    from sevenbar.studio.dimension_rows import number_text
+    from sevenbar.studio.panels.dimension_rows import number_text
 
     dimension = next(d for d in tab.session.draft.dimensions if d.label in ("L1", "length"))
     drawn, all_sent = [], []
@@ -100,7 +100,7 @@ def run(setting: Setting) -> Outcome:
 
 def measured(name: str, changes: int, asked: float) -> list[Cell]:
     """The cells of a linkage."""
-    from sevenbar.files import text_of
+    from sevenbar.description.files import text_of
     from sevenbar.studio.server import StudioServer
 
     server = StudioServer(text_of(name), name, "127.0.0.1", 0)

@@ -7,7 +7,7 @@ from typing import Any, get_args, get_type_hints
 import typer
 
 from page_tables import code, table
-from sevenbar.cli import app
+from sevenbar.commands.cli import app
 
 #: The page that shows how to use each command.
 PAGES = {

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import sevenbar as sb
 from page_tables import code, table
-from sevenbar import gallery, report, summary
+from sevenbar.description import gallery
+from sevenbar.reporting import report, summary
 
 #: Where the pictures are written, below the pages' folder.
 PICTURES = "_made/gallery"

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from page_tables import code, table
-from sevenbar.schema import TABLES, LinkageForm, json_schema
+from sevenbar.description.schema import TABLES, LinkageForm, json_schema
 
 #: Where the JSON schema is written, below the pages' folder; pages link it from there.
-SCHEMA = "_made/sevenbar.schema.json"
+SCHEMA = "_made/sevenbar.description.schema.json"
 
 #: What JSON calls the values, in words.
 KINDS = {"number": "number", "integer": "whole number", "string": "text", "object": "table"}
@@ -63,4 +63,4 @@ def written_schema(pages: Path, _: str) -> str:
     target = pages / SCHEMA
     target.parent.mkdir(exist_ok=True)
     target.write_text(json.dumps(json_schema(), indent=2) + "\n", encoding="utf-8")
-    return f"Download: [sevenbar.schema.json]({SCHEMA})"
+    return f"Download: [sevenbar.description.schema.json]({SCHEMA})"

@@ -14,11 +14,12 @@ from types import ModuleType
 
 from sevenbar import errors
 from sevenbar._core import __version__
-from sevenbar.files import load, loads
-from sevenbar.forms import from_axes, from_dh, rssr
-from sevenbar.law_file import load_law
-from sevenbar.linkage import Drive, Joint, Linkage, Point
-from sevenbar.motion import (
+from sevenbar.description.files import load, loads
+from sevenbar.description.forms import from_axes, from_dh, rssr
+from sevenbar.description.law_file import load_law
+from sevenbar.kinematics.geometry import Drive, Joint, Point
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import (
     ChangePoint,
     Circuit,
     Count,
@@ -58,11 +59,20 @@ __all__ = [
     "rssr",
 ]
 
-#: Modules that bring large libraries with them, imported at their first use.
-_ON_DEMAND = ("design", "export", "plot", "report", "simulation", "sweep")
+#: What is imported at its first use, since it brings large libraries with it: the name and its module.
+_ON_DEMAND = {
+    "animate": "sevenbar.drawing.animate",
+    "design": "sevenbar.design",
+    "export": "sevenbar.export",
+    "gallery": "sevenbar.description.gallery",
+    "plot": "sevenbar.drawing.plot",
+    "report": "sevenbar.reporting.report",
+    "simulation": "sevenbar.simulation",
+    "sweep": "sevenbar.sweep",
+}
 
 
 def __getattr__(name: str) -> ModuleType:
     if name in _ON_DEMAND:
-        return importlib.import_module(f"sevenbar.{name}")
+        return importlib.import_module(_ON_DEMAND[name])
     raise AttributeError(f"module 'sevenbar' has no attribute '{name}'")

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.linkage import Linkage
-from sevenbar.table import Table, read_table
-from sevenbar.units import measured_unit
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.text.table import Table, read_table
+from sevenbar.text.units import measured_unit
 
 
 def read_curve(
-    path: str | os.PathLike[str], linkage: Linkage, input_joint: str, *, point: str = ""
+    path: str | os.PathLike[str], linkage: Loop, input_joint: str, *, point: str = ""
 ) -> tuple[Floats, Floats | None]:
     """The places (n, 3) [length] of a table in the report frame, and its inputs (n,) [rad, or length].
 

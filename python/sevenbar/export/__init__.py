@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.export.pose import take
-from sevenbar.folder import check_targets, fill_folder
-from sevenbar.linkage import Linkage
-from sevenbar.motion import Motion
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Motion
+from sevenbar.reporting.folder import check_targets, fill_folder
 
 if TYPE_CHECKING:
     from sevenbar.export.parts import Assembly

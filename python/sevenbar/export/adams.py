@@ -16,9 +16,9 @@ from sevenbar.errors import RequestError
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
-from sevenbar.linkage import inverse
-from sevenbar.linkage import pose as matrix
-from sevenbar.units import LENGTHS
+from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.rigid import pose as matrix
+from sevenbar.text.units import LENGTHS
 
 #: The names ADAMS has for length units; micrometres are written in millimetres.
 UNITS = {"mm": "mm", "cm": "cm", "m": "meter", "in": "inch", "ft": "foot", "um": "mm"}

@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, OutputError
 from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid, across
-from sevenbar.units import LENGTHS
+from sevenbar.text.units import LENGTHS
 
 
 def write_step(assembly: Assembly, path: Path) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
-from sevenbar.units import LENGTHS
+from sevenbar.text.units import LENGTHS
 
 #: Of steel [kg/m^3].
 DENSITY = 7850.0

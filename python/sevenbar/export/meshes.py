@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.errors import MissingExtraError
 from sevenbar.export.parts import Assembly, Ball, Part, Rod, Solid, frame_of, length_of
-from sevenbar.units import LENGTHS
+from sevenbar.text.units import LENGTHS
 
 #: Flat faces round a rod, and rings of a ball: 0.2 % of the radius from round.
 SECTIONS = 48

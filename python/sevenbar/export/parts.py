@@ -12,10 +12,10 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.scene import GROUND, JOINT, chain_colours
+from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.export.pose import Pose, shortest_link, size_of
-from sevenbar.linkage import inverse
-from sevenbar.scene import GROUND, JOINT, chain_colours
-from sevenbar.skeleton import CYLINDER
+from sevenbar.kinematics.rigid import inverse
 
 #: Sizes as shares of the height of a hub. A hole is wider than its shaft by what a fit would never be, so
 #: that no two parts touch.

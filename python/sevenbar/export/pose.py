@@ -9,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.skeleton import Chain, chain, frames_along
 from sevenbar.errors import RequestError, shown
-from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Law, Motion, chosen_circuit
-from sevenbar.skeleton import Chain, chain, frames_along
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Circuit, Law, Motion, Solvable, chosen_circuit
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
 SAMPLED = 12
@@ -41,7 +41,7 @@ class Pose:
     places: Chain
 
     @property
-    def linkage(self) -> Linkage:
+    def linkage(self) -> Solvable:
         """The linkage in this pose."""
         return self.motion.linkage
 
@@ -110,13 +110,13 @@ def _with_ground(frames: Floats) -> Floats:
     return np.concatenate([frames, np.broadcast_to(np.eye(4), (len(frames), 1, 4, 4))], axis=1)
 
 
-def _joint_frames(linkage: Linkage, frames: Floats) -> tuple[Floats, Floats]:
+def _joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     after = np.concatenate([frames[0], [linkage.ground]])
     before = [linkage.base, *(frame @ link for frame, link in zip(frames[0], linkage.links, strict=True))]
     return np.stack(before), after
 
 
-def _slides(linkage: Linkage, q: Floats) -> Floats:
+def _slides(linkage: Loop, q: Floats) -> Floats:
     """How far each joint has slid along its axis, (rows, joints) [length]."""
     slid = np.zeros((len(q), len(linkage.joints)))
     column = 0
@@ -131,7 +131,7 @@ def _slides(linkage: Linkage, q: Floats) -> Floats:
     return slid
 
 
-def _travel(linkage: Linkage, q: Floats) -> Floats:
+def _travel(linkage: Loop, q: Floats) -> Floats:
     slid = _slides(linkage, q)
     return np.stack([np.nanmin(slid, axis=0), np.nanmax(slid, axis=0)], axis=1)
 

@@ -14,9 +14,9 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.errors import MissingExtraError
-from sevenbar.folder import write_columns
-from sevenbar.motion import Circuit, Motion
-from sevenbar.units import LENGTHS
+from sevenbar.kinematics.motion import Circuit, Motion
+from sevenbar.reporting.folder import write_columns
+from sevenbar.text.units import LENGTHS
 
 #: "file": lengths in the linkage's own unit, and angles of flat tables in degrees; "si": metres and radians.
 Units = Literal["file", "si"]

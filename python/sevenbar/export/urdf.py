@@ -13,8 +13,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
-from sevenbar.linkage import Joint
-from sevenbar.units import LENGTHS
+from sevenbar.kinematics.geometry import Joint
+from sevenbar.text.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the next link's.
 JOINING = 1e-6

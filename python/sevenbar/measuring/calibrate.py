@@ -30,11 +30,11 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Law
 from sevenbar.measuring.compare import Comparison, compare, ends_of, inputs_of
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.measuring.sensitivity import Closure, Response, RowsClosure, closure_of, followed, response
-from sevenbar.motion import Law
 
 #: Zeros of the measured joints that may be free too: linkage input = measured input + input_offset,
 #: measured output = linkage output + output_offset.

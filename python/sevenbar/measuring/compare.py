@@ -16,11 +16,11 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Law
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
-from sevenbar.motion import Law
-from sevenbar.units import sliding_speed, turning_speed
+from sevenbar.text.units import sliding_speed, turning_speed
 
 #: What may be aligned.
 ALIGN = ("phase", "offset")

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sevenbar.errors import RequestError
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Circuit
 from sevenbar.measuring.measured import Ends, MeasuredExtremes
-from sevenbar.motion import Circuit
 
 #: Below this share of the range a lowest or highest value has no per cent worth printing.
 NEAR_ZERO = 1e-9

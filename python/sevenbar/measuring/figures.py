@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
+from sevenbar.drawing.skeleton import short
 from sevenbar.measuring.calibrate import Calibration
 from sevenbar.measuring.compare import Comparison
 from sevenbar.measuring.measured import Ends
-from sevenbar.skeleton import short
 
 COMPUTED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.6, "zorder": 2}
 NOMINAL: dict[str, Any] = {"color": "#8a8a8a", "lw": 1.3, "ls": (0, (4, 2)), "zorder": 1}

@@ -17,10 +17,10 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, TableError, shown, suggestion
-from sevenbar.motion import Integers
-from sevenbar.ranges import split_name
-from sevenbar.table import Table, name_and_unit, read_table, read_text
-from sevenbar.units import MeasuredUnit, measured_unit
+from sevenbar.kinematics.motion import Integers
+from sevenbar.text.ranges import split_name
+from sevenbar.text.table import Table, name_and_unit, read_table, read_text
+from sevenbar.text.units import MeasuredUnit, measured_unit
 
 #: What the tables hold, as messages say it.
 HELD = "measured values"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from sevenbar.draft import Draft
+from sevenbar.description.draft import Draft
 from sevenbar.measuring.calibrate import Calibration
 
 

@@ -31,7 +31,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
 
 #: Arrays of real numbers, or of complex ones within a complex step.
 Numbers = npt.NDArray[Any]

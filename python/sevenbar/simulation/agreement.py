@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.geometry import Loop
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
 from sevenbar.simulation.joint_values import Bodies, JointValues, joint_values
@@ -61,7 +61,7 @@ class Simulation:
     differences: tuple[Difference, ...] = ()
 
     @property
-    def linkage(self) -> Linkage:
+    def linkage(self) -> Loop:
         """The linkage that was simulated."""
         return self.course.motion.linkage
 
@@ -126,7 +126,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
     return replace(found, differences=tuple(_differences(found)))
 
 
-def _links(linkage: Linkage, model: Prototype, record: Record, first: int) -> Bodies:
+def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> Bodies:
     """The links of a record from one row on, the ground last; crosses left out."""
     kept = [number for number, body in enumerate(model.bodies) if body.link]
     rows = len(record.time) - first

@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
-from sevenbar.motion import Circuit, Integers, Motion, chosen_circuit
+from sevenbar.kinematics.motion import Circuit, Integers, Motion, chosen_circuit
 
 #: An engine starts so many rows ahead of the first that is compared. Its accelerations start with an error
 #: that is damped by some 0.6 (Exudyn) to 0.75 (MuJoCo) a step, so that rounding remains.

@@ -12,9 +12,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from sevenbar.arrays import Floats
-from sevenbar.figure import CIRCUIT_COLOURS, STYLE, input_label, new_figure, shown_value, slides
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, input_label, new_figure, shown_value, slides
+from sevenbar.drawing.skeleton import short
 from sevenbar.simulation.agreement import Simulation
-from sevenbar.skeleton import short
 
 #: Marks of the engine along a curve.
 MARKS = 40

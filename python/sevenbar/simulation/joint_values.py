@@ -1,6 +1,6 @@
 """What joints do, read off the frames and the velocities of bodies: geometry alone, no closure.
 
-Frames are those of links after their joints, as `Linkage` has them; the ground comes last.
+Frames are those of links after their joints, as `Loop` has them; the ground comes last.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.linkage import Joint, Linkage
+from sevenbar.kinematics.geometry import Joint, Loop
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class JointValues:
     tilt: Floats
 
 
-def joint_values(linkage: Linkage, bodies: Bodies) -> JointValues:
+def joint_values(linkage: Loop, bodies: Bodies) -> JointValues:
     """The values of all joints of a linkage whose links stand and move so."""
     rows = len(bodies.frames)
     still = np.zeros((rows, 3))

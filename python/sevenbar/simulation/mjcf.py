@@ -17,9 +17,9 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.linkage import inverse
+from sevenbar.kinematics.rigid import inverse
 from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
-from sevenbar.units import LENGTHS
+from sevenbar.text.units import LENGTHS
 
 #: Mass of every body [kg]. The motion that the drive prescribes does not depend on it.
 MASS = 1.0

@@ -8,7 +8,7 @@ from sevenbar.errors import EngineError
 from sevenbar.simulation.engine import Progress, Record, imported
 from sevenbar.simulation.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
 from sevenbar.simulation.prototype import Prototype
-from sevenbar.units import LENGTHS
+from sevenbar.text.units import LENGTHS
 
 #: Linkages below this size [m] have forces and inertias that MuJoCo takes for none.
 SMALLEST = 1e-4

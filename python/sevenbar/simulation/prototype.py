@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.skeleton import frames_along
 from sevenbar.errors import NotCoveredError, RequestError
-from sevenbar.linkage import Linkage, inverse, pose
-from sevenbar.motion import Circuit
-from sevenbar.skeleton import frames_along
+from sevenbar.kinematics.motion import Circuit, Solvable
+from sevenbar.kinematics.rigid import inverse, pose
 
 #: The number of the ground among the bodies.
 GROUND = -1
@@ -128,7 +128,7 @@ class Prototype:
         return np.eye(4) if body == GROUND else self.bodies[body].frame
 
 
-def prototype(linkage: Linkage, circuit: Circuit, row: int, speed: float) -> Prototype:
+def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Prototype:
     """The prototype of a linkage that starts at one row of a circuit with its input at `speed`.
 
     Raises `NotCoveredError` for an idle freedom that is not the spin of a link between two balls.
@@ -213,7 +213,7 @@ def _value(values: Floats, place: int | None) -> float:
     return math.nan if place is None else float(values[place])
 
 
-def _spin_rules(linkage: Linkage, bodies: list[Body], connections: list[Connection]) -> tuple[SpinRule, ...]:
+def _spin_rules(linkage: Solvable, bodies: list[Body], connections: list[Connection]) -> tuple[SpinRule, ...]:
     """The rule of the idle spin of each link between two balls: its y stays across the axis before."""
     rules = []
     for first, joint in enumerate(connections[:-1]):

@@ -13,11 +13,11 @@ import numpy.typing as npt
 from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
-from sevenbar.folder import check_targets, fill_folder, write_columns
-from sevenbar.page import Facts, number_table
-from sevenbar.report import json_text, without_nan
+from sevenbar.drawing.skeleton import short
+from sevenbar.reporting.folder import check_targets, fill_folder, write_columns
+from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.report import json_text, without_nan
 from sevenbar.simulation.agreement import Difference, Simulation
-from sevenbar.skeleton import short
 
 #: The names of figures that a run may have.
 FIGURES = ("output", "joints", "points")
@@ -133,7 +133,7 @@ def write(
     Files are named by the engine, so that both engines share a folder; for MuJoCo its model is added.
     Raises `OutputError` where one of them exists and `force` is not given.
     """
-    from sevenbar.figure import save
+    from sevenbar.drawing.figure import save
     from sevenbar.simulation.figures import figures as drawn
     from sevenbar.simulation.mjcf import mjcf
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.linkage import Linkage, sample_count
+from sevenbar.kinematics.linkage import Linkage, sample_count
 from sevenbar.simulation import exudyn_engine, mujoco_engine
 from sevenbar.simulation.agreement import Simulation, agreement
 from sevenbar.simulation.course import Course, course

@@ -9,7 +9,7 @@ from contextlib import suppress
 import viser
 
 from sevenbar.studio.local_server import LocalServer
-from sevenbar.studio.session import Session
+from sevenbar.studio.state.session import Session
 from sevenbar.studio.tab import Tab
 
 #: How often [s] a server that waits looks whether it is to end.

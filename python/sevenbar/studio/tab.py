@@ -7,14 +7,14 @@ import traceback
 
 import viser
 
-from sevenbar.studio.curves_panel import CurvesPanel
-from sevenbar.studio.files_panel import FilesPanel
-from sevenbar.studio.points_panel import PointsPanel
-from sevenbar.studio.scenery import Scenery
-from sevenbar.studio.session import Session
-from sevenbar.studio.shaping import ShapePanel
-from sevenbar.studio.transport import Transport
-from sevenbar.studio.verdict import verdict
+from sevenbar.studio.panels.curves import CurvesPanel
+from sevenbar.studio.panels.files import FilesPanel
+from sevenbar.studio.panels.points import PointsPanel
+from sevenbar.studio.panels.scenery import Scenery
+from sevenbar.studio.panels.shaping import ShapePanel
+from sevenbar.studio.panels.transport import Transport
+from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.verdict import verdict
 from sevenbar.studio.worker import Worker
 
 #: Widths of the panels [px].

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Dimension
+from sevenbar.description.draft import Dimension
 from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Integers
-from sevenbar.ranges import split_grid, split_name, split_range
+from sevenbar.kinematics.motion import Integers
+from sevenbar.text.ranges import split_grid, split_name, split_range
 
 #: Most values of one axis that are listed: the sweep's description holds each of them.
 MOST_LISTED = 1_000_000

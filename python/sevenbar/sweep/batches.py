@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import SevenbarError
-from sevenbar.linkage import Linkage
-from sevenbar.many import (
+from sevenbar.kinematics.batches import (
     INVALID,
     RSSR_ROWS,
     WORDS,
@@ -22,7 +21,8 @@ from sevenbar.many import (
     rssr_rows,
     rssr_types,
 )
-from sevenbar.motion import Integers
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Integers
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, Plan
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from sevenbar import __version__
 from sevenbar.arrays import Floats
-from sevenbar.draft import Draft
-from sevenbar.linkage import Linkage
-from sevenbar.many import simd_level
-from sevenbar.measures import MEASURES, Measure, measures_named
-from sevenbar.motion import Motion
+from sevenbar.description.draft import Draft
+from sevenbar.kinematics.batches import simd_level
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
+from sevenbar.kinematics.motion import Motion
 from sevenbar.sweep.axes import Given, whole_number
 from sevenbar.sweep.space import Space
 

@@ -10,11 +10,11 @@ from functools import partial
 from itertools import islice
 from pathlib import Path
 
-from sevenbar.draft import Draft
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError
-from sevenbar.linkage import Linkage
-from sevenbar.measures import Measure
-from sevenbar.motion import Motion
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.measures import Measure
+from sevenbar.kinematics.motion import Motion
 from sevenbar.sweep.axes import Given, whole_number
 from sevenbar.sweep.parts import PartsFolder, other_maker
 from sevenbar.sweep.plan import Plan, maker

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Draft
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.sweep.axes import Axis, Given, axis_of, whole_number
 from sevenbar.sweep.sampling import MOST_SOBOL, latin_points, random_points, sobol_points

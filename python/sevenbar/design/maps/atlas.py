@@ -10,15 +10,15 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions, within
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
 from sevenbar.design.maps.rssr_plane import RssrPlane
 from sevenbar.design.maps.window import Axis, Range, axes_of
-from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, shown
-from sevenbar.linkage import Linkage
-from sevenbar.motion import Integers, Motion
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Integers, Motion
 
 #: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
 GRID, LOOP_GRID = 61, 25

@@ -19,9 +19,9 @@ from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
 from sevenbar.design.maps.lettering import LINE, RASTER, names, take
 from sevenbar.design.maps.plane import Kind
+from sevenbar.drawing.figure import STYLE, new_figure
+from sevenbar.drawing.skeleton import short
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.figure import STYLE, new_figure
-from sevenbar.skeleton import short
 
 #: Sheets of paper, width and height [inch].
 SIZES = {"A4": (11.69, 8.27), "A3": (16.54, 11.69), "A2": (23.39, 16.54), "A1": (33.11, 23.39)}

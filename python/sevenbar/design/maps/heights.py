@@ -14,8 +14,8 @@ from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.outline import joined, within
 from sevenbar.design.maps.plane import Take
 from sevenbar.errors import RequestError, shown
-from sevenbar.measures import MEASURES, Measure, measures_named
-from sevenbar.motion import Integers, Motion
+from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
+from sevenbar.kinematics.motion import Integers, Motion
 
 #: About how many contour lines are drawn where none are asked for.
 LEVELS = 9

@@ -11,11 +11,11 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import Axis
-from sevenbar.draft import Draft
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
-from sevenbar.measures import Measure, rows_of
-from sevenbar.motion import Integers, Motion
+from sevenbar.kinematics.measures import Measure, rows_of
+from sevenbar.kinematics.motion import Integers, Motion
 
 #: Counts the motions that were solved, and those in sight.
 Progress = Callable[[int, int], None]

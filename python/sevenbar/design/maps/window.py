@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Dimension, Draft
+from sevenbar.description.draft import Dimension, Draft
 from sevenbar.errors import RequestError, shown
-from sevenbar.ranges import split_named, split_range
+from sevenbar.text.ranges import split_named, split_range
 
 #: What a range looks like, for messages.
 EXAMPLE = "as in 'L1=100:400' or 'L1=10:40cm'"

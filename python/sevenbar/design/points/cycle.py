@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Circuit, Law, Motion, Trace, chosen_circuit
+from sevenbar.kinematics.motion import Circuit, Law, Motion, Trace, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
 ORDERS = ("position", "velocity", "acceleration", "jerk")

@@ -18,9 +18,9 @@ from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import ZERO, LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles
-from sevenbar.figure import CIRCUIT_COLOURS, LINE_STYLES, STYLE, input_label, new_figure, slides
-from sevenbar.scene import prepare_view
-from sevenbar.skeleton import short
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, LINE_STYLES, STYLE, input_label, new_figure, slides
+from sevenbar.drawing.scene import prepare_view
+from sevenbar.drawing.skeleton import short
 
 #: The point found, and what it is compared with.
 FOUND, BOUND = CIRCUIT_COLOURS[1], "#8a8a8a"

@@ -22,8 +22,8 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.motion import Motion
-from sevenbar.units import LENGTHS
+from sevenbar.kinematics.motion import Motion
+from sevenbar.text.units import LENGTHS
 
 
 @dataclass(frozen=True)

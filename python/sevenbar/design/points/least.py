@@ -21,7 +21,7 @@ from sevenbar.design.points.cycle import ORDERS, Cycle, box_of, cycle_of
 from sevenbar.design.points.polish import Polished, polished
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
-from sevenbar.motion import Motion
+from sevenbar.kinematics.motion import Motion
 
 #: The part of the greatest within which upper and lower bound have to agree.
 GAP = 1e-9

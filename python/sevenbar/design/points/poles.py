@@ -19,7 +19,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError
-from sevenbar.motion import Motion, Words
+from sevenbar.kinematics.motion import Motion, Words
 
 #: The least singular value of G, in parts of its greatest, of a single pole. G is known to some 1e-12; a pole
 #: that is known to less than three digits is told as a line.

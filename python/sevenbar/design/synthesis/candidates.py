@@ -12,14 +12,14 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
+from sevenbar.description.files import loads
 from sevenbar.design.synthesis.closure import row_of, transmissions
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.draft import Draft
 from sevenbar.errors import DescriptionError, RequestError
-from sevenbar.files import loads
-from sevenbar.folder import fill_folder, write_csv
-from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Integers, Motion
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Circuit, Integers, Motion
+from sevenbar.reporting.folder import fill_folder, write_csv
 
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.
 CHECK_SAMPLES = 720

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Draft
+from sevenbar.description.draft import Draft
 
 #: The dimensions of a design, in the order of its row.
 NAMES = ("M", "N", "L1", "L2", "L3", "D")

@@ -20,11 +20,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.draft import Dimension
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import CLASSES, in_class
-from sevenbar.draft import Dimension
 from sevenbar.errors import RequestError, SevenbarError
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.extremes import ExtremesComparison, compare_extremes
 from sevenbar.measuring.measured import Ends, MeasuredExtremes
 

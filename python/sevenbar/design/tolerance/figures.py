@@ -12,9 +12,9 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import plain, told_name, unit_of
-from sevenbar.figure import CIRCUIT_COLOURS, STYLE, new_figure
-from sevenbar.motion import Integers
-from sevenbar.skeleton import short
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
+from sevenbar.drawing.skeleton import short
+from sevenbar.kinematics.motion import Integers
 
 #: Bars beyond the first so many share one, and their height [inch].
 MOST_BARS, BAR = 14, 0.28

@@ -15,7 +15,7 @@ from sevenbar.design.tolerance.linear import Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError, shown
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
 
 #: By which sum the wanted error is met.
 SUMS = ("worst", "statistical")

@@ -18,12 +18,12 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.draft import Dimension
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
-from sevenbar.draft import Dimension
 from sevenbar.errors import RequestError
-from sevenbar.linkage import Linkage
-from sevenbar.motion import Integers, Words
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Integers, Words
 
 #: What tolerances may be given as.
 Given = Tolerances | Mapping[str, float | str]

@@ -41,7 +41,7 @@ from sevenbar.design.tolerance.rigid import (
     then,
 )
 from sevenbar.errors import NotCoveredError
-from sevenbar.motion import Integers
+from sevenbar.kinematics.motion import Integers
 
 #: The complex step: its square is nothing beside 1.
 STEP = 1e-30

@@ -21,7 +21,7 @@ from sevenbar.design.tolerance.loop import STEP, Loop, Poses
 from sevenbar.design.tolerance.numbers import Numbered
 from sevenbar.design.tolerance.outputs import PER_TIME, QUANTITIES
 from sevenbar.design.tolerance.rigid import Numbers, cross, moved
-from sevenbar.motion import Circuit, Extremes
+from sevenbar.kinematics.motion import Circuit, Extremes
 
 #: A pose found is the extreme's own where it gives its value to this share of the quantity's greatest one.
 SAME_VALUE = 1e-6

@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.draft import Dimension, Draft
 from sevenbar.design.tolerance.rigid import (
     Numbers,
     Rigid,
@@ -29,9 +30,8 @@ from sevenbar.design.tolerance.rigid import (
     then,
     unit,
 )
-from sevenbar.draft import Dimension, Draft
-from sevenbar.linkage import Linkage
-from sevenbar.written import FREEDOMS
+from sevenbar.kinematics.joints import FREEDOMS
+from sevenbar.kinematics.linkage import Linkage
 
 #: The axes of a ball's turns, and that of all other columns.
 BALL_AXES, OWN_AXIS = (2, 1, 0), 2

@@ -25,7 +25,7 @@ from sevenbar.design.tolerance.exact import Designs
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.errors import RequestError, SevenbarError, shown
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
 
 #: Quantiles that are kept: the median, 95 % and the 3 sigma of a normal distribution.
 LEVELS = (0.00135, 0.025, 0.5, 0.975, 0.99865)

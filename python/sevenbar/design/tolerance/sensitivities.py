@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.draft import Dimension
 from sevenbar.design.tolerance.loop import Loop, Poses
 from sevenbar.design.tolerance.measures import MeasureSlopes, measure_slopes
 from sevenbar.design.tolerance.numbers import Numbered
 from sevenbar.design.tolerance.outputs import QUANTITIES, Output, outputs_of, slopes_of
-from sevenbar.draft import Dimension
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.linkage import Linkage
-from sevenbar.motion import Circuit, Words, chosen_circuit
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Circuit, Words, chosen_circuit
 
 #: A change that counts as small where no tolerance is given [parts of the linkage's size, rad].
 SMALL = 1e-3

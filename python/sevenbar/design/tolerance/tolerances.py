@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Dimension
+from sevenbar.description.draft import Dimension
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.ranges import split_name
-from sevenbar.units import LENGTHS
+from sevenbar.text.ranges import split_name
+from sevenbar.text.units import LENGTHS
 
 #: ISO 2768-1, table 1: permissible deviations [mm] of linear dimensions up to each size [mm], from 0.5 mm on.
 SIZES = (3.0, 6.0, 30.0, 120.0, 400.0, 1000.0, 2000.0, 4000.0)

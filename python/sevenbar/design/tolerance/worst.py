@@ -10,7 +10,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.exact import Designs
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
-from sevenbar.linkage import Linkage
+from sevenbar.kinematics.linkage import Linkage
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,211 @@
+"""The commands `sevenbar compare` and `sevenbar calibrate`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import sevenbar as sb
+from sevenbar.commands.options import (
+    Figures,
+    Force,
+    InputJoint,
+    Source,
+    Speed,
+    figure_formats,
+    tell_written,
+    words,
+)
+from sevenbar.errors import RequestError
+from sevenbar.reporting.folder import check_targets
+
+if TYPE_CHECKING:
+    from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes
+
+Table = Annotated[Path, typer.Argument(metavar="TABLE", help="Measured values: CSV or a text table.")]
+Columns = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--column", help="Column of a quantity by header or number, as in angle=2; may be repeated."
+    ),
+]
+Units = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--unit", help="Unit of a quantity the header does not tell, as in angle=deg; may be repeated."
+    ),
+]
+SkipNan = Annotated[bool, typer.Option("--skip-nan", help="Leave out rows in which a number is missing.")]
+Output = Annotated[
+    str | None, typer.Option("--output", help="The joint that was measured; the file's by default.")
+]
+Start = Annotated[
+    str, typer.Option(help="Input at time 0 where the table has no input, as in '30deg' or '5mm'.")
+]
+ChosenCircuit = Annotated[int | None, typer.Option(help="The circuit; the one of least misfit by default.")]
+ChosenBranch = Annotated[int | None, typer.Option(help="The pass of the circuit, for an input that rocks.")]
+
+
+def compare(
+    linkage: Source,
+    table: Table,
+    align: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Find the zero of the input (phase) or of the output (offset) too; may be repeated."
+        ),
+    ] = None,
+    column: Columns = None,
+    unit: Units = None,
+    skip_nan: SkipNan = False,
+    input_joint: InputJoint = None,
+    output: Output = None,
+    speed: Speed = None,
+    start: Start = "0",
+    circuit: ChosenCircuit = None,
+    branch: ChosenBranch = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for comparison.json, table.csv, rows.csv and the figure.")
+    ] = None,
+    figures: Figures = None,
+    force: Force = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the comparison as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """Compare measured values with the computed motion: differences, and the paper's Table 1."""
+    from sevenbar.measuring import report
+    from sevenbar.measuring.compare import Comparison
+    from sevenbar.measuring.compare import compare as compared
+    from sevenbar.measuring.extremes import ExtremesComparison, compare_extremes
+    from sevenbar.measuring.measured import MeasuredExtremes
+
+    endings = figure_formats(figures, out)
+    loaded = sb.load(linkage)
+    check_targets([out / "comparison.json"] if out is not None else [], force=force)
+    ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
+    found: Comparison | ExtremesComparison
+    if isinstance(measured, MeasuredExtremes):
+        for option, given in (("--align", align), ("--branch", branch)):
+            if given not in (None, []):
+                raise RequestError(
+                    f"{option}: {table} has lowest and highest values of a circuit, no rows; leave it out"
+                )
+        found = compare_extremes(loaded, measured, ends, speed=speed, circuit=circuit)
+    else:
+        begin = _start(loaded, ends.input, start)
+        found = compared(
+            loaded,
+            measured,
+            ends,
+            align=words(align or []),
+            speed=speed,
+            start=begin,
+            circuit=circuit,
+            branch=branch,
+        )
+    written = [] if out is None else report.write_comparison(found, out, endings, force=force)
+    if json:
+        typer.echo(report.comparison_json(found))
+        return
+    report.print_comparison(found)
+    tell_written(written)
+
+
+def calibrate(
+    linkage: Source,
+    table: Table,
+    free: Annotated[
+        list[str] | None,
+        typer.Option(help="A dimension to be found, or a pattern; may be repeated. All by default."),
+    ] = None,
+    hold: Annotated[
+        list[str] | None, typer.Option(help="A dimension to be kept, or a pattern; may be repeated.")
+    ] = None,
+    offset: Annotated[
+        list[str] | None,
+        typer.Option(help="Find the zero of the input or of the output too; may be repeated."),
+    ] = None,
+    column: Columns = None,
+    unit: Units = None,
+    skip_nan: SkipNan = False,
+    input_joint: InputJoint = None,
+    output: Output = None,
+    speed: Speed = None,
+    start: Start = "0",
+    circuit: ChosenCircuit = None,
+    branch: ChosenBranch = None,
+    confidence: Annotated[float, typer.Option(help="How often an interval holds the true value.")] = 0.95,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for calibrated.toml, calibration.json, parameters.csv, rows.csv and the figure."
+        ),
+    ] = None,
+    figures: Figures = None,
+    force: Force = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the calibration as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """Find the dimensions that explain a measured curve, with intervals; a new file (extra 'calibrate')."""
+    from sevenbar.description.files import text_of
+    from sevenbar.measuring import report
+    from sevenbar.measuring.calibrate import calibrate as calibrated
+    from sevenbar.measuring.measured import MeasuredExtremes
+    from sevenbar.measuring.rewrite import calibrated_toml
+
+    endings = figure_formats(figures, out)
+    loaded = sb.load(linkage)
+    check_targets([out / "calibrated.toml"] if out is not None else [], force=force)
+    ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
+    if isinstance(measured, MeasuredExtremes):
+        raise RequestError(
+            f"{table}: lowest and highest values are too few to tell dimensions; give the measured rows"
+        )
+    found = calibrated(
+        loaded,
+        measured,
+        ends,
+        free=words(free or ["*"]),
+        hold=words(hold or []),
+        offsets=words(offset or []),
+        speed=speed,
+        start=_start(loaded, ends.input, start),
+        circuit=circuit,
+        branch=branch,
+        confidence=confidence,
+    )
+    toml = calibrated_toml(text_of(linkage), found)
+    written = [] if out is None else report.write_calibration(found, toml, out, endings, force=force)
+    if json:
+        typer.echo(report.calibration_json(found))
+        return
+    report.print_calibration(found)
+    tell_written(written)
+
+
+def _measured(
+    linkage: sb.Linkage,
+    table: Path,
+    input_joint: str | None,
+    output: str | None,
+    column: list[str] | None,
+    unit: list[str] | None,
+    skip_nan: bool,
+) -> tuple[Ends, Measured | MeasuredExtremes]:
+    """The joints that a measured table is about, and what it holds of them."""
+    from sevenbar.measuring.compare import ends_of
+    from sevenbar.measuring.measured import pairs, read_measured
+
+    ends = ends_of(linkage, input_joint, output)
+    columns, units = pairs(column or (), "--column"), pairs(unit or (), "--unit")
+    return ends, read_measured(table, ends, columns=columns, units=units, skip_nan=skip_nan)
+
+
+def _start(linkage: sb.Linkage, input_joint: str, start: str) -> float:
+    from sevenbar.reporting import report
+
+    return report.joint_value(start, "--start", linkage, linkage.columns.index(input_joint))

@@ -1,0 +1,19 @@
+"""The commands `sevenbar design ..`: linkages for a wanted motion, and points of their links."""
+
+from __future__ import annotations
+
+import typer
+
+from sevenbar.commands.function import function, swing
+from sevenbar.commands.path import path
+from sevenbar.commands.points import inertia, point
+
+design = typer.Typer(
+    name="design",
+    add_completion=False,
+    no_args_is_help=True,
+    help="Find linkages for a wanted motion, and points of links; each is a file that opens in the studio.",
+)
+
+for _command in (function, swing, path, point, inertia):
+    design.command()(_command)

@@ -1,0 +1,100 @@
+"""The command `sevenbar map`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, cast
+
+import typer
+
+import sevenbar as sb
+from sevenbar.commands.options import (
+    Figures,
+    Force,
+    InputJoint,
+    Source,
+    figure_formats,
+    progress_bar,
+    tell_written,
+    words,
+)
+from sevenbar.errors import RequestError, shown
+from sevenbar.reporting.folder import check_targets
+
+if TYPE_CHECKING:
+    from sevenbar.design.maps.plane import Take
+
+
+def map_(
+    linkage: Source,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(help="A dimension and its range, as in L1=100:400 or L1=10:40cm; give it twice."),
+    ] = None,
+    measure: Annotated[
+        list[str] | None, typer.Option(help="Draw contours of this measure too; may be repeated.")
+    ] = None,
+    take: Annotated[
+        str, typer.Option(help="Which circuit's value is drawn: highest, lowest, or a circuit's index.")
+    ] = "highest",
+    levels: Annotated[
+        str | None, typer.Option(help="Values of the contours, as in '20,40,60'; round ones by default.")
+    ] = None,
+    grid: Annotated[
+        int | None, typer.Option(help="Lines of the grid along each range; 61 for an RSSR, else 25.")
+    ] = None,
+    input_joint: InputJoint = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for map.json, boundaries.csv, contours.csv and the figures.")
+    ] = None,
+    figures: Figures = None,
+    size: Annotated[str, typer.Option(help="Sheet of the figures: A4, A3, A2 or A1.")] = "A4",
+    force: Force = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the map as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """Map motion types over two dimensions, with exact boundaries, and contours of any measure."""
+    from sevenbar.design.maps import report
+    from sevenbar.design.maps.atlas import motion_map
+    from sevenbar.design.maps.figures import sheet
+    from sevenbar.design.maps.heights import measure_heights, with_contours
+    from sevenbar.design.maps.window import split_ranges
+
+    endings = figure_formats(figures, out)
+    sheet(size)
+    ranges, at, which = split_ranges(over or []), _levels(levels), _take(take)
+    names = words(measure or [])
+    if levels is not None and not names:
+        raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
+    chosen = with_contours(names) if names else ()
+    loaded = sb.load(linkage)
+    check_targets(report.targets(out, names, endings) if out is not None else [], force=force)
+    with progress_bar(f"mapping {loaded.name}") as progress:
+        found = motion_map(loaded, ranges, grid=grid, input=input_joint, progress=progress)
+        heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
+    written = [] if out is None else report.write(found, heights, out, endings, size=size, force=force)
+    if json:
+        typer.echo(report.as_json(found, heights))
+        return
+    report.print_text(found, heights)
+    tell_written(written)
+
+
+def _take(word: str) -> Take:
+    if word in ("highest", "lowest"):
+        return cast("Take", word)
+    if not word.isdecimal():
+        raise RequestError(
+            f"--take: {shown(word)} is not offered; give highest, lowest, or the index of a circuit, from 0"
+        )
+    return int(word)
+
+
+def _levels(given: str | None) -> list[float] | None:
+    if given is None:
+        return None
+    try:
+        return [float(word) for word in words([given])]
+    except ValueError:
+        raise RequestError(f"--levels: {shown(given)} are not numbers; give some, as in 20,40,60") from None

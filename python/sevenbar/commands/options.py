@@ -1,0 +1,114 @@
+"""What the commands share: arguments and options, and how progress and written files are told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sevenbar.errors import RequestError, shown
+
+Source = Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")]
+Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
+Figures = Annotated[
+    list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
+InputJoint = Annotated[
+    str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
+]
+OutputJoint = Annotated[
+    str | None, typer.Option("--output", help="The joint whose motion is told; the file's by default.")
+]
+Speed = Annotated[str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")]
+
+
+def words(given: list[str]) -> list[str]:
+    """The words of an option that is repeated, or has several parted by commas; each once."""
+    parts = [part.strip() for word in given for part in word.split(",")]
+    return list(dict.fromkeys(part for part in parts if part))
+
+
+def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]:
+    """Endings of figures, png where none is given; raises `RequestError` for others, and without a folder."""
+    if given is None:
+        return ("png",)
+    from sevenbar.drawing.figure import FORMATS
+
+    endings = tuple(word.lower().removeprefix(".") for word in words(given))
+    if not endings:
+        raise RequestError(f"--figures: none given; give some of {', '.join(FORMATS)}, or leave it out")
+    for ending in endings:
+        if ending not in FORMATS:
+            raise RequestError(
+                f"--figures: {shown(ending)} is not a figure format; allowed: {', '.join(FORMATS)}"
+            )
+    if out is None:
+        raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
+    return endings
+
+
+def place_of(at: str) -> tuple[float, float, float]:
+    """The place that `--at` gives; raises `RequestError` for what is not three numbers."""
+    try:
+        u, v, w = (float(word) for word in at.split(","))
+    except ValueError:
+        u = v = w = math.nan
+    if not all(math.isfinite(value) for value in (u, v, w)):
+        raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
+    return u, v, w
+
+
+@contextmanager
+def progress_bar(title: str, *, rate: bool = False) -> Iterator[Callable[[int, int], None]]:
+    """A bar on the error stream, so that what is printed can be piped on; with `rate` how many a second.
+
+    It is shown when the first progress is told, so that a refusal stands alone and short work has none.
+    """
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TaskID,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        """Steps a second."""
+
+        def render(self, task: Task) -> Text:
+            speed = task.finished_speed or task.speed
+            return Text("" if speed is None else f"{speed:,.0f}/s")
+
+    columns = [TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()]
+    bar = Progress(*columns, *([Rate()] if rate else []), TimeRemainingColumn(), console=Console(stderr=True))
+    task: TaskID | None = None
+
+    def progress(done: int, total: int) -> None:
+        nonlocal task
+        if task is None:
+            bar.start()
+            # what was there already is no rate
+            task = bar.add_task(title, total=total, completed=done)
+        bar.update(task, completed=done, total=total)
+
+    try:
+        yield progress
+    finally:
+        if task is not None:
+            bar.stop()
+
+
+def tell_written(paths: Sequence[Path], *, below: bool = True) -> None:
+    """Names the files that were written, if any; `below` other text, a line is left free."""
+    if paths:
+        typer.echo("\n" * below + "written: " + "\n         ".join(str(path) for path in paths))

@@ -1,0 +1,67 @@
+"""The command `sevenbar studio`."""
+
+from __future__ import annotations
+
+import importlib.util
+import ipaddress
+import webbrowser
+from typing import Annotated
+
+import typer
+
+from sevenbar.description.files import text_of
+from sevenbar.errors import MissingExtraError, RequestError
+
+#: Where the studio is served unless told otherwise.
+HOST, PORT = "127.0.0.1", 8077
+
+
+def studio(
+    linkage: Annotated[
+        str, typer.Argument(metavar="[FILE|NAME]", help="A TOML file, or a name of the gallery.")
+    ] = "rssr",
+    host: Annotated[
+        str, typer.Option(help="Address to serve at; another than 127.0.0.1 lets other machines in.")
+    ] = HOST,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port; the next free one where it is taken, 0 for any.")
+    ] = PORT,
+    open_browser: Annotated[
+        bool, typer.Option("--open/--no-open", help="Whether to open the page in the browser.")
+    ] = True,
+) -> None:
+    """Shape a linkage in the browser and see it move (extra 'studio'); Ctrl+C ends it."""
+    text = text_of(linkage)
+    for name in ("viser", "tomlkit"):
+        if importlib.util.find_spec(name) is None:
+            raise MissingExtraError(f"studio needs {name}; install it with: pip install 'sevenbar[studio]'")
+    from sevenbar.studio.server import StudioServer
+
+    try:
+        server = StudioServer(text, linkage, host, port)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower().partition(" (")[0]
+        raise RequestError(
+            f"--host, --port: cannot serve at {host}:{port}: {reason}; give another address"
+        ) from None
+    try:
+        if not _loopback(host):
+            typer.echo(
+                f"whoever reaches {host} over the network can see and change what is open here: there is no "
+                "password",
+                err=True,
+            )
+        typer.echo(f"the studio is at {server.address} (Ctrl+C ends it)")
+        if open_browser:
+            webbrowser.open(server.address)
+        server.wait()
+    finally:
+        server.stop()
+
+
+def _loopback(host: str) -> bool:
+    """Whether an address is this machine's own alone."""
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"

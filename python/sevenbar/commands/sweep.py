@@ -1,0 +1,150 @@
+"""The command `sevenbar sweep`."""
+
+from __future__ import annotations
+
+import json as json_module
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from sevenbar.commands.options import InputJoint, OutputJoint, Source, progress_bar, words
+from sevenbar.errors import RequestError
+
+if TYPE_CHECKING:
+    from sevenbar.sweep.result import Sweep
+
+#: Most linkages of a sweep that leaves no folder: what is made in minutes may be lost.
+MOST_WITHOUT_FOLDER = 100_000
+
+
+def sweep(
+    linkage: Source,
+    over: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A dimension and its values: L1=200:300:51 (a grid), L3=400,450 (a list), M=60cm..80cm "
+            "(to be sampled); may be repeated."
+        ),
+    ] = None,
+    method: Annotated[
+        str | None, typer.Option(help="grid, random, latin or sobol; sobol where a span is to be sampled.")
+    ] = None,
+    count: Annotated[int | None, typer.Option(help="Linkages of a sample.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed of a sample; 0 where none is given.")] = None,
+    measure: Annotated[
+        list[str] | None,
+        typer.Option(help="What is measured: motion_type, limits, swing ..; may be repeated."),
+    ] = None,
+    samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 90,
+    input_joint: InputJoint = None,
+    output: OutputJoint = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for sweep.json and the parts, Parquet files.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the parts that the folder has.")
+    ] = False,
+    mixed: Annotated[
+        bool, typer.Option("--mixed", help="Also with parts of another version or vector unit.")
+    ] = False,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads of this machine; one for each processor by default.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, as in tcp://host:8786.")
+    ] = None,
+    part_size: Annotated[int | None, typer.Option(help="Linkages of a part.")] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the summary as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """Measure many linkages: dimensions over grids, lists and samples, into Parquet (extra 'sweep')."""
+    from sevenbar.description.draft import Draft
+    from sevenbar.description.files import text_of
+    from sevenbar.sweep.axes import axis_from_text
+    from sevenbar.sweep.parts import is_finished
+    from sevenbar.sweep.plan import Plan
+    from sevenbar.sweep.run import USUAL, carry_out
+
+    pairs = [axis_from_text(text) for text in over or ()]
+    axes = dict(pairs)
+    for name, _ in pairs:
+        if [other for other, _ in pairs].count(name) > 1:
+            raise RequestError(f"over: dimension '{name}' is given twice; leave one out")
+    for option, given in (("--resume", resume), ("--mixed", mixed)):
+        if given and out is None:
+            raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")
+    draft = Draft.of(text_of(linkage), linkage)
+    plan = Plan.of(
+        draft, axes, words(measure or list(USUAL)), method=method, count=count, seed=seed,
+        samples=samples, input=input_joint, output=output, part_size=part_size,
+    )  # fmt: skip
+    total = plan.space.count
+    if out is None and total > MOST_WITHOUT_FOLDER:
+        raise RequestError(
+            f"out: missing; {total} linkages are too many to be made for a summary alone "
+            f"(at most {MOST_WITHOUT_FOLDER}), so give a folder, as in --out sweep"
+        )
+    finished = out is not None and is_finished(out)
+    try:
+        with progress_bar(f"sweep of {draft.linkage.name}", rate=True) as progress:
+            found = carry_out(
+                plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
+                progress=progress,
+            )  # fmt: skip
+    except KeyboardInterrupt:
+        kept = "" if out is None else f"; the finished parts are kept in {out}, --resume goes on with them"
+        typer.echo(f"sevenbar: stopped{kept}", err=True)
+        raise typer.Exit(130) from None
+    if json:
+        typer.echo(json_module.dumps({**found.description, "totals": asdict(found.totals)}, indent=2))
+        return
+    _print(found)
+    if out is not None:
+        parts = found.description["parts"]
+        typer.echo(
+            f"\n{'there already' if finished else 'written'}: {out} (sweep.json, {_counted(parts, 'part')})"
+        )
+
+
+def _print(found: Sweep) -> None:
+    """Counts by words, ranges of numbers, of all linkages."""
+    from rich.console import Console
+    from rich.table import Table
+
+    totals, console = found.totals, Console(highlight=False)
+    told = found.description
+    sampling = told["sampling"]
+    seed = "" if sampling["seed"] is None else f", seed {sampling['seed']}"
+    linkages, rows = _counted(totals.linkages, "linkage"), _counted(totals.rows, "row")
+    console.print(f"[bold]{linkages}[/bold] ({sampling['method']}{seed}), {rows}")
+    if totals.invalid:
+        console.print(f"no linkage at all: {totals.invalid} (their rows say why, in status)")
+    for name, counts in totals.words.items():
+        table = Table("", "count", "share", box=None, pad_edge=False)
+        table.columns[0].header = name.replace("_", " ")
+        whole = sum(counts.values())
+        for column in table.columns[1:]:
+            column.justify = "right"
+        for word, number in sorted(counts.items(), key=lambda pair: (-pair[1], pair[0])):
+            table.add_row(word, str(number), f"{100 * number / whole:.3g} %")
+        console.print()
+        console.print(table)
+    if totals.ranges:
+        table = Table("measure", "lowest", "linkage", "highest", "linkage", "rows", box=None, pad_edge=False)
+        for column in table.columns[1:]:
+            column.justify = "right"
+        for name, extent in totals.ranges.items():
+            if extent is None:
+                table.add_row(name, "", "", "", "", "0")
+                continue
+            low, high = (f"{value:.6g}" for value in (extent.lowest, extent.highest))
+            table.add_row(name, low, str(extent.lowest_at), high, str(extent.highest_at), str(extent.rows))
+        console.print()
+        console.print(table)
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"

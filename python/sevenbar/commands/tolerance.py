@@ -1,0 +1,162 @@
+"""The command `sevenbar tolerance`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import sevenbar as sb
+from sevenbar.commands.options import (
+    Figures,
+    Force,
+    InputJoint,
+    OutputJoint,
+    Source,
+    Speed,
+    figure_formats,
+    tell_written,
+)
+from sevenbar.errors import RequestError, shown
+from sevenbar.reporting.folder import check_targets
+
+
+def tolerance(
+    linkage: Source,
+    given: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--tolerance",
+            metavar="NAME=VALUE",
+            help="Half width of a dimension or pattern: L1=0.5, 'twist_*=0.1deg', '*=ISO 2768-m'; repeat it.",
+        ),
+    ] = None,
+    wanted: Annotated[
+        str | None,
+        typer.Option(
+            help="In place of --tolerance: the error allowed of what is told, as in 0.5deg; finds tolerances."
+        ),
+    ] = None,
+    explain: Annotated[
+        Path | None,
+        typer.Option(
+            help="In place of --tolerance: a table of measured extremes whose differences are explained."
+        ),
+    ] = None,
+    circuit: Annotated[int, typer.Option(help="The circuit.")] = 0,
+    samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 90,
+    count: Annotated[int, typer.Option(help="Designs drawn at random; 0 for none.")] = 2000,
+    seed: Annotated[int, typer.Option(help="Seed of the random designs.")] = 0,
+    distribution: Annotated[
+        str, typer.Option(help="How errors spread: normal, uniform or triangular.")
+    ] = "normal",
+    of: Annotated[
+        str | None,
+        typer.Option(
+            "--of", help="What is told: a joint or a point's coordinate, as in P.x; the output by default."
+        ),
+    ] = None,
+    quantity: Annotated[
+        str, typer.Option(help="What is told of it: position, velocity or acceleration.")
+    ] = "position",
+    input_joint: InputJoint = None,
+    output: OutputJoint = None,
+    speed: Speed = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for tolerance.json, dimensions.csv, deviation.csv and the figures."),
+    ] = None,
+    figures: Figures = None,
+    force: Force = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the findings as one JSON object and nothing else.")
+    ] = False,
+) -> None:
+    """What tolerances of the dimensions do to the motion: which matters most, worst case, Monte Carlo."""
+    endings = figure_formats(figures, out)
+    ways = [
+        option
+        for option, value in (("--tolerance", given), ("--wanted", wanted), ("--explain", explain))
+        if value
+    ]
+    if len(ways) > 1:
+        raise RequestError(f"{ways[1]}: {ways[0]} is given too; give one of them")
+    loaded = sb.load(linkage)
+    if explain is not None:
+        _explain(loaded, explain, input_joint, output, speed, out, json=json)
+        return
+    from sevenbar.design.tolerance import report
+    from sevenbar.design.tolerance.inverse import tolerances_for
+    from sevenbar.design.tolerance.linear import linear_estimate
+    from sevenbar.design.tolerance.samples import monte_carlo
+    from sevenbar.design.tolerance.sensitivities import sensitivities
+    from sevenbar.design.tolerance.tolerances import parsed
+    from sevenbar.design.tolerance.worst import worst_case
+
+    tolerances = parsed(given or [])
+    check_targets([out / "tolerance.json"] if out is not None else [], force=force)
+    found = sensitivities(
+        loaded, circuit=circuit, samples=samples, input=input_joint, output=output, speed=speed
+    )
+    if wanted is not None:
+        error = _wanted(wanted, found.outputs[found.place(of, quantity)].unit)
+        linear = tolerances_for(found, error, distribution=distribution, output=of, quantity=quantity)
+    else:
+        linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
+    exact = monte_carlo(found, linear, count, seed=seed) if count != 0 else None
+    told = report.Findings(linear, worst_case(found, linear), exact)
+    written = [] if out is None else report.write(told, out, endings, force=force)
+    if json:
+        typer.echo(report.as_json(told))
+        return
+    report.print_text(told)
+    tell_written(written)
+
+
+def _wanted(text: str, unit: str) -> float:
+    """An error [the output's unit] as a person wrote it; an angle alone is in degrees."""
+    from sevenbar.text.units import ANGLES, LENGTHS, amount, length_sizes
+
+    if unit == "rad":
+        value = amount(text, ANGLES, "deg")
+        hint = "0.5deg"
+    elif unit in LENGTHS:
+        value, hint = amount(text, length_sizes(unit), unit), f"0.5{unit}"
+    else:
+        value, hint = amount(text, {unit: 1.0}, unit), f"0.5 {unit}"
+    if value is None or value <= 0:
+        raise RequestError(f"--wanted: {shown(text)} is not an error; give one greater than 0, as in {hint}")
+    return value
+
+
+def _explain(
+    linkage: sb.Linkage,
+    table: Path,
+    input_joint: str | None,
+    output: str | None,
+    speed: str | None,
+    out: Path | None,
+    *,
+    json: bool,
+) -> None:
+    """Explains a table of measured extremes."""
+    from sevenbar.design.tolerance.explain import explain
+    from sevenbar.design.tolerance.explain_report import explanation_json, print_explanation
+    from sevenbar.measuring.compare import ends_of
+    from sevenbar.measuring.measured import MeasuredExtremes, read_measured
+
+    if out is not None:
+        raise RequestError("--out: an explanation has no folder; print it, or keep what --json prints")
+    ends = ends_of(linkage, input_joint, output)
+    measured = read_measured(table, ends)
+    if not isinstance(measured, MeasuredExtremes):
+        raise RequestError(
+            f"{table}: has rows, which tell dimensions themselves: 'sevenbar calibrate' finds them; "
+            "--explain is for a table of lowest and highest values"
+        )
+    found = explain(linkage, measured, ends, speed=speed)
+    if json:
+        typer.echo(explanation_json(found))
+        return
+    print_explanation(found)

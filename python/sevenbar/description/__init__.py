@@ -1,0 +1,1 @@
+"""A linkage as a file describes it: what it may hold, its errors, its way to a linkage and back."""

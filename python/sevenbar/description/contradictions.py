@@ -1,0 +1,119 @@
+"""What is wrong between keys of a description that may each be right; reads only what has the right form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sevenbar.description.written import (
+    ROW_KINDS,
+    Written,
+    drive_of,
+    driven,
+    entries,
+    is_only_ground,
+    joints_of,
+    names_ground,
+)
+from sevenbar.errors import Problem, shown
+from sevenbar.kinematics.joints import JOINT_KINDS
+
+FEWEST_JOINTS, MOST_JOINTS = 2, 12
+
+
+def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
+    """What is wrong between keys that may each be right; reads only what has the right form."""
+    written = [key for key in ("rssr", "joint", "link") if key in raw]
+    if len(written) != 1:
+        what = f"{' and '.join(written)} are given together" if written else "no linkage is described"
+        return [Problem("", f"{what}; give exactly one of [rssr], [[joint]] or [[link]]")]
+    (key,) = written
+    joints = joints_of(raw)
+    problems = []
+    if key == "joint":
+        tables = [(i, t) for i, t in enumerate(entries(raw, key), 1) if t.get("kind") in JOINT_KINDS]
+        problems = [
+            Problem(f"joint[{i}].{name}", message) for i, t in tables for name, message in _misfits(t)
+        ]
+    elif key == "link":
+        tables = [(i, t) for i, t in enumerate(entries(raw, key), 1) if t.get("joint", "R") in ROW_KINDS]
+        problems = [Problem(f"link[{i}].{name}", m) for i, t in tables for name, m in _row_misfits(t)]
+    countable = FEWEST_JOINTS <= len(joints) <= MOST_JOINTS
+    if isinstance(raw[key], list) and not countable:
+        count = f"a loop of {len(joints)} joint{'' if len(joints) == 1 else 's'}"
+        problems.append(Problem(key, f"{count} is not taken; give {FEWEST_JOINTS} to {MOST_JOINTS}"))
+    taken: set[str] = set()
+    for joint in joints:
+        labels = {joint.name, *joint.columns}
+        if labels & taken:
+            message = f"{shown(joint.name)} is taken already; give each joint its own name"
+            problems.append(Problem(f"{joint.place}.name", message))
+        taken |= labels
+    problems += _misplaced_points(raw, joints)
+    return problems + (driven(joints, drive_of(raw))[2] if countable else [])
+
+
+def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list[Problem]:
+    problems = []
+    taken = {"A", "B"} if [joint.kind for joint in joints] == ["R", "S", "S", "R"] else set()
+    for i, table in enumerate(entries(raw, "point"), 1):
+        link, name = table.get("link"), table.get("name")
+        if isinstance(link, int) and not isinstance(link, bool) and link > len(joints) > 0:
+            last = f"give 1 to {len(joints)}, the last is the ground"
+            problems.append(Problem(f"point[{i}].link", f"{shown(link)} is not a link; {last}"))
+        # no name at all is told of elsewhere
+        if isinstance(name, str) and name.strip() and name.strip() in taken:
+            problems.append(
+                Problem(f"point[{i}].name", f"{shown(name)} is taken already; give each point its own name")
+            )
+        taken.add(str(name).strip())
+    return problems
+
+
+def _misfits(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Keys that a joint of this kind needs and has not, or has and cannot use."""
+    kind = joint["kind"]
+    needs = {"R": {"axis"}, "P": {"axis"}, "C": {"axis"}, "H": {"axis", "pitch"}, "U": {"axes"}, "S": set()}[
+        kind
+    ]
+    given = joint.keys() & {"axis", "axes", "pitch"}
+    missing = [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
+    return missing + [
+        (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)
+    ]
+
+
+def _row_misfits(row: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """The same for a Denavit-Hartenberg row, where one number is the variable and is not written."""
+    kind = row.get("joint", "R")
+    moving = "offset" if kind == "P" else "angle"
+    misfits = []
+    if kind == "H" and "pitch" not in row:
+        misfits.append(("pitch", "is missing; a joint of kind H needs it"))
+    if moving in row:
+        misfits.append((moving, f"is what moves in a joint of kind {kind}; leave it out"))
+    if kind != "H" and "pitch" in row:
+        misfits.append(("pitch", f"does not belong to a joint of kind {kind}; leave it out"))
+    return misfits
+
+
+def grounds(raw: Mapping[str, Any]) -> dict[tuple[int | str, ...], str]:
+    """A message for each place that speaks of a ground, which a loop has without a word."""
+    last = len(joints_of(raw))
+    already = f"link {last} is the ground already"
+    leave = f"is not known here; {already}; leave it out"
+    found: dict[tuple[int | str, ...], str] = {("ground",): leave}
+    for key, kind_key in (("joint", "kind"), ("link", "joint")):
+        for i, table in enumerate(entries(raw, key)):
+            found[(key, i, "ground")] = leave
+            kind = table.get(kind_key)
+            if not names_ground(kind):
+                continue
+            what = f"{shown(kind)} is not a joint kind; {already}"
+            if is_only_ground(table, kind):
+                found[(key, i)] = ""
+                found[(key, i, kind_key)] = f"{what} and needs no entry; leave this one out"
+            else:
+                kinds = ", ".join(ROW_KINDS)
+                found[(key, i, kind_key)] = f"{what}, being the last; give the joint before it: {kinds}"
+    return found

@@ -1,0 +1,393 @@
+"""From a checked description to a linkage: the RSSR paper's numbers, Denavit-Hartenberg rows, a drawing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats
+from sevenbar.description.proportions import disproportions
+from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.kinematics.geometry import Drive, Joint, Point
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.rigid import inverse, pose
+
+if TYPE_CHECKING:
+    from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
+
+#: Below this share of the size of a drawn pose a link has no length.
+NO_LENGTH = 1e-12
+
+#: Report frame of Denavit-Hartenberg rows against the frame of the ground link: x is j, y is k, z is i.
+_I_ALONG_LAST_AXIS = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+#: A point (u, v, w) on a row's link: u along its joint, v along the link, w = u x v.
+_UVW = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
+
+
+def rssr(
+    M: float,
+    N: float,
+    L1: float,
+    L3: float,
+    D: float = 0.0,
+    L2: float | None = None,
+    *,
+    name: str = "RSSR",
+    length_unit: str = "mm",
+    speed: float | str = 1.0,
+) -> Linkage:
+    """The RSSR in the layout of Sun and Zhou: crank about z at height N, rocker about x at (M, D, 0).
+
+    `A = (L1 cos alpha, L1 sin alpha, N)`, `B = (M, D + L3 cos beta, L3 sin beta)`, `|A - B| = L2`; lengths
+    in `length_unit`. L2 left out is `|A1 B1|`, `L2^2 = (L1 - M)^2 + L3^2 + N^2`. Raises `DescriptionError`
+    with all that is wrong.
+
+        >>> import sevenbar as sb
+        >>> sb.rssr(M=700, N=700, L1=250, L3=550, D=0).motion().motion_type
+        'crank-rocker'
+
+    Source: docs/rssr.md, (1) and (2); Sun and Zhou, Figure 2, eq. (5) to (7).
+    """
+    dimensions = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D}
+    if L2 is not None:
+        dimensions["L2"] = L2
+    raw = {
+        "format": 1,
+        "name": name,
+        "length_unit": length_unit,
+        "drive": {"speed": _plain(speed)},
+        "rssr": {key: _plain(value) for key, value in dimensions.items()},
+    }
+    return from_description(raw)
+
+
+def from_axes(
+    joints: Sequence[Mapping[str, Any]],
+    *,
+    name: str = "linkage",
+    length_unit: str = "mm",
+    speed: float | str = 1.0,
+    points: Sequence[Mapping[str, Any]] = (),
+) -> Linkage:
+    """A linkage from its joints as drawn in one assembled pose, in loop order: kind, point, direction.
+
+    Each joint is a mapping with `kind` (R P H C U S), `at` (three coordinates), `axis` (three numbers;
+    `axes`, two of them, for U; none for S), `pitch` (length per turn) for H, and perhaps `name`. Link i lies
+    between joints i and i + 1, the last is the ground. Every joint is at zero in this pose.
+
+        >>> import sevenbar as sb
+        >>> linkage = sb.from_axes([
+        ...     {"kind": "R", "at": (0, 0, 700), "axis": (0, 0, 1)},
+        ...     {"kind": "S", "at": (250, 0, 700)},
+        ...     {"kind": "S", "at": (700, 550, 0)},
+        ...     {"kind": "R", "at": (700, 0, 0), "axis": (1, 0, 0)},
+        ... ])
+        >>> linkage.motion().motion_type
+        'crank-rocker'
+    """
+    raw = {
+        "format": 1,
+        "name": name,
+        "length_unit": length_unit,
+        "drive": {"speed": _plain(speed)},
+        "joint": _plain(joints),
+        "point": _plain(points),
+    }
+    return from_description(raw)
+
+
+def from_dh(
+    joints: str,
+    *,
+    length: Sequence[float],
+    twist: Sequence[float],
+    offset: Sequence[float | None],
+    angle: Sequence[float | None] | None = None,
+    pitch: Sequence[float | None] | None = None,
+    names: Sequence[str] | None = None,
+    name: str = "linkage",
+    length_unit: str = "mm",
+    speed: float | str = 1.0,
+    points: Sequence[Mapping[str, Any]] = (),
+) -> Linkage:
+    """A linkage from classic Denavit-Hartenberg numbers, one of each for a link, the ground last.
+
+    `A_i = Rz(theta_i) Tz(offset_i) Tx(length_i) Rx(twist_i)`, joint i stands before link i, and the product
+    of all is the identity. `joints` has a letter R, P or H for each joint. Lengths and offsets are in
+    `length_unit` and may be negative, angles in radians. The variable of R and H is theta, that of P the
+    offset, its theta being the fixed `angle`; `pitch` is the length per turn of H, whose offset is its value
+    at theta = 0. What a joint has not (the offset of P, the angle of R and H, the pitch of R and P) is `None`
+    or 0. A point is `{"name": .., "link": .., "at": (u, v, w)}`: from where the link before meets the joint's
+    axis, u along that axis, v along the link, w = u x v. Raises `DescriptionError` with all that is wrong.
+
+        >>> import sevenbar as sb
+        >>> twists = [0.3, 0.6320397, 0.3, 0.6320397]
+        >>> bennett = sb.from_dh("RRRR", length=[1, 2, 1, 2], twist=twists, offset=[0, 0, 0, 0])
+        >>> bennett.columns
+        ('theta_1', 'theta_2', 'theta_3', 'theta_4')
+
+    Source: docs/conventions.md, (1); the 7R paper's loop and its u, v, w.
+    """
+    columns = {"length": length, "twist": twist, "offset": offset, "angle": angle, "pitch": pitch}
+    rows = _rows(joints, {key: _plain(values) for key, values in columns.items()}, _plain(names))
+    raw = {
+        "format": 1,
+        "name": name,
+        "length_unit": length_unit,
+        "angle_unit": "rad",
+        "drive": {"speed": _plain(speed)},
+        "link": rows,
+        "point": _plain(points),
+    }
+    return from_description(raw)
+
+
+def _rows(joints: object, columns: Mapping[str, Any], names: Any) -> list[dict[str, Any]]:
+    """The rows that a file would hold, without the zeros that only fill a place."""
+    if not isinstance(joints, str):
+        raise DescriptionError(
+            [Problem("joints", f"{shown(joints)} is not a text; give a letter for each joint, as in 'RRRR'")]
+        )
+    given = {key: values for key, values in {**columns, "name": names}.items() if values is not None}
+    problems = [
+        Problem("names" if key == "name" else key, message)
+        for key, values in given.items()
+        if (message := _miscounted(values, len(joints)))
+    ]
+    if problems:
+        raise DescriptionError(problems)
+    rows: list[dict[str, Any]] = []
+    for i, letter in enumerate(joints):
+        # these keys are refused in a row of this kind, whatever they hold
+        idle = {"R": ("angle", "pitch"), "P": ("offset", "pitch"), "H": ("angle",)}.get(letter, ())
+        row = {key: values[i] for key, values in given.items() if values[i] is not None}
+        numbers = {key: value for key, value in row.items() if not (key in idle and value == 0)}
+        rows.append({"joint": letter, **numbers})
+    return rows
+
+
+def _miscounted(values: object, count: int) -> str:
+    if not isinstance(values, list):
+        return f"{shown(values)} is not a list; give {count}, one for each joint"
+    return "" if len(values) == count else f"{len(values)} given for {count} joints; give {count}"
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and NumPy numbers as the lists and numbers that a file would hold."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: _plain(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    return value
+
+
+def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
+    """The linkage that a description tells of, by the tables and keys of a file; it keeps them.
+
+    Raises `DescriptionError` with all that is wrong; `source` is the file it came from.
+    """
+    from sevenbar.description import schema
+
+    form = schema.check(raw, source=source)
+    if problems := disproportions(form):
+        raise DescriptionError(problems, source)
+    if form.rssr is not None:
+        linkage = _from_dimensions(form.rssr)
+    elif form.joint is not None:
+        linkage = _from_drawing(form, form.joint, source)
+    else:
+        linkage = _from_rows(form, form.link or ())
+    return replace(
+        linkage,
+        name=form.name,
+        length_unit=form.length_unit,
+        points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
+        drive=Drive(*form.driven, form.drive.speed),
+        description=raw,
+    )
+
+
+def _from_dimensions(form: RssrForm) -> Linkage:
+    base = pose(np.eye(3), [0.0, 0.0, form.N])
+    # joint 4 turns the ground against the rocker, about -x, so that its value is the paper's beta
+    ground = pose([[0, 0, -1], [-1, 0, 0], [0, 1, 0]], [form.M, form.D, 0.0])
+    links = np.stack(
+        [
+            pose(np.eye(3), [form.L1, 0.0, 0.0]),
+            pose(np.eye(3), [form.coupler, 0.0, 0.0]),
+            pose(np.diag([1.0, -1.0, -1.0]), [form.L3, 0.0, 0.0]),
+        ]
+    )
+    from sevenbar.description.written import RSSR_JOINTS
+
+    return Linkage(
+        name="RSSR",
+        joints=tuple(Joint(kind, name) for name, kind in RSSR_JOINTS),
+        base=base,
+        ground=ground,
+        links=links,
+        point_frames=np.stack([np.eye(4)] * 4),
+        drive=Drive("crank", "rocker"),
+        points=(Point("A", 1, (form.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
+        dimensions={"M": form.M, "N": form.N, "L1": form.L1, "L2": form.coupler, "L3": form.L3, "D": form.D},
+    )
+
+
+def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
+    """Classic Denavit-Hartenberg rows: the ground's frame is that of the last link, its axes renamed."""
+    report = pose(_I_ALONG_LAST_AXIS, np.zeros(3))
+    # what follows the joint's own motion in each row: Tz(offset) or Rz(angle), the other being the variable
+    fixed = [pose(_about_z(row.angle), [0.0, 0.0, row.offset]) for row in rows]
+    spans = [pose(_about_x(row.twist), [row.length, 0.0, 0.0]) for row in rows]
+    ground = report @ inverse(fixed[-1])
+    # u, v, w of a point: v goes along the link, so after the fixed angle; u counts from before the offset
+    points = [pose(_about_z(row.angle) @ _UVW, np.zeros(3)) for row in rows]
+    points[-1] = ground @ points[-1]
+    dimensions: dict[str, float] = {}
+    for i, row in enumerate(rows, 1):
+        dimensions |= {f"length_{i}": row.length, f"twist_{i}_deg": _degrees(row.twist)}
+        dimensions |= (
+            {f"angle_{i}_deg": _degrees(row.angle)} if row.joint == "P" else {f"offset_{i}": row.offset}
+        )
+        dimensions |= {f"pitch_{i}": row.pitch} if row.joint == "H" else {}
+    return Linkage(
+        name=form.name,
+        joints=tuple(
+            Joint(kind, name, pitch=row.pitch) for (name, kind), row in zip(form.joints, rows, strict=True)
+        ),
+        base=report @ spans[-1],
+        ground=ground,
+        links=np.stack([f @ span for f, span in zip(fixed[:-1], spans[:-1], strict=True)]),
+        point_frames=np.stack(points),
+        drive=Drive(*form.driven),
+        dimensions=dimensions,
+    )
+
+
+def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:
+    """Joints as drawn, all at zero: the frames on both sides of each, in ground coordinates."""
+    names, kinds = zip(*form.joints, strict=True)
+    rssr = "".join(kinds) == "RSSR"
+    problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
+    if problems:
+        raise DescriptionError(problems, source)
+    places = [np.array(joint.at) for joint in drawn]
+    # x of a frame goes towards the joint after, of the last one towards that before
+    towards = [*places[1:], places[-2]]
+    angles = [_between(*joint.axes) if joint.axes else 0.0 for joint in drawn]
+    before = [pose(_frame(j, t - p), p) for j, p, t in zip(drawn, places, towards, strict=True)]
+    # a joint U at zero is not the identity: it turns from its first axis to its second
+    after = [frame @ pose(_about_x(a), np.zeros(3)) for frame, a in zip(before, angles, strict=True)]
+    return Linkage(
+        name=form.name,
+        joints=tuple(
+            Joint(joint.kind, name, pitch=joint.pitch or 0.0, angle=angle)
+            for joint, name, angle in zip(drawn, names, angles, strict=True)
+        ),
+        base=before[0],
+        ground=after[-1],
+        links=np.stack([inverse(a) @ b for a, b in zip(after[:-1], before[1:], strict=True)]),
+        point_frames=np.stack([*(inverse(frame) for frame in after[:-1]), np.eye(4)]),
+        drive=Drive(*form.driven),
+        points=(Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else (),
+    )
+
+
+def _coincident(drawn: tuple[JointForm, ...], names: Sequence[str]) -> list[Problem]:
+    """Links of a drawn RSSR that have no length: its closed form has nothing to turn."""
+    crank, ball_a, ball_b, rocker = (np.array(joint.at) for joint in drawn)
+    arm_a, arm_b, coupler = ball_a - crank, ball_b - rocker, ball_b - ball_a
+    size = max(np.linalg.norm(arm) for arm in (arm_a, arm_b, coupler))
+    problems = [
+        Problem(
+            f"joint[{i}].at",
+            f"{list(drawn[i - 1].at)} lies on the axis of {names[end]}; the link between has no length",
+        )
+        for i, end, arm in ((2, 0, arm_a), (3, 3, arm_b))
+        if not np.linalg.norm(np.cross(_unit(drawn[end].axis), arm)) > NO_LENGTH * size
+    ]
+    if not np.linalg.norm(coupler) > NO_LENGTH * size:
+        place = list(drawn[2].at)
+        problems.append(
+            Problem("joint[3].at", f"{place} is the place of joint[2]; the coupler has no length")
+        )
+    return problems
+
+
+def _coincident_balls(drawn: tuple[JointForm, ...]) -> list[Problem]:
+    """Two balls in a row at one place: a single ball with three freedoms too many."""
+    places = np.array([joint.at for joint in drawn])
+    size = np.linalg.norm(places - places[0], axis=1).max()
+    problems = []
+    for i, joint in enumerate(drawn):
+        last = i - 1 if i > 0 else len(drawn) - 1
+        apart = np.linalg.norm(places[i] - places[last])
+        if joint.kind == drawn[last].kind == "S" and not apart > NO_LENGTH * size:
+            place = f"{list(joint.at)} is the place of joint[{last + 1}]"
+            message = f"{place}; link {last + 1} between two balls has no length, so leave one ball out"
+            problems.append(Problem(f"joint[{i + 1}].at", message))
+    return problems
+
+
+def _frame(joint: JointForm, towards: Floats) -> Floats:
+    """Columns x, y, z of a joint's frame: z along its axis; of a ball the axes of the ground."""
+    if joint.axes:
+        first, second = joint.axes
+        z, x = _unit(first), _unit(np.cross(_unit(first), _unit(second)))
+        return np.column_stack([x, np.cross(z, x), z])
+    return np.eye(3) if joint.axis is None else _frame_about(joint.axis, towards)
+
+
+def _between(first: npt.ArrayLike, second: npt.ArrayLike) -> float:
+    """The angle [rad] from one axis to another."""
+    a, b = _unit(first), _unit(second)
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
+
+
+def _unit(vector: npt.ArrayLike | None) -> Floats:
+    direction = np.asarray(vector, dtype=np.float64)
+    return np.asarray(direction / math.hypot(*direction))
+
+
+def _about_x(angle: float) -> Floats:
+    c, s = _cosine_and_sine(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
+def _about_z(angle: float) -> Floats:
+    c, s = _cosine_and_sine(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _cosine_and_sine(angle: float) -> tuple[float, float]:
+    """Both, with an exact 0 where only rounding is left: twists of 90 or 180 degrees are meant exactly."""
+    rounding = np.finfo(float).eps * abs(angle)
+    c, s = math.cos(angle), math.sin(angle)
+    return (0.0 if abs(c) < rounding else c), (0.0 if abs(s) < rounding else s)
+
+
+def _degrees(angle: float) -> float:
+    """An angle as a person wrote it: without the last digit, which the way to radians and back may change."""
+    return float(f"{math.degrees(angle):.15g}")
+
+
+def _frame_about(axis: npt.ArrayLike | None, towards: Floats) -> Floats:
+    """Columns x, y, z: z along the axis, x across it towards a place (any where that lies on the axis)."""
+    z = _unit(axis)
+    across = towards - (towards @ z) * z
+    if np.linalg.norm(across) <= NO_LENGTH * np.linalg.norm(towards):
+        across = np.eye(3)[np.argmin(np.abs(z))]
+        across = across - (across @ z) * z
+    x = across / np.linalg.norm(across)
+    # of a place almost on the axis the first step leaves little but rounding, some of it along the axis
+    x = x - (x @ z) * z
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])

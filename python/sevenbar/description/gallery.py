@@ -1,0 +1,66 @@
+"""Linkages that come with Sevenbar, each a TOML file that names its source."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable
+from difflib import get_close_matches
+from importlib import resources
+
+#: Names that a message offers for one that does not exist.
+MOST_OFFERED = 3
+
+
+def names() -> tuple[str, ...]:
+    """The names of all linkages of the gallery, in alphabetic order.
+
+    >>> len(names()), names()[0]
+    (19, 'bennett')
+    """
+    folder = resources.files("sevenbar.description") / "gallery"
+    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+def title(name: str) -> str:
+    """What a linkage of the gallery is called.
+
+    >>> title("bennett")
+    'Bennett linkage'
+    """
+    return str(tomllib.loads(text(name))["name"])
+
+
+def nearest(word: str, others: Iterable[str] = ()) -> tuple[str, ...]:
+    """The names most like a word, best first, at most three: of the gallery and of `others` (file names).
+
+    A name of the gallery also counts where its title has the word.
+
+        >>> nearest("Seven-R")
+        ('seven_r',)
+        >>> nearest("7R")
+        ('seven_r',)
+    """
+    plain = {_plain(name): name for name in (*names(), *others)}
+    sought = _plain(word[:100])
+    if not sought:
+        return ()
+    if sought in plain:
+        return (plain[sought],)
+    near = get_close_matches(sought, plain, n=MOST_OFFERED, cutoff=0.7)
+    if len(sought) > 1:
+        near += [name for name in plain if sought in name or name in sought]
+    found = [plain[name] for name in near]
+    if not found:
+        found = [name for name in names() if sought in map(_plain, title(name).split())]
+    return tuple(dict.fromkeys(found))[:MOST_OFFERED]
+
+
+def _plain(name: str) -> str:
+    """A name without what people leave out or write otherwise: case, `_`, `-`, spaces, the ending."""
+    return re.sub(r"[\W_]", "", name.lower().removesuffix(".toml"))
+
+
+def text(name: str) -> str:
+    """The TOML text of a linkage of the gallery."""
+    return (resources.files("sevenbar.description") / "gallery" / f"{name}.toml").read_text(encoding="utf-8")

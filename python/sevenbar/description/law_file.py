@@ -1,0 +1,171 @@
+"""An input law from a table of text: times, values of the input, and its rates where the table has them."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.errors import MissingExtraError
+from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
+from sevenbar.kinematics.motion import Law
+from sevenbar.text.table import Table, read_table
+from sevenbar.text.units import measured_unit
+
+#: Degree of the spline: its third derivative, the jerk, is still smooth.
+DEGREE = 5
+
+#: Where velocity and change of the input differ by more than this part, their units do not belong together:
+#: they differ by pi / 180 or 2 pi / 60 then, while a coarse table differs by its curvature only.
+UNIT_SLIP = 0.5
+
+#: What a table can hold beside the time, in the order of derivatives.
+QUANTITIES = ("value", "velocity", "acceleration", "jerk")
+
+
+def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | None = None) -> Law:
+    r"""The law of a table of text for a joint of a linkage: its drive's, or `input`.
+
+    A header names each column and its unit, as in `time [s], crank [deg], crank [rad/s]` or
+    `time_s,crank_deg,crank_rad_s`. The unit says what a column is. Needed are a time and the value of the
+    input; velocity, acceleration and jerk are taken where they are given. What is not given is differentiated
+    from a spline of degree five through the highest derivative that is (extra `[law]`).
+
+    Raises `TableError` for a file that is no such table, `RequestError` for a joint that cannot drive,
+    `MissingExtraError` where a spline is needed and SciPy is missing.
+
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import sevenbar as sb
+        >>> head = "time [s],crank [deg],crank [deg/s],crank [deg/s^2],crank [deg/s^3]"
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     table = Path(folder) / "law.csv"
+        ...     _ = table.write_text(f"{head}\n0,0,0,90,0\n1,45,90,90,0\n")
+        ...     law = load_law(table, sb.load("rssr"))
+        >>> law.q.round(6).tolist()
+        [0.0, 0.785398]
+    """
+    column = linkage.column(linkage.drive.joint if input is None else input, "input")
+    table = read_table(Path(path), "an input law")
+    if len(table.rows) > MOST_SAMPLES:
+        raise table.wrong(f"has more than {MOST_SAMPLES} rows; give every tenth of them, say")
+    places = _places(table, linkage, column)
+    written = {quantity: table.numbers(place) for quantity, place in places.items()}
+    table.refuse_gaps(
+        {places[quantity]: numbers for quantity, numbers in written.items()}, "leave such rows out"
+    )
+    table.refuse_falling(written["time"], np.arange(len(table.rows)))
+    numbers = {q: written[q] * _size(table, place, linkage.length_unit) for q, place in places.items()}
+    t = numbers.pop("time")
+    if linkage.column_kinds[column] == "turn":
+        _refuse_jumps(table, numbers, places["value"])
+    _refuse_other_rates(table, t, numbers, places)
+    return Law.of(t, *_completed(table, t, [numbers[q] for q in QUANTITIES if q in numbers]))
+
+
+def _places(table: Table, linkage: Linkage, column: int) -> dict[str, int]:
+    """The column of each quantity, told by its unit; by its name, too, where several have such a unit."""
+    name, kind = linkage.columns[column], linkage.column_kinds[column]
+    owners = [joint.name for joint in linkage.joints for _ in joint.columns]
+    heads = [table.name_and_unit(place) for place in range(len(table.names))]
+    units = [measured_unit(unit) for _, unit in heads]
+    sorts = {"time": ("time", 0), **{quantity: (kind, order) for order, quantity in enumerate(QUANTITIES)}}
+    found = {}
+    for quantity, sort in sorts.items():
+        fitting = [i for i, unit in enumerate(units) if unit is not None and (unit.kind, unit.order) == sort]
+        if quantity == "time" and not fitting:
+            fitting = [
+                i for i, (head, unit) in enumerate(heads) if not unit and head.lower() in ("t", "time")
+            ]
+        if len(fitting) > 1:
+            what = {"value": "angle" if kind == "turn" else "position"}.get(quantity, quantity)
+            own = {word.lower() for word in (name, owners[column], "input", what, "time", "t")}
+            named = [place for place in fitting if heads[place][0].lower() in own]
+            if len(named) != 1:
+                several = ", ".join(table.labels[place] for place in fitting)
+                raise table.wrong(
+                    f"line {table.header_line}: {several} may each be the {what}; "
+                    f"keep the one of the input, or name it '{name}' and its unit"
+                )
+            fitting = named
+        if fitting:
+            found[quantity] = fitting[0]
+    _refuse_what_is_missing(table, found, name, kind)
+    return found
+
+
+def _refuse_what_is_missing(table: Table, found: Mapping[str, int], name: str, kind: str) -> None:
+    value, moves, unit = ("an angle", "turns", "deg") if kind == "turn" else ("a position", "slides", "mm")
+    if "time" not in found or "value" not in found:
+        what = f"with {value} of {name}, which {moves}" if "time" in found else "for the time"
+        raise table.wrong(f"no column {what}; {table.header}; name them as in 'time [s],{name} [{unit}]'")
+    given = [quantity in found for quantity in QUANTITIES]
+    if given != sorted(given, reverse=True):
+        gap = given.index(False)
+        higher = next(quantity for quantity in QUANTITIES[gap:] if quantity in found)
+        alone = f"{table.labels[found[higher]]} is given without a column of {QUANTITIES[gap]}"
+        raise table.wrong(f"{alone}; add that, or leave this out")
+
+
+def _size(table: Table, place: int, length_unit: str) -> float:
+    """What one unit of a column is in seconds, radians or the linkage's length; a bare time is in seconds."""
+    unit = measured_unit(table.name_and_unit(place)[1])
+    return 1.0 if unit is None else unit.size_in(length_unit)
+
+
+def _refuse_jumps(table: Table, numbers: Mapping[str, Floats], place: int) -> None:
+    """Refuses an angle that begins anew after a full turn, through which no spline can go."""
+    jumps = np.flatnonzero(np.abs(np.diff(numbers["value"])) > math.pi)
+    if jumps.size and "velocity" not in numbers:
+        row = int(jumps[0])
+        before, after = table.rows[row][place], table.rows[row + 1][place]
+        raise table.wrong(
+            f"goes from {before} to {after} in one row, more than half a turn; "
+            "let the angle count on past a full turn, and give rows that are nearer",
+            row=row + 1,
+            column=place,
+        )
+
+
+def _refuse_other_rates(
+    table: Table, t: Floats, numbers: Mapping[str, Floats], places: Mapping[str, int]
+) -> None:
+    """Refuses a velocity that is not that of the values, nearly always a slip of its unit."""
+    if "velocity" not in numbers or t.size < 2:
+        return
+    moved, velocity = np.diff(numbers["value"]), numbers["velocity"]
+    expected = 0.5 * (velocity[1:] + velocity[:-1]) * np.diff(t)
+    scale = max(np.abs(moved).sum(), np.abs(expected).sum())
+    if np.abs(moved - expected).sum() > UNIT_SLIP * scale:
+        makes, changes = np.abs(expected).sum(), np.abs(moved).sum()
+        rests = changes <= np.finfo(float).eps * makes
+        told = "those values rest" if rests else f"it makes for {makes / changes:.3g} times its changes"
+        raise table.wrong(
+            f"is no velocity of {table.labels[places['value']]}: {told}; check both units",
+            column=places["velocity"],
+        )
+
+
+def _completed(table: Table, t: Floats, given: Sequence[Floats]) -> list[Floats]:
+    """The value and its three derivatives: the highest that is given is differentiated by a spline."""
+    missing = len(QUANTITIES) - len(given)
+    if missing == 0:
+        return list(given)
+    through = f"a spline through each {QUANTITIES[len(given) - 1]}"
+    columns = f"columns of {' and '.join(QUANTITIES[len(given) :])}"
+    if t.size <= DEGREE:
+        rows = "one row is too few" if t.size == 1 else f"{t.size} rows are too few"
+        raise table.wrong(f"{rows}: {through} needs {DEGREE + 1}; give more rows, or {columns}")
+    try:
+        from scipy.interpolate import make_interp_spline
+    except ImportError:
+        raise MissingExtraError(
+            f"{table.source}: {through} needs SciPy; install it with: pip install 'sevenbar[law]', or give "
+            f"{columns}"
+        ) from None
+    spline = make_interp_spline(t, given[-1], k=DEGREE)
+    return [*given, *(np.asarray(spline(t, nu=order)) for order in range(1, missing + 1))]

@@ -1,0 +1,81 @@
+"""Whether the lengths of one loop can be seen beside each other in double precision."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sevenbar.errors import Problem, shown
+
+if TYPE_CHECKING:
+    from sevenbar.description.schema import JointForm, LinkageForm, LinkForm
+
+#: A length below this part of the greatest may be lost: poses count as closed when they miss by less.
+LEAST_SHARE = 1e-11
+
+#: Shorter ones [length] are rounding of computed zeros: nobody draws a billionth of a unit.
+MEANT = 1e-9
+
+
+def disproportions(form: LinkageForm) -> list[Problem]:
+    """What is wrong where lengths as meant are mostly lost beside the greatest: the number that is too great.
+
+    A loop is closed to a part of its size, so beside 1e15 a length of 1 is nothing, and circuits that differ
+    by it are one. A few lengths that are lost do no harm, as zeros that a program computed; where they are
+    half of all, it is the great one that is wrong. An RSSR is solved in closed form, without a size.
+    """
+    if "".join(kind for _, kind in form.joints) == "RSSR":
+        return []
+    if form.joint is not None:
+        return _of_drawing(form.joint, form.length_unit)
+    return _of_rows(form.link or (), form.length_unit)
+
+
+def _of_drawing(drawn: Sequence[JointForm], unit: str) -> list[Problem]:
+    places = np.array([joint.at for joint in drawn])
+    ahead = np.linalg.norm(np.roll(places, -1, axis=0) - places, axis=1)
+    # a joint that is near one of its neighbours is not the one that is far away
+    beside = [[d for d in pair if d >= MEANT] for pair in zip(ahead, np.roll(ahead, 1), strict=True)]
+    nearest = [float(min(pair)) for pair in beside if pair]
+    pitches = [abs(joint.pitch or 0.0) for joint in drawn]
+    steepest = int(np.argmax(pitches))
+    lost = _lost([*nearest, *pitches], max(float(ahead.max()), pitches[steepest]))
+    if not lost:
+        return []
+    if pitches[steepest] > ahead.max():
+        message = f"{pitches[steepest]:.3g} {unit} is too long"
+        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {_told(lost, unit)}")]
+    away = np.linalg.norm(places - np.median(places, axis=0), axis=1)
+    far = int(away.argmax())
+    message = f"{shown(list(drawn[far].at))} is {away[far]:.3g} {unit} from most of the others"
+    return [Problem(f"joint[{far + 1}].at", f"{message}, {_told(lost, unit)}")]
+
+
+def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
+    numbers = {
+        f"link[{i}].{key}": value
+        for i, row in enumerate(rows, 1)
+        for key in ("length", "offset", "pitch")
+        if (value := getattr(row, key))
+    }
+    if not numbers:
+        return []
+    place = max(numbers, key=lambda place: abs(numbers[place]))
+    lost = _lost([abs(value) for value in numbers.values()], abs(numbers[place]))
+    return [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {_told(lost, unit)}")] if lost else []
+
+
+def _lost(lengths: Sequence[float], greatest: float) -> list[float]:
+    """The lengths that are lost beside the greatest, where they are at least half of those that are meant."""
+    meant = [length for length in lengths if length >= MEANT]
+    lost = [length for length in meant if length < LEAST_SHARE * greatest]
+    return lost if 2 * len(lost) >= len(meant) else []
+
+
+def _told(lost: Sequence[float], unit: str) -> str:
+    return (
+        f"and {max(lost):.3g} {unit} is lost in rounding beside that; give lengths of which the greatest is "
+        f"at most {1 / LEAST_SHARE:.0e} times the others"
+    )

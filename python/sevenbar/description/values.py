@@ -1,0 +1,118 @@
+"""What one value of a description may be: pydantic types, each with the message for a value that is none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from sevenbar.description.written import ROW_KINDS, meant_kind
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.kinematics.joints import JOINT_KINDS
+from sevenbar.text.units import sliding_speed, turning_speed, unknown_unit
+
+#: Dimensions outside this range are slips of the pen, and their powers would overflow.
+LARGEST_DIMENSION = 1e100
+
+EXAMPLE_OF_AXES = "as in [[1, 0, 0], [0, 1, 0]]"
+
+#: Sine of the angle below which the two axes of a joint U are one axis to the digits of a drawing.
+PARALLEL = 1e-9
+
+
+def refuse(message: str) -> PydanticCustomError:
+    """The error that tells a person this of a value."""
+    # pydantic reads braces in a message as a template
+    return PydanticCustomError("sevenbar", "{message}", {"message": message})
+
+
+def _number(value: object) -> float:
+    if isinstance(value, str):
+        raise refuse(f"{shown(value)} is text; give a number without quotes")
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise refuse(f"{shown(value)} is not a number; give a number")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise refuse(f"{shown(value)} is not a finite number; give a finite number")
+    if abs(value) > LARGEST_DIMENSION:
+        raise refuse(f"{shown(value)} is out of range; give a number up to {LARGEST_DIMENSION:g} in size")
+    return float(value)
+
+
+def _length(value: object) -> float:
+    number = _number(value)
+    if number <= 0:
+        raise refuse(f"{shown(value)} is not a length; give a number > 0")
+    if number < 1 / LARGEST_DIMENSION:
+        raise refuse(f"{shown(value)} is out of range; give a length of at least {1 / LARGEST_DIMENSION:g}")
+    return number
+
+
+def _vector(value: object) -> tuple[float, float, float]:
+    if not isinstance(value, (list, tuple)) or len(value) != 3:
+        raise refuse(f"{shown(value)} is not a point or direction; give three numbers, as in [0, 0, 1]")
+    x, y, z = (_number(v) for v in value)
+    return x, y, z
+
+
+def _direction(value: object) -> tuple[float, float, float]:
+    vector = _vector(value)
+    if math.hypot(*vector) < 1 / LARGEST_DIMENSION:
+        raise refuse(f"{shown(value)} has no direction; give three numbers, not all 0")
+    return vector
+
+
+def _angle(value: object, info: ValidationInfo) -> float:
+    """An angle [rad], written in the file's unit."""
+    return _number(value) * float((info.context or {}).get("angle", 1.0))
+
+
+def crossing(axes: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
+    """The two axes of a joint U, unless they are one."""
+    a, b = ([x / math.hypot(*axis) for x in axis] for axis in axes)
+    across = math.hypot(*(a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)))
+    if across < PARALLEL:
+        apart = math.degrees(math.atan2(across, sum(x * y for x, y in zip(a, b, strict=True))))
+        written = shown([list(axis) for axis in axes])
+        raise refuse(f"{written} are {apart:.3g} deg apart; give two axes that cross, {EXAMPLE_OF_AXES}")
+    return axes
+
+
+def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> BeforeValidator:
+    """A word that is known, or a message with the nearest one; `what` it is."""
+
+    def choose(value: object) -> str:
+        if isinstance(value, str) and value in known:
+            return value
+        if what == "unit":
+            raise refuse(unknown_unit(value, known))
+        meant = meant_kind(value) if known in (JOINT_KINDS, ROW_KINDS) else ""
+        near = f"did you mean '{meant}'? " if meant in known else suggestion(str(value), known)
+        raise refuse(f"{shown(value)} is not a {what}; {near}allowed: {', '.join(known)}")
+
+    return BeforeValidator(choose)
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str) or not value.strip() or len(value) > 200 or not value.isprintable():
+        raise refuse(f"{shown(value)} is not a name; give some text in quotes, at most 200 characters")
+    return value.strip()
+
+
+def _speed(value: object, info: ValidationInfo) -> float:
+    slides = (info.context or {}).get("slides")
+    try:
+        return sliding_speed(value, slides) if slides else turning_speed(value)
+    except RequestError as error:
+        raise refuse(str(error)) from None
+
+
+Number = Annotated[float, BeforeValidator(_number)]
+Angle = Annotated[float, BeforeValidator(_angle)]
+Length = Annotated[float, BeforeValidator(_length), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})]
+Vector = Annotated[tuple[float, float, float], BeforeValidator(_vector)]
+Direction = Annotated[tuple[float, float, float], BeforeValidator(_direction)]
+Text = Annotated[str, BeforeValidator(_text)]
+Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]

@@ -1,0 +1,133 @@
+"""The joints of a description as written, before they are checked: names, kinds, input and output."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from sevenbar.errors import Problem, no_joint, shown
+from sevenbar.kinematics.joints import FREEDOMS, column_names
+
+#: Kinds that a Denavit-Hartenberg row can hold.
+ROW_KINDS = ("R", "P", "H")
+
+#: Words that people use for the kinds.
+KIND_WORDS = {
+    "R": ("revolute", "hinge", "pin", "turning", "rotary", "rotation"),
+    "P": ("prismatic", "slider", "sliding", "slide", "translation"),
+    "H": ("helical", "helix", "screw"),
+    "C": ("cylindric", "cylindrical", "cylinder"),
+    "U": ("universal", "cardan", "hooke"),
+    "S": ("spherical", "sphere", "ball"),
+}
+
+#: Words that people use for the ground where a joint's kind should stand.
+GROUND_WORDS = ("g", "ground", "fixed", "frame", "base")
+
+#: Names and kinds of the joints of a linkage written as [rssr].
+RSSR_JOINTS = (("crank", "R"), ("ball_a", "S"), ("ball_b", "S"), ("rocker", "R"))
+
+
+class Written(NamedTuple):
+    """A joint as far as it can be read from an unchecked file: its kind is empty where that is unknown."""
+
+    place: str
+    name: str
+    kind: str
+
+    @property
+    def columns(self) -> dict[str, str]:
+        """What each of its freedoms does, by the name of its column."""
+        freedoms = FREEDOMS.get(self.kind, ("turn",))
+        return dict(zip(column_names(self.name, freedoms), freedoms, strict=True))
+
+
+def drive_of(raw: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The table of the drive, empty where there is none."""
+    drive = raw.get("drive")
+    return drive if isinstance(drive, Mapping) else {}
+
+
+def joints_of(raw: Mapping[str, Any]) -> list[Written]:
+    """The joints of a file, without entries that are nothing but a ground."""
+    if "rssr" in raw:
+        return [Written("", name, kind) for name, kind in RSSR_JOINTS]
+    key, kind_key, default = ("joint", "kind", "") if "joint" in raw else ("link", "joint", "R")
+    joints = []
+    for i, table in enumerate(entries(raw, key), 1):
+        kind, name = table.get(kind_key, default), table.get("name")
+        label = name.strip() if isinstance(name, str) else ""
+        if not is_only_ground(table, kind):
+            known = kind if isinstance(kind, str) and kind in FREEDOMS else ""
+            joints.append(Written(f"{key}[{i}]", label or f"theta_{i}", known))
+    return joints
+
+
+def meant_kind(word: object) -> str:
+    """The kind that a word stands for, or nothing."""
+    plain = word.strip().lower().removesuffix("joint").strip() if isinstance(word, str) else ""
+    return next((kind for kind, words in KIND_WORDS.items() if plain in words), "")
+
+
+def names_ground(kind: object) -> bool:
+    """Whether a joint's kind is a word for the ground."""
+    return isinstance(kind, str) and kind.strip().lower() in GROUND_WORDS
+
+
+def is_only_ground(table: Mapping[str, Any], kind: object) -> bool:
+    """Whether an entry is nothing but a ground, which a loop has without a word."""
+    return names_ground(kind) and not table.keys() & {"length", "twist", "offset"}
+
+
+def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, str, list[Problem]]:
+    """The columns of input and output, and what is wrong with those that are named.
+
+    The plain name of a joint of two freedoms is its first one. Without a word the input is the first joint
+    that is no ball, and the output the last one.
+    """
+    firsts = [next(iter(joint.columns)) for joint in joints if joint.kind != "S"]
+    free = [column for joint in joints if joint.kind != "S" for column in joint.columns]
+    if len(free) < 2:
+        loop = " ".join(joint.kind for joint in joints)
+        count = "one freedom" if free else "no freedom"
+        message = f"a loop {loop} has {count} outside its balls; an input and an output need two"
+        known_kinds = all(joint.kind for joint in joints)
+        return "", "", [Problem("joint", message)] if known_kinds else []
+    # two joints of one name are told of elsewhere; to choose from they are one
+    choices = list(dict.fromkeys(free))
+    known = list(
+        dict.fromkeys(name for j in joints for name in (j.columns if j.kind in ("C", "U") else [j.name]))
+    )
+    problems = []
+    chosen: dict[str, str] = {}
+    for key in ("joint", "output"):
+        name = drive.get(key)
+        if not isinstance(name, str):
+            continue
+        name = name.strip()
+        owner = next((joint for joint in joints if name == joint.name or name in joint.columns), None)
+        if owner is None:
+            problems.append(Problem(f"drive.{key}", no_joint(name, known)))
+        elif owner.kind == "S":
+            ball = f"joint {shown(owner.name)} is a ball; give a joint with one freedom: {', '.join(choices)}"
+            problems.append(Problem(f"drive.{key}", ball))
+        else:
+            chosen[key] = next(iter(owner.columns)) if name == owner.name else name
+    first = chosen.get("joint", firsts[0])
+    others = [column for column in choices if column != first]
+    # `first` where one name stands for every joint, which is told of elsewhere
+    last = chosen.get(
+        "output", next((c for c in [*reversed(firsts), *reversed(others)] if c != first), first)
+    )
+    # an input that is named wrongly may be any other
+    if chosen.get("output") == first and not (problems and "joint" not in chosen):
+        one = len(others) == 1
+        rest = f"the output is the other one, {others[0]}" if one else f"give another: {', '.join(others)}"
+        problems.append(Problem("drive.output", f"joint {shown(first)} is the input; {rest}"))
+    return first, last, problems
+
+
+def entries(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
+    """The entries of a list of tables; one that is none counts as empty."""
+    rows = raw.get(key)
+    return [row if isinstance(row, Mapping) else {} for row in rows] if isinstance(rows, list) else []

@@ -1,0 +1,347 @@
+"""What is told of points that were found, and of masses: printed, as JSON, and as files in a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console, Group, RenderableType
+from rich.text import Text
+
+from sevenbar.arrays import Floats
+from sevenbar.design.points.cycle import Cycle, told_input
+from sevenbar.design.points.inertia import Inertia
+from sevenbar.design.points.least import LeastPoint
+from sevenbar.design.points.nearest import NearestPath
+from sevenbar.design.points.poles import AccelerationPoles, poles_of
+from sevenbar.drawing.figure import save, slides
+from sevenbar.reporting.folder import fill_folder, write_columns
+from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.report import json_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: Most inputs that are told; more are a rate that is as great at all of them.
+MOST_TOLD = 6
+
+
+def print_found(found: LeastPoint | NearestPath | Inertia) -> None:
+    """Prints what was found for people."""
+    text = {LeastPoint: least_text, NearestPath: nearest_text, Inertia: inertia_text}[type(found)]
+    Console().print(text(found))  # type: ignore[operator]
+
+
+def least_text(found: LeastPoint) -> RenderableType:
+    """A point of least rate as a page."""
+    facts, unit = Facts(), found.unit
+    word = "root mean square" if found.measure == "rms" else "greatest"
+    facts.add("link", f"{found.link}, {_whose(found.cycle)}")
+    sides = zip("uvw", found.low, found.high, strict=True)
+    box = ", ".join(f"{letter} {a:g} to {b:g}" for letter, a, b in sides)
+    facts.add("box", box + _length(found.cycle))
+    facts.add("point", _place(found.at) + _length(found.cycle), style="bold")
+    facts.add(f"{word} {found.of}", f"{found.value:.9g} {unit}", style="bold")
+    facts.add("lower bound", f"{found.bound:.9g} {unit}: no point of the box has less")
+    whole = "over the whole cycle, between the rows too" if found.cycle.closed else "over the law's rows"
+    facts.add("duality gap", f"{found.gap:.2g} {unit}, {found.relative_gap:.2g} of the value, {whole}")
+    if len(found.inputs):
+        facts.add("met at", _met(found))
+    if found.sides:
+        facts.add("on the box", ", ".join(found.sides))
+    for direction in found.free:
+        facts.add("free", f"along ({_numbers(direction)}) nothing changes; the middle is taken")
+    if found.solver is not None:
+        solver = found.solver
+        facts.add(
+            "Clarabel",
+            f"{solver.status} in {solver.steps} steps, round {found.rounds}: primal {solver.primal:.7g}, "
+            f"dual {solver.dual:.7g} {unit} at {len(solver.weights)} rows; then Newton's method",
+        )
+    for note in notes(found.cycle):
+        facts.add("note", note)
+    parts: list[RenderableType] = [_title(found.cycle), facts.grid]
+    if found.before:
+        rows = [[p.name, _place(p.at), f"{p.value:.6g}", _times(p.value, found)] for p in found.before]
+        rows.append(["found", _place(found.at), f"{found.value:.6g}", ""])
+        head = ["point", "at", f"{word} [{unit}]", "times"]
+        parts += [Text(), number_table(head, rows, words=[1])]
+    return Group(*parts)
+
+
+def _met(found: LeastPoint) -> str:
+    pairs = zip(found.inputs[:MOST_TOLD], found.weights, strict=False)
+    told = ", ".join(f"{told_input(found.cycle.motion, float(x))} (weight {w:.3f})" for x, w in pairs)
+    more = f" and {len(found.inputs) - MOST_TOLD} more" if len(found.inputs) > MOST_TOLD else ""
+    return f"{found.cycle.motion.input} = {told}{more}"
+
+
+def _times(value: float, found: LeastPoint) -> str:
+    """How many times the least a value is; nothing where that is zero."""
+    return f"{value / found.value:.3f}" if found.value > 1e-9 * found.scale else ""
+
+
+def nearest_text(found: NearestPath) -> RenderableType:
+    """A point with a nearest path as a page."""
+    facts, length = Facts(), _length(found.cycle)
+    facts.add("link", f"{found.link}, {_whose(found.cycle)}")
+    timed = "each at its input" if found.bound is not None else "at any inputs"
+    facts.add("curve", f"{len(found.wanted)} places, {timed}")
+    facts.add("point", _place(found.at) + length, style="bold")
+    facts.add("distance", f"rms {found.rms:.6g}, greatest {found.greatest:.6g}{length}", style="bold")
+    if found.bound is not None:
+        facts.add("lower bound", f"{found.measure} {found.bound:.6g}{length}: no point of the box is nearer")
+    else:
+        best = f"local: the best of {found.starts} starts, {found.agreeing} of which ended there"
+        facts.add("optimum", best)
+    for note in notes(found.cycle):
+        facts.add("note", note)
+    return Group(_title(found.cycle), facts.grid)
+
+
+def inertia_text(found: Inertia) -> RenderableType:
+    """What masses do as a page."""
+    facts, motion = Facts(), found.cycle.motion
+    what = "force" if found.slides else "torque"
+    facts.add("circuit", _whose(found.cycle))
+    facts.add("rows", f"{len(found.input)} over {found.cycle.period:.6g} s")
+    if any(found.gravity):
+        facts.add("gravity", f"({_numbers(found.gravity)}) m/s^2")
+    for word, row in (("highest", int(found.torque.argmax())), ("lowest", int(found.torque.argmin()))):
+        at = told_input(motion, float(found.input[row]))
+        facts.add(f"{word} {what}", f"{found.torque[row]:.6g} {found.unit} at {motion.input} = {at}")
+    facts.add(f"mean {what}", f"{found.mean:.2g} {found.unit}")
+    rms = float(np.sqrt(found.cycle.mean(found.torque**2)))
+    facts.add(f"rms {what}", f"{rms:.6g} {found.unit}")
+    for note in notes(found.cycle, [mass.link for mass in found.masses]):
+        facts.add("note", note)
+    rows = []
+    for mass, sizes in zip(found.masses, found.sizes, strict=True):
+        cells = [mass.name, str(mass.link), f"{mass.mass:g}"]
+        for place in (int(sizes.argmax()), int(sizes.argmin())):
+            cells += [f"{sizes[place]:.6g}", told_input(motion, float(found.input[place]))]
+        rows.append(cells)
+    head = ["mass", "link", "kg", "greatest force [N]", "at", "least force [N]", "at"]
+    return Group(_title(found.cycle), facts.grid, Text(), number_table(head, rows))
+
+
+def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
+    """What a reader has to know besides: a spin that the linkage leaves open."""
+    told = []
+    for freedom in cycle.motion.idle:
+        if any(f"link {link})" in freedom or f"link {link} " in freedom for link in links or [cycle.link]):
+            told.append(
+                f"the {freedom} is open in the linkage; points off that line move as the rule for it has it"
+            )
+    return told
+
+
+def _title(cycle: Cycle) -> Text:
+    return Text(cycle.motion.linkage.name, style="bold underline")
+
+
+def _whose(cycle: Cycle) -> str:
+    motion = cycle.motion
+    unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
+    drive = "driven by a law" if motion.law is not None else f"at {motion.speed:g} {unit}/s"
+    branch = f", branch {cycle.branch}" if not cycle.circuit.goes_round else ""
+    return f"circuit {cycle.circuit.index}{branch}, {motion.input} {drive}"
+
+
+def _numbers(values: Sequence[float] | Floats) -> str:
+    # no minus before a zero
+    return ", ".join(f"{float(value) + 0.0:.6g}" for value in values)
+
+
+def _place(at: Sequence[float] | Floats) -> str:
+    return f"({_numbers(np.round(np.asarray(at, dtype=float), 9))})"
+
+
+def _length(cycle: Cycle) -> str:
+    return f" {cycle.motion.linkage.length_unit}"
+
+
+def as_dict(found: LeastPoint | NearestPath | Inertia) -> dict[str, Any]:
+    """What was found as plain values: inputs in radians or lengths."""
+    cycle = found.cycle
+    motion = cycle.motion
+    common = {
+        "format": 1,
+        "linkage": motion.linkage.name,
+        "units": {"length": motion.linkage.length_unit, "angle": "rad", "time": "s", "mass": "kg"},
+        "drive": {"input": motion.input, "speed": None if motion.law is not None else motion.speed},
+        "circuit": cycle.circuit.index,
+        "branch": cycle.branch,
+        "notes": notes(cycle),
+    }
+    if isinstance(found, LeastPoint):
+        return common | _least_dict(found)
+    if isinstance(found, NearestPath):
+        return common | _nearest_dict(found)
+    return common | _inertia_dict(found)
+
+
+def _least_dict(found: LeastPoint) -> dict[str, Any]:
+    solver = found.solver
+    return {
+        "link": found.link,
+        "of": found.of,
+        "measure": found.measure,
+        "box": np.stack([found.low, found.high], axis=1).tolist(),
+        "at": found.at.tolist(),
+        "value": found.value,
+        "lower_bound": found.bound,
+        "gap": found.gap,
+        "relative_gap": found.relative_gap,
+        "optimal": found.optimal,
+        "whole_cycle": found.cycle.closed,
+        "unit": found.unit,
+        "inputs": found.inputs.tolist(),
+        "weights": found.weights.tolist(),
+        "sides": list(found.sides),
+        "free": found.free.tolist(),
+        "before": [{"name": p.name, "at": list(p.at), "value": p.value} for p in found.before],
+        "rounds": found.rounds,
+        "clarabel": None
+        if solver is None
+        else {
+            "status": solver.status,
+            "steps": solver.steps,
+            "primal": solver.primal,
+            "dual": solver.dual,
+            "residual": solver.residual,
+        },
+    }
+
+
+def _nearest_dict(found: NearestPath) -> dict[str, Any]:
+    return {
+        "link": found.link,
+        "measure": found.measure,
+        "at": found.at.tolist(),
+        "places": len(found.wanted),
+        "rms": found.rms,
+        "greatest": found.greatest,
+        "lower_bound": found.bound,
+        "starts": found.starts,
+        "agreeing": found.agreeing,
+    }
+
+
+def _inertia_dict(found: Inertia) -> dict[str, Any]:
+    high, low = int(found.torque.argmax()), int(found.torque.argmin())
+    return {
+        "gravity": list(found.gravity),
+        "unit": found.unit,
+        "period": found.cycle.period,
+        "highest": {"value": float(found.torque[high]), "at": float(found.input[high])},
+        "lowest": {"value": float(found.torque[low]), "at": float(found.input[low])},
+        "mean": found.mean,
+        "masses": [
+            {
+                "name": mass.name,
+                "link": mass.link,
+                "at": list(mass.at),
+                "mass": mass.mass,
+                "greatest_force": float(sizes.max()),
+                "least_force": float(sizes.min()),
+            }
+            for mass, sizes in zip(found.masses, found.sizes, strict=True)
+        ],
+    }
+
+
+def write_least(
+    found: LeastPoint, toml: str, name: str, folder: Path, endings: Sequence[str], *, force: bool
+) -> list[Path]:
+    """Writes point.toml, point.json, rates.csv, poles.csv and the figure of a least point, all or none."""
+    from sevenbar.design.points.figures import least_figure
+
+    poles = poles_of(found.cycle, found.at)
+
+    def fill(staging: Path) -> None:
+        _begin(found, toml, staging)
+        columns = _row_columns(found.cycle)
+        unit = found.unit.replace("/", "_").replace("^", "")
+        for point, at in [*((p.name, np.array(p.at)) for p in found.before), (name, found.at)]:
+            sizes = np.linalg.norm(found.cycle.rates.of(found.of, at), axis=1)
+            columns[f"{point}_{found.of}_{unit}"] = sizes
+        write_columns(staging / "rates.csv", columns)
+        write_columns(staging / "poles.csv", _pole_columns(poles))
+        _draw(least_figure(found, poles, name), staging, "point", endings)
+
+    return fill_folder(folder, fill, force=force)
+
+
+def write_nearest(
+    found: NearestPath, toml: str, name: str, folder: Path, endings: Sequence[str], *, force: bool
+) -> list[Path]:
+    """Writes point.toml, point.json, path.csv and the figure of a nearest path, all or none."""
+    from sevenbar.design.points.figures import nearest_figure
+
+    def fill(staging: Path) -> None:
+        _begin(found, toml, staging)
+        unit = found.cycle.motion.linkage.length_unit
+        columns = {_input_head(found.cycle): _told(found.cycle, found.inputs)}
+        for i, letter in enumerate("xyz"):
+            columns[f"wanted_{letter}_{unit}"] = found.wanted[:, i]
+        for i, letter in enumerate("xyz"):
+            columns[f"path_{letter}_{unit}"] = found.path[:, i]
+        columns[f"distance_{unit}"] = found.distances
+        write_columns(staging / "path.csv", columns)
+        _draw(nearest_figure(found, name), staging, "point", endings)
+
+    return fill_folder(folder, fill, force=force)
+
+
+def write_inertia(found: Inertia, folder: Path, endings: Sequence[str], *, force: bool) -> list[Path]:
+    """Writes inertia.json, inertia.csv and the figure, all or none."""
+    from sevenbar.design.points.figures import inertia_figure
+
+    def fill(staging: Path) -> None:
+        (staging / "inertia.json").write_text(json_text(as_dict(found)) + "\n", encoding="utf-8")
+        columns = _row_columns(found.cycle)
+        columns["force_N" if found.slides else "torque_Nm"] = found.torque
+        columns |= {"power_W": found.power, "kinetic_energy_J": found.kinetic}
+        for mass, force in zip(found.masses, found.force, strict=True):
+            for i, letter in enumerate("xyz"):
+                columns[f"{mass.name}_f{letter}_N"] = force[:, i]
+        write_columns(staging / "inertia.csv", columns)
+        _draw(inertia_figure(found), staging, "inertia", endings)
+
+    return fill_folder(folder, fill, force=force)
+
+
+def _begin(found: LeastPoint | NearestPath, toml: str, staging: Path) -> None:
+    (staging / "point.toml").write_text(toml, encoding="utf-8")
+    (staging / "point.json").write_text(json_text(as_dict(found)) + "\n", encoding="utf-8")
+
+
+def _draw(figure: Figure, staging: Path, name: str, endings: Sequence[str]) -> None:
+    for ending in endings:
+        save(figure, staging / f"{name}.{ending}")
+
+
+def _input_head(cycle: Cycle) -> str:
+    motion = cycle.motion
+    return f"{motion.input}_{motion.linkage.length_unit if slides(motion, motion.input) else 'deg'}"
+
+
+def _told(cycle: Cycle, inputs: Floats) -> Floats:
+    """Inputs as people read them: degrees, or lengths."""
+    return inputs if slides(cycle.motion, cycle.motion.input) else np.degrees(inputs)
+
+
+def _row_columns(cycle: Cycle) -> dict[str, Floats]:
+    return {"time_s": cycle.rates.time, _input_head(cycle): _told(cycle, cycle.rates.input)}
+
+
+def _pole_columns(poles: AccelerationPoles) -> dict[str, Any]:
+    unit = poles.cycle.motion.linkage.length_unit
+    columns: dict[str, Any] = _row_columns(poles.cycle) | {"status": poles.status}
+    for letters, values in (("uvw", poles.at), ("xyz", poles.place)):
+        for i, letter in enumerate(letters):
+            columns[f"{letter}_{unit}"] = values[:, i]
+    return columns | {f"remaining_{unit}_s2": poles.remaining, "condition": poles.condition}

@@ -1,0 +1,1 @@
+"""RSSR linkages for a wanted function or swing."""

@@ -1,0 +1,118 @@
+"""Figures of designs: a function beside the wanted one and its error; a swing and its transmission angle."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.design.synthesis.candidates import Candidate
+from sevenbar.design.synthesis.closure import outputs, row_of, transmissions
+from sevenbar.design.synthesis.function.wish import Wish
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
+from sevenbar.drawing.skeleton import short
+
+GENERATED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.8, "zorder": 2}
+WANTED: dict[str, Any] = {"color": CIRCUIT_COLOURS[0], "lw": 1.3, "ls": (0, (4, 2.5)), "zorder": 3}
+POINTS: dict[str, Any] = {"color": CIRCUIT_COLOURS[0], "ls": "", "marker": "o", "mfc": "white", "zorder": 4}
+
+#: Pairs of angles beyond which they are small dots.
+MANY = 40
+
+#: Inputs of a turn at which a swing is drawn.
+TURN = 721
+
+
+def function_figure(candidate: Candidate, wish: Wish) -> Figure:
+    """The wanted and the generated readings of the output over those of the input; below, the error [deg]."""
+    figures = candidate.claim.figures
+    zeros = [math.radians(figures[name]) for name in ("input_zero_deg", "output_zero_deg")]
+    inputs = np.degrees(candidate.claim.inputs - zeros[0])
+    readings = np.degrees(candidate.claim.outputs - zeros[1])
+    at = inputs if wish.function is not None else np.degrees(wish.input)
+    errors = np.degrees(candidate.claim.errors)
+    # both sides on the same turn
+    near = np.interp(at, inputs, readings) - errors
+    turn = 360.0 * np.round((near[0] - math.degrees(wish.output[0])) / 360.0)
+    with rc_context(STYLE):
+        figure = new_figure(6.4, 6.0)
+        figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+        top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
+        top.plot(inputs, readings - turn, label="generated", **GENERATED)
+        below.axhline(0.0, color="#505050", lw=0.8, zorder=1)
+        size = 5.0 if len(wish.input) <= MANY or wish.function is not None else 2.2
+        if wish.function is not None:
+            top.plot(inputs, near - turn, label="wanted", **WANTED)
+            below.plot(inputs, errors, **GENERATED)
+        else:
+            top.plot(at, near - turn, ms=size, label="wanted", **POINTS)
+            below.plot(at, errors, ms=size, **POINTS)
+        if wish.function is not None and wish.exact:
+            points = np.degrees(wish.point_input)
+            top.plot(points, np.degrees(wish.point_output), ms=size, label="precision point", **POINTS)
+            below.plot(points, np.interp(points, inputs, errors), ms=size, **POINTS)
+        top.set_ylabel("output reading [deg]")
+        below.set_ylabel("generated less\nwanted [deg]")
+        below.set_xlabel("input reading [deg]")
+        for axes in (top, below):
+            axes.grid(lw=0.6)
+            axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+        if np.abs(errors).max() < 1e-9:
+            below.set_ylim(-1.0, 1.0)
+        below.yaxis.set_major_locator(MaxNLocator(5))
+        figure.align_ylabels()
+        figure.suptitle(_title(candidate, wish), fontsize=11)
+        handles, labels = top.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
+    return figure
+
+
+def _title(candidate: Candidate, wish: Wish) -> str:
+    greatest, rms = (math.degrees(e) for e in (candidate.error_greatest, candidate.error_rms))
+    if wish.exact and wish.function is None:
+        return f"{short(candidate.name, 60)}\n{len(wish.input)} precision points, met to {greatest:.1e}°"
+    return f"{short(candidate.name, 60)}\nerror at most {greatest:.3g}°, RMS {rms:.3g}°"
+
+
+def swing_figure(candidate: Candidate) -> Figure:
+    """The output over a turn of the crank with the ends of its swing; below, the transmission angle [deg]."""
+    figures = candidate.claim.figures
+    row = row_of(candidate.draft.linkage.dimensions)[None]
+    inputs = np.linspace(0.0, math.tau, TURN)
+    # the branch whose output is the claimed one
+    apart = [
+        np.abs(np.exp(1j * (outputs(row, candidate.claim.inputs, b)[0] - candidate.claim.outputs)) - 1).max()
+        for b in (0, 1)
+    ]
+    angles = np.degrees(np.unwrap(outputs(row, inputs, int(np.argmin(apart)))[0]))
+    angles -= 360.0 * np.round(angles.mean() / 360.0)
+    across = np.degrees(inputs)
+    with rc_context(STYLE):
+        figure = new_figure(6.4, 6.0)
+        figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+        top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
+        top.plot(across, angles, **GENERATED)
+        for name in ("input_at_low_deg", "input_at_high_deg"):
+            for axes in (top, below):
+                axes.axvline(figures[name], color="#808080", lw=0.9, ls="--", zorder=1)
+            top.plot(figures[name], np.interp(figures[name], across, angles), ms=5.0, **POINTS)
+        below.plot(across, np.degrees(np.arcsin(np.sqrt(transmissions(row, inputs)[0]))), **GENERATED)
+        below.set_ylim(0.0, 90.0)
+        below.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 1.5, 3, 10]))
+        top.set_ylabel("output: rocker [deg]")
+        below.set_ylabel("transmission\nangle [deg]")
+        below.set_xlabel("input: crank [deg]")
+        below.set_xlim(0.0, 360.0)
+        below.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+        for axes in (top, below):
+            axes.grid(lw=0.6)
+        figure.align_ylabels()
+        lowest = math.degrees(candidate.transmission_lowest or 0.0)
+        figure.suptitle(
+            f"{short(candidate.name, 60)}\ntransmission angle at least {lowest:.3g}°", fontsize=11
+        )
+    return figure

@@ -1,0 +1,117 @@
+"""A synthesis as people and programs read it: printed, as JSON, as a folder of designs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console, Group, RenderableType
+from rich.text import Text
+
+from sevenbar.design.synthesis.candidates import Candidate, tally, write
+from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
+from sevenbar.design.synthesis.function.generation import Synthesis
+from sevenbar.drawing.figure import save
+from sevenbar.reporting.page import Facts, number_table
+
+#: Columns of the printed table, by their names in `Candidate.columns`, those that a task has not left out.
+PRINTED = {
+    "error_greatest_deg": "greatest\nerror\n[deg]",
+    "error_rms_deg": "RMS\nerror\n[deg]",
+    "swing_deg": "swing\n[deg]",
+    "time_ratio": "time\nratio",
+    "transmission_lowest_deg": "least\ntransm.\n[deg]",
+    "motion_type": "motion type",
+    "input_zero_deg": "input\nzero\n[deg]",
+    "output_zero_deg": "output\nzero\n[deg]",
+}
+
+#: What the columns of errors are of no use for: a swing that is met.
+OF_SWING = ("error_greatest_deg", "error_rms_deg")
+
+
+def print_synthesis(found: Synthesis, console: Console | None = None) -> None:
+    """Prints the designs for people."""
+    facts = Facts()
+    facts.add("wanted", found.told, "bold")
+    facts.add("limits", found.limits.told())
+    facts.add("searched", f"{found.searched} designs, {found.fitted} refined, seed {found.seed}")
+    if found.refusals:
+        facts.add("refused", tally(found.refusals))
+    rows = [candidate.columns for candidate in found.candidates]
+    names = [name for name in PRINTED if name in rows[0] and not (found.wish is None and name in OF_SWING)]
+    table = number_table(
+        ["design", *(PRINTED[name] for name in names)],
+        [[str(i), *(_cell(row[name]) for name in names)] for i, row in enumerate(rows, 1)],
+        words=[1 + names.index("motion_type")],
+    )
+    unit = found.candidates[0].draft.linkage.length_unit
+    keys = ("M", "N", "L1", "L2", "L3", "D")
+    dimensions = number_table(
+        ["design", *(f"{key} [{unit}]" for key in keys)],
+        [[str(i), *(_cell(row[f"{key}_{unit}"]) for key in keys)] for i, row in enumerate(rows, 1)],
+    )
+    parts: list[RenderableType] = [
+        Text("Synthesis of an RSSR", style="bold underline"),
+        facts.grid,
+        Text(),
+        table,
+        Text(),
+        dimensions,
+    ]
+    (console or Console()).print(Group(*parts))
+
+
+def _cell(value: object) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def as_json(found: Synthesis) -> str:
+    """The designs as one JSON object; angles as their names say."""
+    return json.dumps(as_dict(found), indent=2, allow_nan=False)
+
+
+def as_dict(found: Synthesis) -> dict[str, Any]:
+    """The designs as tables and numbers."""
+    return {
+        "format": 1,
+        "wanted": found.told,
+        "limits": found.limits.told(),
+        "seed": found.seed,
+        "searched": found.searched,
+        "refined": found.fitted,
+        "refused": [{"fault": r.fault, "told": r.told} for r in found.refusals],
+        "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
+    }
+
+
+def targets(folder: Path, count: int, figures: Sequence[str]) -> list[Path]:
+    """The files that a synthesis may write, for a look before long work."""
+    designs = [folder / f"design_{i}.{end}" for i in range(1, count + 1) for end in ("toml", *figures)]
+    return [*designs, folder / "summary.csv", folder / "summary.json"]
+
+
+def write_synthesis(
+    found: Synthesis, folder: Path, command: str, figures: Sequence[str] = ("png",), *, force: bool = False
+) -> list[Path]:
+    """Writes design_1.toml, .. with a figure each, summary.csv and summary.json: all or none.
+
+    `command` is told in the designs' heads. Raises `OutputError`.
+    """
+    head = [f"wanted: {found.told}", f"limits: {found.limits.told()}", f"made by: {command}"]
+    if found.wish is not None:
+        head += ["crank = input_zero + reading of the input; rocker = output_zero + reading of the output"]
+
+    def also(staging: Path) -> None:
+        (staging / "summary.json").write_text(as_json(found) + "\n", encoding="utf-8")
+        for i, candidate in enumerate(found.candidates, 1):
+            for ending in figures:
+                save(_figure(found, candidate), staging / f"design_{i}.{ending}")
+
+    return write(found.candidates, folder, head, also=also, force=force)
+
+
+def _figure(found: Synthesis, candidate: Candidate) -> Any:
+    return swing_figure(candidate) if found.wish is None else function_figure(candidate, found.wish)

@@ -1,0 +1,165 @@
+"""A function that is wanted of a linkage: readings of the input's and the output's dial, precision points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_array
+from sevenbar.design.synthesis.function.precision import FEWEST, FREE_ZEROS_MOST, chebyshev
+from sevenbar.errors import RequestError
+from sevenbar.text.table import read_table
+from sevenbar.text.units import measured_unit
+
+#: Readings over the range at which a fit looks at the error: between them it rises by less than 1% of it.
+FIT_SAMPLES = 81
+
+#: Readings over the range at which errors are told: 0.25 deg apart on a quarter turn.
+DENSE_SAMPLES = 361
+
+#: Most pairs of readings that a fit takes.
+MOST_PAIRS = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class Wish:
+    """Readings wanted, all relative to zeros that the design is free to choose.
+
+    `input`, `output` (m,) [rad] are those that a fit looks at, input rising; `point_input`, `point_output`
+    (n,) the precision points, none where the whole range counts alike. `function` gives the output's reading
+    at inputs, `None` where only the pairs are wanted. `zeros` [rad] where the design may not choose them.
+    """
+
+    told: str
+    input: Floats
+    output: Floats
+    point_input: Floats
+    point_output: Floats
+    function: Callable[[Floats], Floats] | None = None
+    zeros: tuple[float, float] | None = None
+
+    @property
+    def exact(self) -> bool:
+        """Whether precision points are to be met exactly."""
+        return self.point_input.size > 0
+
+    @property
+    def dense(self) -> Floats:
+        """Readings of the input over its range (361,) [rad]."""
+        return np.linspace(self.input[0], self.input[-1], DENSE_SAMPLES)
+
+
+def wish_of_function(
+    function: Callable[[Floats], Floats],
+    x_range: tuple[float, float],
+    input_range: tuple[float, float],
+    output_range: tuple[float, float],
+    *,
+    points: int | None = None,
+    told: str = "y(x)",
+) -> Wish:
+    """The wish for y(x): x goes over the input's range, y from its least to its greatest over the output's.
+
+    Ranges in radians. `points` precision points by Chebyshev's spacing, to be met exactly; none for the
+    least error over the range. Raises `RequestError`.
+    """
+    low, high = x_range
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        raise RequestError(f"x: {low:g}:{high:g} is no range; give two numbers that rise, as in 0:1")
+    for name, ends in (("input range", input_range), ("output range", output_range)):
+        span = abs(ends[1] - ends[0])
+        if not 0 < span < math.tau:
+            raise RequestError(
+                f"{name}: {math.degrees(ends[0]):g} to {math.degrees(ends[1]):g} deg is no part of a turn; "
+                "give two angles less than 360 deg apart, as in 0:90deg"
+            )
+    if points is not None and not FEWEST <= points <= FREE_ZEROS_MOST:
+        raise RequestError(
+            f"points: {points} precision points are not offered; give {FEWEST} to {FREE_ZEROS_MOST}, "
+            "or none for the least error over the range"
+        )
+    x = np.linspace(low, high, 20 * DENSE_SAMPLES)
+    y = function(x)
+    if not np.isfinite(y).all():
+        at = x[int(np.flatnonzero(~np.isfinite(y))[0])]
+        raise RequestError(f"y: {told} has no value at x = {at:g}; give another range of x")
+    least, most = float(y.min()), float(y.max())
+    if most - least <= 1e-12 * max(abs(least), abs(most), 1e-300):
+        raise RequestError(f"y: {told} is the same all over {low:g}:{high:g}; give a function that changes")
+
+    reading = partial(_reading, function, (low, high), (least, most), input_range, output_range)
+    first, last = sorted(input_range)
+    middle, half = (first + last) / 2, (last - first) / 2
+    samples = middle - half * np.cos(np.linspace(0.0, math.pi, FIT_SAMPLES))
+    at = np.empty(0) if points is None else chebyshev(first, last, points)
+    return Wish(told, samples, reading(samples), at, reading(at), reading)
+
+
+def _reading(
+    function: Callable[[Floats], Floats],
+    x: tuple[float, float],
+    y: tuple[float, float],
+    inputs: tuple[float, float],
+    outputs: tuple[float, float],
+    a: Floats,
+) -> Floats:
+    """The output's readings that a function wants at the input's readings `a`, by the ends of each scale."""
+    share = (a - inputs[0]) / (inputs[1] - inputs[0])
+    value = (function(x[0] + (x[1] - x[0]) * share) - y[0]) / (y[1] - y[0])
+    return np.asarray(outputs[0] + (outputs[1] - outputs[0]) * value)
+
+
+def wish_of_pairs(
+    inputs: npt.ArrayLike,
+    outputs: npt.ArrayLike,
+    *,
+    zeros: tuple[float, float] | None = None,
+    told: str = "pairs of angles",
+) -> Wish:
+    """The wish for pairs of readings (n,) [rad]: to seven are met exactly, more as well as can be.
+
+    With `zeros` (input's, output's [rad]) the exact ones are five at most. Raises `RequestError`.
+    """
+    a, b = finite_array("points", inputs), finite_array("points", outputs)
+    if a.size != b.size:
+        raise RequestError(f"points: {a.size} inputs and {b.size} outputs; give one output for each input")
+    if not FEWEST <= a.size <= MOST_PAIRS:
+        raise RequestError(
+            f"points: {a.size} pairs are not enough to tell a design; give {FEWEST} to {MOST_PAIRS}"
+        )
+    order = np.argsort(a, kind="stable")
+    a, b = a[order], b[order]
+    if (np.diff(a) <= 0).any():
+        twice = math.degrees(a[int(np.flatnonzero(np.diff(a) <= 0)[0])])
+        raise RequestError(f"points: input {twice:g} deg is given twice; give each once")
+    if a[-1] - a[0] >= math.tau:
+        raise RequestError("points: the inputs reach over a full turn; give a part of one")
+    most = FREE_ZEROS_MOST if zeros is None else FREE_ZEROS_MOST - 2
+    none = np.empty(0)
+    return Wish(told, a, b, *((a, b) if a.size <= most else (none, none)), zeros=zeros)
+
+
+def read_pairs(path: Path) -> tuple[Floats, Floats]:
+    """The pairs of readings [rad] in a CSV or text table: two columns, whose header names their units.
+
+    Raises `TableError`.
+    """
+    table = read_table(path, "pairs of angles")
+    if len(table.names) != 2:
+        raise table.wrong(f"{len(table.names)} columns; give two: readings of the input and of the output")
+    columns = []
+    for column in (0, 1):
+        unit = measured_unit(table.name_and_unit(column)[1])
+        if unit is None or (unit.kind, unit.order) != ("turn", 0):
+            raise table.wrong(
+                "an angle needs its unit; write it into the header, as in input_deg,output_deg", column=column
+            )
+        columns.append(table.numbers(column) * unit.size)
+    table.refuse_gaps(dict(enumerate(columns)), "leave the row out")
+    return columns[0], columns[1]

@@ -1,0 +1,1 @@
+"""Linkages of any kind whose point follows a wanted path."""

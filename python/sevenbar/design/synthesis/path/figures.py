@@ -1,0 +1,161 @@
+"""A figure of a path design: wanted points and the path in space and from three sides, and the errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.arrays import Floats
+from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate
+from sevenbar.design.synthesis.path.check import made
+from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
+from sevenbar.drawing.scene import prepare_view
+from sevenbar.drawing.skeleton import short
+
+USED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.8, "zorder": 2, "label": "path, used part"}
+WHOLE: dict[str, Any] = {"color": "#a8a8a8", "lw": 1.1, "zorder": 1, "label": "rest of its circuit"}
+WANTED: dict[str, Any] = {
+    "color": CIRCUIT_COLOURS[0],
+    "ls": "",
+    "marker": "o",
+    "mfc": "none",
+    "mew": 1.0,
+    "ms": 4.6,
+    "zorder": 3,
+    "label": "wanted points",
+}
+
+#: Of wanted points so many are numbered, the first and the last among them.
+NUMBERED = 6
+
+#: A path narrower than this part of its extent is seen from its edge.
+EDGE = 0.1
+
+#: Colour of the error's bars.
+BAR = "#404040"
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """The path of a design as placed.
+
+    `whole` (m, 3) is all of its circuit, `used` (k, 3) the part along the wanted points, `places` (n, 3)
+    the point is at each of them.
+    """
+
+    whole: Floats
+    used: Floats
+    places: Floats
+
+
+def drawn(task: PathTask, candidate: Candidate) -> Drawn:
+    """The path of a design of a task, in the coordinates of the wanted points."""
+    linkage = candidate.draft.linkage
+    own = task.place and "joint" not in task.draft.raw
+    # its inputs were reached when it was checked
+    found = made(linkage, task.point.name, candidate.claim.inputs, task.wanted, place=own)[0]
+    circuit = linkage.motion(CHECK_SAMPLES).circuits[candidate.circuit]
+    point = next(p for p in linkage.points if p.name == task.point.name)
+    rows = found.placing.put(circuit.point(point.link, point.at).position)
+    if circuit.closed:
+        rows = np.concatenate([rows, rows[:1]])
+    if task.closed:
+        return Drawn(rows, rows, found.places)
+    position = candidate.position
+    steps = np.diff(position)
+    rising = (steps > 0).sum() >= (steps < 0).sum()
+    first, last = (position[0], position[-1]) if rising else (position[-1], position[0])
+    count = len(circuit.input)
+    last += count if last < first else 0
+    inner = np.arange(int(np.ceil(first)), int(np.floor(last)) + 1) % count
+    ends = found.places[[0, -1]] if rising else found.places[[-1, 0]]
+    return Drawn(
+        rows,
+        np.concatenate([ends[:1], rows[:-1][inner] if circuit.closed else rows[inner], ends[1:]]),
+        found.places,
+    )
+
+
+def path_figure(task: PathTask, candidate: Candidate) -> Figure:
+    """Wanted points and path in space (a) and from three sides (b to d), the error at each point (e)."""
+    path = drawn(task, candidate)
+    unit = task.draft.linkage.length_unit
+    errors = candidate.claim.errors
+    with rc_context(STYLE):
+        figure = new_figure(10.4, 7.6)
+        space: Any = figure.add_axes((0.015, 0.33, 0.47, 0.55), projection="3d")
+        seen = np.concatenate([task.wanted, path.used])
+        near = _near(path.whole, seen)
+        prepare_view(space, np.concatenate([seen, near[np.isfinite(near).all(axis=1)]]), unit, fill=0.8)
+        for line, look in ((near, WHOLE), (path.used, USED), (task.wanted, WANTED)):
+            space.plot(*line.T, **look)
+        space.set_title("(a) in space", fontsize=10, y=1.0)
+        sides = (
+            ("b", 0, 1, (0.565, 0.605, 0.18, 0.27)),
+            ("c", 0, 2, (0.565, 0.19, 0.18, 0.27)),
+            ("d", 1, 2, (0.81, 0.605, 0.18, 0.27)),
+        )
+        for letter, across, up, place in sides:
+            axes = figure.add_axes(place)
+            _side(axes, task, path, near, (across, up))
+            axes.set_title(f"({letter}) {'xyz'[across]} and {'xyz'[up]}", fontsize=10)
+            axes.set_xlabel(f"{'xyz'[across]} [{unit}]", labelpad=1)
+            axes.set_ylabel(f"{'xyz'[up]} [{unit}]", labelpad=1)
+        below = figure.add_axes((0.085, 0.085, 0.39, 0.19))
+        below.bar(np.arange(1, len(errors) + 1), errors, color=BAR, width=0.62)
+        below.set_xlabel("wanted point")
+        below.set_ylabel(f"distance [{unit}]")
+        below.set_xlim(0.3, len(errors) + 0.7)
+        below.xaxis.set_major_locator(MaxNLocator(10, integer=True))
+        below.yaxis.set_major_locator(MaxNLocator(4))
+        below.grid(axis="y", lw=0.6)
+        below.set_axisbelow(True)
+        below.set_title(
+            f"(e) error: greatest {candidate.error_greatest:.3g} {unit}, "
+            f"root mean square {candidate.error_rms:.3g} {unit}",
+            fontsize=10,
+        )
+        handles, labels = space.get_legend_handles_labels()
+        figure.legend(handles[::-1], labels[::-1], loc="center", bbox_to_anchor=(0.90, 0.325), frameon=False)
+        figure.suptitle(
+            f"{short(candidate.name, 70)}: {candidate.motion_type}, circuit {candidate.circuit}", fontsize=11
+        )
+    return figure
+
+
+def _near(whole: Floats, seen: Floats) -> Floats:
+    """A circuit's rows without those far beyond what is looked at, which would make the rest small."""
+    middle, half = (seen.max(axis=0) + seen.min(axis=0)) / 2, float(np.ptp(seen, axis=0).max())
+    rows = whole.copy()
+    rows[(np.abs(whole - middle) > half).any(axis=1)] = np.nan
+    return rows
+
+
+def _side(axes: Axes, task: PathTask, path: Drawn, near: Floats, plane: tuple[int, int]) -> None:
+    """Wanted points and path, seen along an axis."""
+    for line, look in ((near, WHOLE), (path.used, USED), (task.wanted, WANTED)):
+        axes.plot(line[:, plane[0]], line[:, plane[1]], **look)
+    count = len(task.wanted)
+    # only where the path is not seen from its edge
+    flat = np.ptp(task.wanted[:, list(plane)], axis=0).min() < EDGE * task.extent
+    for i in () if flat else np.unique(np.linspace(0, count - 1, min(NUMBERED, count)).astype(int)):
+        x, y = task.wanted[i, list(plane)]
+        axes.annotate(
+            str(i + 1), (x, y), xytext=(4, 4), textcoords="offset points", fontsize=7.5, color="#303030"
+        )
+    low, high = axes.get_xlim(), axes.get_ylim()
+    # to one scale, and no line of a flat path pressed to the frame
+    half = 0.56 * max(low[1] - low[0], high[1] - high[0])
+    axes.set_xlim(sum(low) / 2 - half, sum(low) / 2 + half)
+    axes.set_ylim(sum(high) / 2 - half, sum(high) / 2 + half)
+    axes.set_aspect("equal")
+    axes.grid(lw=0.6)
+    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.yaxis.set_major_locator(MaxNLocator(4))

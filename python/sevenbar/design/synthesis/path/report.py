@@ -1,0 +1,116 @@
+"""Path designs in words, as comments of their files, and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from rich.console import Console, Group, RenderableType
+from rich.text import Text
+
+from sevenbar.design.synthesis.candidates import Candidate
+from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.reporting.page import Facts, number_table
+
+#: Dimensions below this part of the path's extent are printed as 0.
+TINY = 1e-9
+
+#: Dimensions in a printed table.
+ACROSS = 6
+
+
+def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
+    """What was wanted, by labels."""
+    unit = task.draft.linkage.length_unit
+    count = len(task.dimensions)
+    names = ", ".join(dimension.name for dimension in task.dimensions)
+    inputs = "" if task.timing is None else ", at given inputs" + (" from a free start" if task.phase else "")
+    return [
+        (
+            "wanted",
+            f"{source}: {len(task.wanted)} points of {'a closed' if task.closed else 'an open'} path, "
+            f"{task.extent:.4g} {unit} across{inputs}",
+        ),
+        ("point", f"{task.point.name} on link {task.point.link}"),
+        ("varied", f"{count} dimension{'s' * (count != 1)}: {names}"),
+        ("ground", "anywhere in space" if task.place else "where the description has it"),
+        ("limits", task.limits.told()),
+    ]
+
+
+def head(task: PathTask, source: str, command: str) -> list[str]:
+    """The lines of comment that a design's file begins with."""
+    lines = [f"{label}: {text}" for label, text in _facts(task, source)]
+    if task.place and "joint" not in task.draft.raw:
+        lines.append(
+            "placed: turned by turn_x, turn_y, turn_z (axis times angle), then shifted, it makes the path"
+        )
+    return [*lines, f"made by: {command}"]
+
+
+def print_text(
+    task: PathTask, found: Sequence[Candidate], source: str, seed: int, console: Console | None = None
+) -> None:
+    """Prints the designs for people."""
+    linkage = task.draft.linkage
+    unit = linkage.length_unit
+    facts = Facts()
+    for label, text in _facts(task, source):
+        facts.add(label, text, "bold" if label == "wanted" else "")
+    facts.add("seed", str(seed))
+    transmits = any(c.transmission_lowest is not None for c in found)
+    heads = [f"greatest\nerror\n[{unit}]", f"RMS\nerror\n[{unit}]"]
+    heads += ["least\ntransm.\n[deg]"] if transmits else []
+    heads += [f"size\n[{unit}]", "motion type", "circuit"]
+    rows = []
+    for i, candidate in enumerate(found, 1):
+        own = candidate.columns
+        cells = [own[f"error_greatest_{unit}"], own[f"error_rms_{unit}"]]
+        cells += [own["transmission_lowest_deg"]] if transmits else []
+        cells += [own[f"size_{unit}"], own["motion_type"], own["circuit"]]
+        rows.append([str(i), *map(_cell, cells)])
+    parts: list[RenderableType] = [
+        Text(f"Path generation: {linkage.name}", style="bold underline"),
+        facts.grid,
+        Text(),
+        number_table(["design", *heads], rows, words=[heads.index("motion type") + 1]),
+    ]
+    dimensions = task.dimensions
+    for begin in range(0, len(dimensions), ACROSS):
+        some = dimensions[begin : begin + ACROSS]
+        table = number_table(
+            ["design", *(f"{d.name}\n[{d.unit}]" if d.unit else d.name for d in some)],
+            [
+                [str(i), *(_cell(c.draft.dimension(d.name).value, TINY * task.extent) for d in some)]
+                for i, c in enumerate(found, 1)
+            ],
+        )
+        parts += [Text(), table]
+    (console or Console()).print(Group(*parts))
+
+
+def _cell(value: object, tiny: float = 0.0) -> str:
+    """A cell of a printed table; below `tiny` a number is 0."""
+    if value is None:
+        return "-"
+    if not isinstance(value, float):
+        return str(value)
+    return "0" if abs(value) < tiny else f"{value:.5g}"
+
+
+def as_json(task: PathTask, found: Sequence[Candidate], source: str, seed: int) -> str:
+    """The designs as one JSON object; what has a unit has it in its name."""
+    unit = task.draft.linkage.length_unit
+    designs: list[dict[str, Any]] = [
+        {
+            "design": i,
+            "name": candidate.name,
+            **candidate.columns,
+            f"errors_{unit}": candidate.claim.errors.tolist(),
+            "inputs": candidate.claim.inputs.tolist(),
+        }
+        for i, candidate in enumerate(found, 1)
+    ]
+    told = dict(_facts(task, source))
+    return json.dumps({"format": 1, **told, "seed": seed, "designs": designs}, indent=2, allow_nan=False)

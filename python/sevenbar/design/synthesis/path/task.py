@@ -1,0 +1,404 @@
+"""What is wanted of a path generator: points in order, perhaps with inputs; what of the linkage may vary."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_array
+from sevenbar.description.draft import Dimension, Draft
+from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.synthesis.path.closure import PointClosure
+from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
+from sevenbar.kinematics.geometry import Point
+from sevenbar.kinematics.linkage import Linkage
+
+#: Points of a wanted path: fewer say nothing of a curve; more only cost time, each is an unknown.
+FEWEST_POINTS, MOST_POINTS = 3, 200
+
+#: A path whose last point is this near to its first, in parts of its extent, is closed.
+SAME_POINT = 1e-9
+
+#: Bounds where none are given, in parts of the greater of the linkage's longest dimension and the path's
+#: extent: of lengths that must be positive, and how far others may go from zero.
+SHORTEST, LONGEST = 0.02, 2.0
+
+#: The same for places as drawn, from where they are drawn, and for the numbers of a drawn direction.
+DRAWN, TILT = 0.5, 1.0
+
+#: Angles may go half a turn to each side where no bounds are given [rad].
+HALF_TURN = math.pi
+
+#: Inputs of a turn at which dimensions that open the loop are looked for.
+LOOKED_AT = 12
+
+
+@dataclass(frozen=True, eq=False)
+class PathTask:
+    """A wanted path and the linkage that shall make it.
+
+    `wanted` (n, 3) [length] are the points in order, the first not repeated where the path is `closed`;
+    `timing` (n,) [rad, or length] the inputs at which they shall be reached, counted from an unknown start
+    with `phase`. `varied` are the numbers of the dimensions that may change, `low` and `high` (k,) their
+    bounds in the file's units. With `place` the linkage may stand anywhere in space.
+    """
+
+    draft: Draft
+    point: Point
+    wanted: Floats
+    closed: bool
+    timing: Floats | None
+    phase: bool
+    place: bool
+    varied: tuple[int, ...]
+    low: Floats
+    high: Floats
+    limits: Limits
+
+    @cached_property
+    def closure(self) -> PointClosure:
+        """The closure of the linkage, with the point."""
+        return PointClosure(self.draft, self.point, self.varied)
+
+    @property
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """The dimensions that may change."""
+        return tuple(self.closure.dimensions[number] for number in self.varied)
+
+    @cached_property
+    def extent(self) -> float:
+        """The greatest extent of the wanted path [length], which errors are parts of."""
+        return float(np.ptp(self.wanted, axis=0).max())
+
+    @cached_property
+    def scale_free(self) -> bool:
+        """Whether the linkage may be made larger as a whole, since every length may change."""
+        lengths = {i for i, d in enumerate(self.closure.dimensions) if d.kind in ("length", "pitch")}
+        own = {
+            i
+            for i, d in enumerate(self.closure.dimensions)
+            if d.place[0] == "point" and self.draft.raw["point"][int(d.place[1])]["name"] != self.point.name
+        }
+        return lengths - own <= set(self.varied) and not (self._following & lengths - set(self.varied))
+
+    @cached_property
+    def _following(self) -> set[int]:
+        return {i for i, d in enumerate(self.closure.dimensions) if d.follows}
+
+    def values(self, varied: Floats) -> Floats:
+        """The values of all dimensions, (all,), from those that vary (k,)."""
+        values = self.closure.start.copy()
+        values[list(self.varied)] = varied
+        return values
+
+    def drawn(self, varied: Floats) -> Draft:
+        """The draft with other values (k,) of what varies."""
+        names = [dimension.name for dimension in self.dimensions]
+        return self.draft.with_values(dict(zip(names, map(float, varied), strict=True)))
+
+
+Where = str | tuple[int, Sequence[float]]
+
+
+def path_task(
+    linkage: Linkage | Draft,
+    points: npt.ArrayLike,
+    point: Where,
+    *,
+    vary: Sequence[str] | None = None,
+    bounds: Mapping[str, tuple[float | str, float | str]] | None = None,
+    timing: npt.ArrayLike | None = None,
+    phase: bool = False,
+    place: bool = False,
+    limits: Limits | None = None,
+) -> PathTask:
+    """The task as it was asked for, looked at; raises `RequestError` for what does not fit.
+
+    `points` (n, 3) [length]; one that ends where it began is closed. `vary` holds names of dimensions or
+    patterns, `bounds` (low, high) by name or pattern, numbers in the file's units or texts as "25 cm"; where
+    none are given all that can change without opening the loop varies, within bounds of its own.
+    """
+    draft = linkage if isinstance(linkage, Draft) else Draft.of_linkage(linkage)
+    draft, own = _with_point(draft, point)
+    wanted, closed = _wanted(points)
+    inputs = _timing(timing, wanted, closed)
+    if phase and inputs is None:
+        raise RequestError("phase: the path has no inputs whose start could be free; give timing, too")
+    wanted = wanted[:-1] if closed else wanted
+    limits = Limits() if limits is None else limits
+    if limits.transmission_lowest and "rssr" not in draft.raw:
+        raise RequestError(
+            "transmission: its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
+        )
+    # the spin of an RSSR's coupler has a convention
+    if draft.linkage.kind != "RSSR" and own.link in draft.linkage.idle_links:
+        raise NotCoveredError(
+            f"point: the {draft.linkage.idle[0]} is not determined, so neither is a path on it; "
+            "give a point of another link"
+        )
+    task = PathTask(draft, own, wanted, closed, inputs, phase, place, (), np.empty(0), np.empty(0), limits)
+    numbers = _varied(task, vary)
+    task = replace(task, varied=numbers)
+    low, high = _bounds(task, bounds or {})
+    task = replace(task, low=low, high=high)
+    _refuse_unreachable(task)
+    return task
+
+
+def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
+    """The draft with the point among its named ones, and the point."""
+    linkage = draft.linkage
+    if isinstance(point, str):
+        for known in linkage.points:
+            if known.name == point and known.link == len(linkage.joints):
+                raise RequestError(
+                    f"point: '{point}' is on link {known.link}, the ground, which stands still; give a point "
+                    f"of link 1 to {known.link - 1}"
+                )
+            if known.name == point:
+                return draft, known
+        names = [known.name for known in linkage.points]
+        told = ", ".join(names) or "none"
+        raise RequestError(
+            f"point: no point {shown(point)}; {suggestion(point, names)}this linkage has {told}; "
+            "give one, or a link and a place on it"
+        )
+    try:
+        link, at = point
+        place = finite_array("at", at)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, RequestError):
+            raise
+        raise RequestError(f"point: {shown(point)} is not a place; give a link and three numbers") from None
+    count = len(linkage.joints)
+    if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link < count:
+        raise RequestError(
+            f"point: {shown(link)} is not a moving link; give 1 to {count - 1}, link {count} is the ground"
+        )
+    if place.size != 3:
+        raise RequestError(f"at: {place.size} numbers; give three")
+    taken = {known.name for known in linkage.points} | {joint.name for joint in linkage.joints}
+    name = next(n for n in ("P", "path_point", *(f"P{i}" for i in range(1, 1000))) if n not in taken)
+    made = draft.with_point(name, int(link), tuple(map(float, place)))
+    return made, next(p for p in made.linkage.points if p.name == name)
+
+
+def _wanted(points: npt.ArrayLike) -> tuple[Floats, bool]:
+    """The wanted points (n, 3), and whether the last repeats the first."""
+    try:
+        wanted = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise RequestError("points: not an array of numbers; give rows of x, y and z") from None
+    if wanted.ndim != 2 or wanted.shape[1] != 3:
+        raise RequestError(f"points: an array of shape {wanted.shape} does not fit; give rows of x, y and z")
+    bad = np.argwhere(~np.isfinite(wanted))
+    if bad.size:
+        row, axis = bad[0]
+        raise RequestError(f"points: {'xyz'[axis]} of point {row + 1} is not a finite number; mend it")
+    extent = float(np.ptp(wanted, axis=0).max(initial=0.0))
+    closed = len(wanted) > 1 and bool(np.abs(wanted[-1] - wanted[0]).max() <= SAME_POINT * extent)
+    count = len(wanted) - closed
+    if count < FEWEST_POINTS:
+        raise RequestError(f"points: {count} given; a path needs at least {FEWEST_POINTS}")
+    if count > MOST_POINTS:
+        raise RequestError(f"points: {count} given; give at most {MOST_POINTS}, thinned out evenly")
+    if not extent > 0:
+        raise RequestError("points: all are one place; give points along a path")
+    again = np.flatnonzero(np.abs(np.diff(wanted, axis=0)).max(axis=1) <= SAME_POINT * extent)
+    if again.size:
+        raise RequestError(f"points: {again[0] + 1} and {again[0] + 2} are one place; leave one out")
+    return wanted, closed
+
+
+def _timing(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) -> Floats | None:
+    """The inputs of the points, that of the closing one left out."""
+    if timing is None:
+        return None
+    inputs = finite_array("timing", timing)
+    if inputs.size == len(wanted) - closed and closed:
+        closing = inputs
+    elif inputs.size == len(wanted):
+        closing = inputs[:-1] if closed else inputs
+    else:
+        raise RequestError(
+            f"timing: {inputs.size} inputs for {len(wanted)} points; give one for each, in their order"
+        )
+    steps = np.diff(inputs)
+    if not ((steps > 0).all() or (steps < 0).all()):
+        i = int(np.flatnonzero(np.sign(steps) != np.sign(steps[0]))[0]) if steps[0] else 0
+        raise RequestError(
+            f"timing: the input of point {i + 2} turns back; inputs must rise, or fall, from point to point"
+        )
+    return closing
+
+
+def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
+    """The numbers of the dimensions that may change."""
+    every = task.closure.dimensions
+    names = [dimension.name for dimension in every]
+    others = {
+        i
+        for i, d in enumerate(every)
+        if d.place[0] == "point" and task.draft.raw["point"][int(d.place[1])]["name"] != task.point.name
+    }
+    if vary is None:
+        chosen = [i for i in range(len(every)) if i not in others]
+    else:
+        chosen = []
+        for pattern in vary:
+            found = [i for i, d in enumerate(every) if pattern == d.key or fnmatchcase(d.name, pattern)]
+            if not found:
+                raise RequestError(
+                    f"vary: {shown(pattern)} is not a dimension here; {suggestion(pattern, names)}"
+                    f"give some of {', '.join(names)}, or a pattern as 'L*'"
+                )
+            chosen += [i for i in found if i not in chosen]
+        aside = [names[i] for i in chosen if i in others]
+        if aside:
+            raise RequestError(
+                f"vary: {aside[0]} is of another point than '{task.point.name}', whose path it does not "
+                "change; leave it out"
+            )
+    if not chosen:
+        raise RequestError(f"vary: no dimension may change; give some of {', '.join(names)}")
+    chosen.sort()
+    opening = _opening(replace(task, varied=tuple(chosen)))
+    if vary is None:
+        # the point's own coordinates open nothing
+        chosen = [i for i in chosen if i not in opening]
+    elif opening:
+        told = ", ".join(names[i] for i in opening[:4]) + (" .." if len(opening) > 4 else "")
+        raise RequestError(
+            f"vary: {told} cannot change alone without opening the loop; leave "
+            f"{'it' if len(opening) == 1 else 'them'} out"
+        )
+    return tuple(chosen)
+
+
+def _opening(task: PathTask) -> tuple[int, ...]:
+    """Dimensions that open the loop as soon as they change, at the description's own poses."""
+    motion = task.draft.linkage.motion(LOOKED_AT)
+    for circuit in motion.circuits:
+        good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
+        if good.size:
+            start = task.closure.start
+            q = task.closure.closed(start, circuit.input[good], task.closure.poses(start, circuit.q[good]))
+            q = q[np.isfinite(q).all(axis=1)]
+            if len(q):
+                return task.closure.openings(task.closure.start, q)
+    raise RequestError(
+        f"linkage: {motion.motion_type}, the loop moves nowhere as it is described, so it cannot be a start; "
+        "give dimensions with which it moves"
+    )
+
+
+def _bounds(task: PathTask, given: Mapping[str, tuple[float | str, float | str]]) -> tuple[Floats, Floats]:
+    """Bounds of what varies (k,) each, those of the size held too."""
+    dimensions = task.dimensions
+    lengths = [abs(d.value) for d in task.closure.dimensions if d.kind == "length"]
+    size = max(*lengths, task.extent)
+    low, high = np.empty(len(dimensions)), np.empty(len(dimensions))
+    for i, d in enumerate(dimensions):
+        low[i], high[i] = _usual(d, size, drawn=d.place[0] == "joint")
+        if task.limits.size is not None and d.kind == "length":
+            least, most = task.limits.size
+            low[i], high[i] = max(low[i], least if d.positive else -most), min(high[i], most)
+            if not low[i] <= d.value <= high[i]:
+                raise RequestError(
+                    f"size: {d.name} begins at {d.value:g}, outside {low[i]:g}:{high[i]:g}; "
+                    "give other limits, or another start"
+                )
+    for pattern, pair in given.items():
+        found = [
+            i for i, d in enumerate(dimensions) if pattern in (d.name, d.key) or fnmatchcase(d.name, pattern)
+        ]
+        if not found:
+            names = [d.name for d in dimensions]
+            raise RequestError(
+                f"bounds: {shown(pattern)} is not a dimension that varies; {suggestion(pattern, names)}"
+                f"these vary: {', '.join(names)}"
+            )
+        # a pattern of lengths and angles takes numbers alone
+        alike = len({dimensions[i].unit for i in found}) == 1
+        try:
+            least, most = (
+                dimensions[found[0]].read(value) if alike and isinstance(value, str) else float(value)
+                for value in pair
+            )
+        except (TypeError, ValueError):
+            least = most = math.nan
+        if not (math.isfinite(least) and math.isfinite(most) and least < most):
+            written = isinstance(pair, tuple) and any(isinstance(end, str) for end in pair)
+            told = ":".join(map(str, pair)) if written else pair
+            raise RequestError(
+                f"bounds: {shown(told)} of {pattern} are no bounds; give the least and the greatest value, "
+                "as in 100:400"
+            )
+        for i in found:
+            d = dimensions[i]
+            if d.positive and not least > 0:
+                raise RequestError(f"bounds: {least:g} of {d.name}: a link needs a length; give bounds > 0")
+            if not least <= d.value <= most:
+                raise RequestError(
+                    f"bounds: {d.name} begins at {d.value:g} {d.unit}".rstrip()
+                    + f", outside {least:g}:{most:g}; give bounds that hold it, or another start"
+                )
+            low[i], high[i] = least, most
+    return low, high
+
+
+def _usual(d: Dimension, size: float, *, drawn: bool) -> tuple[float, float]:
+    """Bounds of a dimension where none are given, its own value within."""
+    if d.kind == "angle":
+        half = HALF_TURN / d.scale
+        return d.value - half, d.value + half
+    if drawn and d.kind == "number":
+        return d.value - TILT, d.value + TILT
+    if d.kind == "number":
+        return -1.0, 1.0
+    if drawn:
+        return d.value - DRAWN * size, d.value + DRAWN * size
+    if d.positive or (d.place[-1] == "length" and d.value > 0):
+        return min(SHORTEST * size, d.value), max(LONGEST * size, d.value)
+    return min(-LONGEST * size, d.value), max(LONGEST * size, d.value)
+
+
+def _refuse_unreachable(task: PathTask) -> None:
+    """`RequestError` for a path that is larger than the linkage can reach within the bounds."""
+    values = {number: (low, high) for number, low, high in zip(task.varied, task.low, task.high, strict=True)}
+    start = task.closure.start
+    word = task.closure.word(start)
+    reach = 0.0
+    for step in word.steps[: word.carried]:
+        if step.slide.column is not None or step.pitch is not None or np.any(step.place):
+            return
+        for number in step.slide.dimensions:
+            ends = values.get(number, (start[number], start[number]))
+            reach += max(abs(end) for end in ends)
+    if word.at_moves:
+        most = [max(map(abs, values.get(number, (start[number],) * 2))) for number in word.at_moves]
+        reach += math.hypot(*most)
+    else:
+        reach += float(np.linalg.norm(word.at))
+    unit = task.draft.linkage.length_unit
+    if not task.place:
+        far = np.linalg.norm(task.wanted - word.start[:3, 3], axis=1)
+        if far.max() > reach:
+            raise RequestError(
+                f"points: point {far.argmax() + 1} lies {far.max():.4g} {unit} from the origin, and the "
+                f"linkage reaches {reach:.4g} {unit} at most within the bounds; widen them, or place it "
+                "freely"
+            )
+        return
+    across = float(np.linalg.norm(task.wanted[:, None] - task.wanted[None], axis=2).max())
+    if across > 2 * reach:
+        raise RequestError(
+            f"points: the path is {across:.4g} {unit} across, and the linkage reaches {2 * reach:.4g} {unit} "
+            "at most within the bounds; widen them"
+        )

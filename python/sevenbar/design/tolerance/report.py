@@ -1,0 +1,271 @@
+"""What tolerances come to: a page for people, an object for programs, a folder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from sevenbar.design.tolerance.linear import Linear
+from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
+from sevenbar.design.tolerance.tolerances import CUT
+from sevenbar.design.tolerance.words import input_text, plain, told_name, unit_of
+from sevenbar.design.tolerance.worst import WorstCase
+from sevenbar.drawing.figure import save
+from sevenbar.reporting.folder import fill_folder, write_columns, write_csv
+from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.report import json_text
+
+#: Dimensions of a corner design that the page names; the JSON has all.
+MOST_NAMED = 8
+
+#: An effect in parts of the greatest that is rounding.
+NO_EFFECT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """The linear estimate, the worst case and, where samples were drawn, Monte Carlo."""
+
+    linear: Linear
+    worst: WorstCase
+    exact: MonteCarlo | None
+
+
+def text(findings: Findings) -> RenderableType:
+    """The findings for people."""
+    linear, worst, exact = findings.linear, findings.worst, findings.exact
+    found = linear.found
+    facts = Facts()
+    facts.add("told", f"{told_name(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})")
+    facts.add("drive", f"{found.input_name} at {found.speed:.6g} {_speed_unit(linear)}")
+    spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
+    facts.add("errors", f"independent, {linear.distribution}{spread}")
+    facts.add("worst case", _worst_text(worst))
+    facts.add("", _corner_text(worst))
+    row = int(np.argmax(linear.deviation))
+    three = 3 * float(plain(linear, linear.deviation)[row])
+    facts.add(
+        "3 sigma", f"± {three:.4g} {unit_of(linear)} at {input_text(linear, linear.input[row])}, linear"
+    )
+    if exact is not None:
+        facts.add("Monte Carlo", _samples_text(exact))
+        facts.add("", exact.verdict, style="bold")
+    for note in linear.left_out():
+        facts.add("note", note)
+    title = Text(found.linkage.name, style="bold underline")
+    parts: list[RenderableType] = [title, facts.grid, Text(), _effects_table(linear)]
+    if found.measures:
+        parts += [Text(), _measures_table(linear)]
+    return Group(*parts)
+
+
+def print_text(findings: Findings, console: Console | None = None) -> None:
+    """Prints the findings for people."""
+    (console or Console()).print(text(findings))
+
+
+def as_json(findings: Findings) -> str:
+    """The findings as one JSON object: outputs in rad and length, dimensions in the units of the file."""
+    linear, worst, exact = findings.linear, findings.worst, findings.exact
+    found = linear.found
+    told: dict[str, Any] = {
+        "format": 1,
+        "linkage": found.linkage.name,
+        "drive": {"input": found.input_name, "output": found.output_name, "speed": found.speed},
+        "circuit": found.circuit.index,
+        "told": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
+        "distribution": linear.distribution,
+        "dimensions": [
+            {
+                "name": effect.dimension.name,
+                "unit": effect.dimension.unit,
+                "value": effect.dimension.value,
+                "tolerance": effect.width,
+                "from": effect.source,
+                "greatest_effect": effect.greatest,
+                "at_input": effect.at,
+                "share_of_variance": effect.share,
+            }
+            for effect in linear.effects
+        ],
+        "opening": list(found.opening),
+        "worst_case": {
+            "linear": float(linear.worst[worst.at]),
+            "at_input": float(linear.input[worst.at]),
+            "corner": worst.corner,
+            "exact_high": float(worst.high[worst.at]),
+            "exact_low": float(worst.low[worst.at]),
+        },
+        "deviation": float(linear.deviation.max()),
+        "measures": [
+            {"name": one.name, "unit": one.unit, "value": one.value}
+            | dict(zip(("worst_case", "deviation"), linear.measure(one.name), strict=True))
+            for one in found.measures
+        ],
+        "rows": {
+            str(word): int(count)
+            for word, count in zip(*np.unique(linear.status, return_counts=True), strict=True)
+        },
+        "notes": list(linear.left_out()),
+    }
+    if exact is not None:
+        told["monte_carlo"] = {
+            "count": exact.count,
+            "seed": exact.seed,
+            "lost": exact.lost,
+            "reasons": dict(exact.reasons),
+            "greatest": exact.greatest,
+            "deviation": float(exact.deviation.max()),
+            "ratio": exact.ratio,
+            "ratio_error": exact.ratio_error,
+            "bias": exact.bias,
+            "bias_error": exact.bias_error,
+            "linear_estimate_holds": exact.holds,
+            "verdict": exact.verdict,
+        }
+    return json_text(told)
+
+
+def write(
+    findings: Findings, folder: Path, figures: Sequence[str] = ("png",), *, force: bool = False
+) -> list[Path]:
+    """Writes tolerance.json, tables (dimensions, deviation, sensitivities), and both figures, or none."""
+    linear, worst, exact = findings.linear, findings.worst, findings.exact
+
+    def fill(staging: Path) -> None:
+        from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
+
+        (staging / "tolerance.json").write_text(as_json(findings) + "\n", encoding="utf-8")
+        unit = unit_of(linear).replace("/", "_").replace("²", "2")
+        head = (
+            "dimension",
+            "unit",
+            "value",
+            "tolerance",
+            "from",
+            f"greatest_effect_{unit}",
+            "share_of_variance",
+        )
+        lines = [
+            (
+                e.dimension.name,
+                e.dimension.unit,
+                e.dimension.value,
+                e.width,
+                e.source,
+                float(plain(linear, e.greatest)),
+                e.share,
+            )
+            for e in linear.effects
+        ]
+        write_csv(staging / "dimensions.csv", head, lines)
+        columns = {
+            "input": linear.input,
+            f"worst_case_{unit}": plain(linear, linear.worst),
+            f"corner_high_{unit}": plain(linear, worst.high),
+            f"corner_low_{unit}": plain(linear, worst.low),
+            f"deviation_{unit}": plain(linear, linear.deviation),
+        }
+        if exact is not None:
+            columns[f"monte_carlo_mean_{unit}"] = plain(linear, exact.mean)
+            columns[f"monte_carlo_deviation_{unit}"] = plain(linear, exact.deviation)
+            for level, quantile in zip(LEVELS, exact.quantiles, strict=True):
+                columns[f"monte_carlo_q{100 * level:g}_{unit}"] = plain(linear, quantile)
+        write_columns(staging / "deviation.csv", columns)
+        slopes = {"input": linear.input}
+        for dimension, column in zip(linear.found.dimensions, linear.slopes.T, strict=True):
+            slopes[f"{dimension.name}_{_per(unit, dimension.unit)}"] = plain(linear, column)
+        write_columns(staging / "sensitivities.csv", slopes)
+        for ending in figures:
+            save(shares_figure(linear), staging / f"shares.{ending}")
+            save(deviation_figure(linear, exact), staging / f"deviation.{ending}")
+
+    return fill_folder(folder, fill, force=force)
+
+
+def _per(unit: str, dimension: str) -> str:
+    """The unit of a derivative, as columns of tables have it."""
+    return f"{unit}_per_{dimension.replace('/', '_') or 'one'}"
+
+
+def _speed_unit(linear: Linear) -> str:
+    found = linear.found
+    return "rad/s" if found.loop.columns[found.loop.input].turns else f"{found.linkage.length_unit}/s"
+
+
+def _worst_text(worst: WorstCase) -> str:
+    linear = worst.linear
+    most = float(plain(linear, linear.worst)[worst.at])
+    return f"± {most:.4g} {unit_of(linear)} at {input_text(linear, linear.input[worst.at])}, linear"
+
+
+def _corner_text(worst: WorstCase) -> str:
+    """What the corner designs do exactly."""
+    linear = worst.linear
+    named = [f"{name} {value:.7g}" for name, value in list(worst.corner.items())[:MOST_NAMED]]
+    more = len(worst.corner) - len(named)
+    design = ", ".join(named) + (f" and {more} more" if more else "")
+    high, low = (float(plain(linear, side)[worst.at]) for side in (worst.high, worst.low))
+    if not (math.isfinite(high) and math.isfinite(low)):
+        return f"the corner design ({design}) or its opposite does not close there, so this is no bound"
+    share = 100 * worst.difference
+    beside = f"{abs(share):.2g} % {'more' if share > 0 else 'less'} than linear"
+    return f"exactly {high:+.4g} with {design}; {low:+.4g} with the opposite errors: {beside}"
+
+
+def _samples_text(exact: MonteCarlo) -> str:
+    linear = exact.linear
+    seen = float(plain(linear, exact.greatest))
+    three = 3 * float(plain(linear, exact.deviation).max())
+    return (
+        f"{exact.count} designs (seed {exact.seed}): 3 sigma ± {three:.4g} {unit_of(linear)}, "
+        f"greatest {seen:.4g}; "
+        f"exact over linear deviation {_with_error(exact.ratio, exact.ratio_error)}, "
+        f"bias {_with_error(exact.bias, exact.bias_error)} of one"
+    )
+
+
+def _with_error(value: float, error: float) -> str:
+    """A number with its statistical error, both to the error's first digits."""
+    digits = min(max(1 - math.floor(math.log10(error)), 0), 6) if error > 0 else 6
+    return f"{value:.{digits}f} ± {error:.{digits}f}"
+
+
+def _effects_table(linear: Linear) -> Table:
+    heads = ("dimension", "value", "tolerance", "effect", "at", "share", "from")
+    least = NO_EFFECT * max(effect.greatest for effect in linear.effects)
+    rows = (
+        (
+            effect.dimension.name,
+            f"{effect.dimension.value:.7g}",
+            f"± {effect.width:.4g} {effect.dimension.unit}".rstrip(),
+            _effect_text(linear, effect.greatest) if effect.greatest > least else "none",
+            input_text(linear, effect.at) if effect.greatest > least else "-",
+            f"{100 * effect.share:.1f} %",
+            effect.source,
+        )
+        for effect in linear.effects
+    )
+    return number_table(heads, rows, words=[6])
+
+
+def _effect_text(linear: Linear, value: float) -> str:
+    return f"± {float(plain(linear, value)):.4g} {unit_of(linear)}"
+
+
+def _measures_table(linear: Linear) -> Table:
+    rows = []
+    for one in linear.found.measures:
+        worst, deviation = linear.measure(one.name)
+        cells = [f"± {value:.4g}" if math.isfinite(value) else "-" for value in (worst, 3 * deviation)]
+        unit = f" [{one.unit.replace('^2', '²')}]" if one.unit else ""
+        rows.append((one.name.replace("_", " ") + unit, f"{one.value:.6g}", *cells))
+    return number_table(("measure", "nominal", "worst case", "3 sigma"), rows)

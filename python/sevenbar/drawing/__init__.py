@@ -1,0 +1,1 @@
+"""Pictures of linkages, of curves and of films."""

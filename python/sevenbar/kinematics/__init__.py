@@ -1,0 +1,1 @@
+"""The loop and what is asked of it: assembly modes, circuits, rates, mobility, measures."""

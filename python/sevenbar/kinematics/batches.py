@@ -1,0 +1,208 @@
+"""Many linkages at once by the core's batches: motion types, limits and measures of circuits as arrays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar import _core
+from sevenbar.arrays import Floats
+from sevenbar.kinematics.general import expanded, merged, pair, size_of, word
+from sevenbar.kinematics.geometry import Loop, following_coupler
+from sevenbar.kinematics.motion import Integers
+
+#: The core's codes of motion types, and of dimensions that make no linkage.
+CODES = (
+    "crank-rocker",
+    "rocker-crank",
+    "double-crank",
+    "double-rocker",
+    "change-point",
+    "cannot-assemble",
+    "invalid",
+)
+
+CHANGE_POINT, INVALID = CODES.index("change-point"), CODES.index("invalid")
+
+#: The codes' words, as objects of a column.
+WORDS = np.array(CODES, dtype=object)
+
+#: The dimensions of an RSSR in the order of the core's rows.
+RSSR_ROWS = ("M", "N", "L1", "L2", "L3", "D")
+
+#: Rates of the output, by the order of their derivative.
+RATES = {"velocity": 1, "acceleration": 2, "jerk": 3}
+
+
+#: The core's word for a loop that its input drives.
+DRIVEN = 0
+
+#: Words of the motion types of linkages or circuits.
+Words = npt.NDArray[np.object_]
+
+
+def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -> Floats:
+    """The dimensions (6, n) of n RSSRs, in the order of `RSSR_ROWS`, from numbers or arrays (n,) by name.
+
+    `follows`: L2 follows from the others, as where a file leaves it out.
+    """
+    rows = dict(own)
+    if follows:
+        rows["L2"] = following_coupler(rows["M"], rows["N"], rows["L1"], rows["L3"])
+    return np.array([np.broadcast_to(rows[name], count) for name in RSSR_ROWS], dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class Motions:
+    """What the motions of n linkages come to.
+
+    `clear` (n,) tells which are told here; of the others, that have a reason to give or must be followed
+    further, nothing else means anything. `types` (n,) are words; `limits` (n, m) [rad, or length] rise, NaN
+    after the last. `linkage` (c,) has the linkage of each circuit, `circuit` (c,) its number there; `columns`
+    (c,) its measures by name as `measures.MEASURES` has them, NaN where there is none.
+    """
+
+    clear: npt.NDArray[np.bool_]
+    types: Words
+    limits: Floats
+    circuits: Integers
+    linkage: Integers
+    circuit: Integers
+    columns: Mapping[str, npt.NDArray[Any]]
+
+
+def simd_level() -> str:
+    """The vector unit that the core uses on this machine: results agree bit by bit within one level."""
+    return _core.simd_level()
+
+
+def rssr_types(dimensions: Floats, side: str, threads: int) -> tuple[npt.NDArray[np.uint8], Floats]:
+    """Codes of motion types (n,) and limits (n, 4) [rad] of RSSRs.
+
+    `dimensions` (6, n) has the rows `RSSR_ROWS` of the paper's layout; `side` "crank" or "rocker" drives.
+
+    Source: docs/theory_many.md, (1) to (6).
+    """
+    return _core.classify_rssr(np.ascontiguousarray(dimensions), side, threads)
+
+
+def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> Motions:
+    """What the motions of RSSRs come to, the input of each moving at its `speed` (n,) [rad/s].
+
+    The output range of a change point is not among it: that takes following. As `rssr_types` for the rest.
+    """
+    raw = _core.measure_rssr(np.ascontiguousarray(dimensions), side, threads)
+    codes, limits, counts = raw["motion_type"], raw["limits"], raw["circuits"]
+    linkage, circuit = _numbered(counts)
+    transmission = np.degrees(raw["transmission"])
+    columns = _columns(raw, speed[linkage], turns=True) | {
+        # a circuit of an RSSR has the type of all of them
+        "circuit_type": WORDS[codes[linkage]],
+        "transmission_lowest": transmission[:, 0],
+        "transmission_highest": transmission[:, 2],
+    }
+    clear = (codes != INVALID) & (codes != CHANGE_POINT)
+    return Motions(clear, WORDS[codes], limits, counts, linkage, circuit, columns)
+
+
+def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int, threads: int) -> Motions:
+    """What the motions of loops of one pattern of joints come to, each at the speed of its drive.
+
+    `input` and `output` are places of columns, `samples` inputs in a turn. Not clear are loops that the input
+    does not drive, and those without a circuit, whose reason must be looked for.
+    """
+    parts = [expanded(linkage) for linkage in linkages]
+    raw = _core.measure_loops(
+        parts[0][0],
+        np.array([advances for _, advances, _, _ in parts]),
+        np.stack([linkage.base for linkage in linkages]),
+        np.stack([linkage.ground for linkage in linkages]),
+        np.stack([np.array(links) for _, _, links, _ in parts]),
+        input,
+        output,
+        samples,
+        threads,
+    )
+    counts = raw["circuits"]
+    linkage, circuit = _numbered(counts)
+    kinds = linkages[0].column_kinds
+    open_ended = (raw["closed"] == 0) & (raw["singular"] == 0)
+    ends = []
+    for column, end in ((input, "input"), (output, "output")):
+        span = raw[f"{end}_range"][:, 1] - raw[f"{end}_range"][:, 0]
+        told = np.where(np.isfinite(span), word(kinds[column], rocks=True), word(kinds[column], rocks=False))
+        endless = open_ended & (span > math.tau)
+        ends.append(np.where(endless, word(kinds[column], rocks=True, endless=True), told))
+    own = np.array([pair(*both) for both in zip(*ends, strict=True)], dtype=object)
+    own[raw["singular"] != 0] = "change-point"
+    types = np.array(["mixed"] * len(counts), dtype=object)
+    bounds = np.concatenate([[0], np.cumsum(counts)])
+    for place, (first, last) in enumerate(pairwise(bounds)):
+        words = set(own[first:last])
+        if "change-point" in words:
+            types[place] = "change-point"
+        elif len(words) == 1:
+            types[place] = words.pop()
+    speed = np.array([linkage.speed_of(input) for linkage in linkages])
+    columns = _columns(raw, speed[linkage], turns=kinds[output] == "turn")
+    missing = np.full(len(linkage), np.nan)
+    columns |= {"circuit_type": own, "transmission_lowest": missing, "transmission_highest": missing}
+    clear = (raw["status"] == DRIVEN) & (counts > 0)
+    limits = _limits(raw, linkage, linkages, turns=kinds[input] == "turn")
+    return Motions(clear, types, limits, counts, linkage, circuit, columns)
+
+
+def _numbered(counts: Integers) -> tuple[Integers, Integers]:
+    """The linkage of each circuit and its number there, from the circuits of each linkage."""
+    linkage = np.repeat(np.arange(len(counts)), counts)
+    firsts = np.cumsum(counts) - counts
+    return linkage, np.arange(len(linkage)) - firsts[linkage]
+
+
+def _limits(raw: Mapping[str, Any], linkage: Integers, linkages: Sequence[Loop], *, turns: bool) -> Floats:
+    """The limits (n, m) of loops, from the input dead centres of their circuits."""
+    count = len(linkages)
+    owner = np.repeat(linkage, raw["input_dead_centre_count"])
+    inputs = raw["input_dead_centres"][:, 0]
+    bounds = np.searchsorted(owner, np.arange(count + 1))
+    found = [
+        merged(inputs[first:last], turns=turns, size=1.0 if turns else size_of(loop))
+        for loop, (first, last) in zip(linkages, pairwise(bounds), strict=True)
+    ]
+    limits = np.full((count, max(map(len, found), default=0)), np.nan)
+    for row, values in zip(limits, found, strict=True):
+        row[: len(values)] = values
+    return limits
+
+
+def _columns(raw: Mapping[str, Any], speed: Floats, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
+    """Measures (c,) of circuits from the core's arrays, at a speed of each; `turns`: the output does."""
+    swing = raw["output_range"][:, 1] - raw["output_range"][:, 0]
+    columns: dict[str, npt.NDArray[Any]] = {
+        "turns": raw["turns"].astype(np.float64),
+        "swing": np.degrees(swing) if turns else swing,
+        "time_ratio": _time_ratio(raw),
+    }
+    for name, order in RATES.items():
+        ends = raw[name][:, [0, 2]] * (speed**order)[:, None]
+        columns[f"{name}_lowest"], columns[f"{name}_highest"] = ends.min(axis=1), ends.max(axis=1)
+    return columns
+
+
+def _time_ratio(raw: Mapping[str, Any]) -> Floats:
+    """The slower stroke over the quicker, of a full turn of the input with a rocking output."""
+    ends = raw["output_dead_centres"]
+    stroke = (ends[:, 3] - ends[:, 1]) % math.tau
+    slower, quicker = np.maximum(stroke, math.tau - stroke), np.minimum(stroke, math.tau - stroke)
+    rocks = np.isfinite(raw["output_range"]).all(axis=1) & np.isnan(raw["input_range"][:, 0])
+    # an RSSR's input that turns fully has none
+    rocks &= np.equal(raw.get("input_dead_centre_count", 0), 0)
+    ratio = np.full(len(stroke), np.nan)
+    np.divide(slower, quicker, out=ratio, where=rocks & (quicker > 0))
+    return ratio

@@ -1,0 +1,274 @@
+"""The linkage: joints, fixed transforms, points, drive; a frozen value that asks the core for its motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_array, finite_number, real_array
+from sevenbar.errors import NotCoveredError, RequestError, shown
+from sevenbar.kinematics.closed_form import ClosedForm
+from sevenbar.kinematics.general import GeneralLoop
+from sevenbar.kinematics.mobility import Mobility
+from sevenbar.kinematics.motion import Circuit, Law, Modes, Motion, Output, Solvable
+from sevenbar.text.units import sliding_speed, turning_speed
+
+#: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
+MOST_SAMPLES = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Linkage(Solvable):
+    """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground` that is asked for its modes and its motion.
+
+    Its fields are those of `Loop`.
+
+    Source: docs/theory.md, (1).
+    """
+
+    @property
+    def lengths(self) -> tuple[float, float, float]:
+        """Crank, coupler and rocker of an RSSR [length]."""
+        return self._rssr("lengths").lengths
+
+    @cached_property
+    def _closed_form(self) -> ClosedForm:
+        return ClosedForm(self)
+
+    @cached_property
+    def _general(self) -> GeneralLoop:
+        return GeneralLoop(self)
+
+    def _rssr(self, what: str) -> ClosedForm:
+        if self.kind != "RSSR":
+            raise NotCoveredError(
+                f"{what}: a loop {' '.join(self.kind)} has no closed form here; it is offered for R S S R"
+            )
+        return self._closed_form
+
+    def _input(self, name: str | None) -> int:
+        return self.column(self.drive.joint if name is None else name, "input")
+
+    def _ends(self, input: str | None, output: str | None) -> tuple[int, int]:
+        first = self._input(input)
+        if output is None:
+            return first, self.other_column(first)
+        second = self.column(output, "output")
+        if second == first:
+            raise RequestError(
+                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
+            )
+        return first, second
+
+    def _speed(self, speed: object, column: int) -> float:
+        if speed is None:
+            return self.speed_of(column)
+        plain = float(speed) if isinstance(speed, np.number) else speed
+        try:
+            if self.column_kinds[column] == "slide":
+                return sliding_speed(plain, self.length_unit)
+            return turning_speed(plain)
+        except RequestError as error:
+            raise RequestError(f"speed: {error}") from None
+
+    def output(
+        self,
+        values: npt.ArrayLike,
+        order: int = 0,
+        speed: npt.ArrayLike | str | None = None,
+        *,
+        acceleration: npt.ArrayLike | None = None,
+        jerk: npt.ArrayLike | None = None,
+        input: str | None = None,
+    ) -> Output:
+        """Both branches of the other joint at many inputs: the closed form, vectorised.
+
+        `values` (n,) [rad] are inputs; `order` 0 to 3 how many derivatives. The input moves at `speed`
+        [rad/s] (the drive's where none is given); `speed`, `acceleration` [rad/s^2] and `jerk` [rad/s^3]
+        may also be arrays (n,), an input law. Branch 0 of `beta = f(alpha)` is eq. (8) of Sun and Zhou;
+        with `input` the last joint, branch 0 of `alpha = phi(beta)` is eq. (9).
+
+        Raises `RequestError` for values that are not finite, lengths that differ, an order out of range.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.rssr(M=700, N=700, L1=250, L3=550)
+            >>> round(float(linkage.output([0.3]).position[0, 0]), 6)
+            -0.084963
+
+        Source: docs/rssr.md, (3) to (9); Sun and Zhou, eq. (8), (9), and (12), (13) with their signs mended.
+        """
+        solver = self._rssr("output")
+        column = self._input(input)
+        array = real_array("input", values)
+        if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
+            raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
+        law = None
+        constant = 1.0
+        plain = speed is None or isinstance(speed, str) or np.ndim(speed) == 0
+        if plain and acceleration is None and jerk is None:
+            constant = self._speed(speed, column)
+        else:
+            first = self._speed(speed, column) if plain else speed
+            rates = {"speed": first, "acceleration": acceleration, "jerk": jerk}
+            law = tuple(
+                _rate(name, 0.0 if value is None else value, array.size) for name, value in rates.items()
+            )
+        return solver.outputs(array, int(order), column, constant, law)
+
+    def assembly_modes(
+        self, theta: float, *, input: str | None = None, method: Literal["auto", "general"] = "auto"
+    ) -> Modes:
+        """Every assembly mode at one value of the input [rad, or length]; none where the loop does not close.
+
+        An RSSR is solved in closed form, any loop of turning and sliding joints (so also of C, U and S) by
+        following all solutions over the complex numbers; with screws modes are searched. `method` "general"
+        takes the general way for an RSSR too.
+
+            >>> import sevenbar as sb
+            >>> len(sb.load("seven_r").assembly_modes(0.3))
+            8
+
+        Source: docs/theory.md, (6); docs/rssr.md, (4).
+        """
+        column = self._input(input)
+        value = finite_number("theta", theta)
+        if self._has_closed_form(method):
+            return self._closed_form.modes(column, value)
+        self._refuse_unheld()
+        return self._general.modes(column, value)
+
+    def mobility(self) -> Mobility:
+        """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name.
+
+        >>> import sevenbar as sb
+        >>> print(sb.load("bennett").mobility())
+        Gruebler -2, redundant constraints 3, moves with 1
+        """
+        return self._mobility
+
+    @cached_property
+    def _mobility(self) -> Mobility:
+        return self._general.mobility(self.columns.index(self.drive.joint))
+
+    @property
+    def idle(self) -> tuple[str, ...]:
+        """Freedoms that move no other link."""
+        return self._general.idle()
+
+    @property
+    def idle_links(self) -> frozenset[int]:
+        """Links, counted from 1, with a freedom of their own that moves no other link."""
+        return self._general.idle_links()
+
+    @property
+    def followed_generally(self) -> bool:
+        """Whether its motion is that of the general path, with nothing else to be asked of it."""
+        return self.kind != "RSSR" and self._general.unheld() is None
+
+    def _refuse_unheld(self) -> None:
+        spin = self._general.unheld()
+        if spin is not None:
+            raise NotCoveredError(
+                f"linkage: the {spin} moves no other link, and it is not held where a screw or a ball stands "
+                "between these balls; describe the loop from another joint on, so that R or P stands there"
+            )
+
+    def motion(
+        self,
+        samples: int = 360,
+        *,
+        input: str | None = None,
+        output: str | None = None,
+        speed: float | str | None = None,
+        law: Law | None = None,
+        method: Literal["auto", "general"] = "auto",
+    ) -> Motion:
+        """Every circuit over the whole input range.
+
+        `samples` inputs in a full turn, or over the range of a sliding input. The input moves at `speed`
+        [rad/s, or length/s], the drive's where none is given, or by a `law`, whose samples take the place of
+        the grid: a circuit that turns back holds them once for each of its passes. `input` and `output` name
+        joints. `method` "general" takes the general way for an RSSR too, which has a closed form.
+
+        Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which links
+        spin idly between two balls with a screw among them.
+
+        Source: docs/theory.md, (7) to (16); docs/rssr.md, (3) to (8).
+
+            >>> import sevenbar as sb
+            >>> motion = sb.load("rscr").motion()
+            >>> [(circuit.motion_type, circuit.turns) for circuit in motion]
+            [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
+        """
+        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        if self._has_closed_form(method):
+            return self._closed_form.motion(column, samples, rate, law)
+        self._refuse_unheld()
+        return self._general.motion(column, output_column, samples, rate, law)
+
+    def circuit(
+        self,
+        pose: npt.ArrayLike,
+        samples: int = 360,
+        *,
+        input: str | None = None,
+        output: str | None = None,
+        speed: float | str | None = None,
+        law: Law | None = None,
+    ) -> Circuit:
+        """The one circuit through a pose, without a search for the others.
+
+        `pose` holds a value for each of `columns` [rad, or length], as a row of `assembly_modes(..).q` or of
+        a circuit's `q` does; a rough one is closed with the input held. The rest is as for `motion`, always
+        by the general way.
+
+        Raises `RequestError` where the loop does not close near the pose, or does not move.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.load("seven_r")
+            >>> linkage.circuit(linkage.assembly_modes(0.3).q[2]).motion_type
+            'double-crank'
+        """
+        column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        values = finite_array("pose", pose)
+        if values.size != len(self.columns):
+            raise RequestError(
+                f"pose: {values.size} values where the linkage has {len(self.columns)} columns; "
+                f"give one for each of {', '.join(self.columns)}"
+            )
+        self._refuse_unheld()
+        return self._general.circuit(values, column, output_column, samples, rate, law)
+
+    def _asked(
+        self, samples: int, input: str | None, output: str | None, speed: float | str | None
+    ) -> tuple[int, int, int, float]:
+        """Columns of input and output, a count, and the speed, once looked at."""
+        column, output_column = self._ends(
+            input, self.drive.output if output is None and input is None else output
+        )
+        return column, output_column, sample_count("samples", samples), self._speed(speed, column)
+
+    def _has_closed_form(self, method: str) -> bool:
+        if method not in ("auto", "general"):
+            raise RequestError(f"method: {shown(method)} is not offered; give auto or general")
+        return method == "auto" and self.kind == "RSSR"
+
+
+def sample_count(name: str, value: object) -> int:
+    """A number of inputs in a turn, or `RequestError` naming what it was given for."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 4 <= value <= MOST_SAMPLES:
+        raise RequestError(f"{name}: {shown(value)} is not a count; give 4 to {MOST_SAMPLES}")
+    return int(value)
+
+
+def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:
+    array = finite_array(name, value)
+    if array.size not in (1, count):
+        raise RequestError(
+            f"{name}: {array.size} values where the input has {count}; give {count}, or one number"
+        )
+    return np.ascontiguousarray(np.broadcast_to(array, (count,)))

@@ -1,0 +1,167 @@
+"""What is measured of a motion or of a circuit, by name: the columns of sweeps, the heights of maps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Circuit, Extremes, Motion
+
+#: What a measure is a number of: of angles and lengths by the joint whose motion is told.
+Quantity = Literal["word", "count", "ratio", "angle", "output", "velocity", "acceleration", "jerk"]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A word or number of each linkage, or of each of its circuits.
+
+    `value` takes the Motion, or the Circuit; angles come in degrees, as people read them, other numbers as
+    the motion has them. It gives `None` where the measure has no meaning.
+    """
+
+    name: str
+    per: Literal["linkage", "circuit"]
+    quantity: Quantity
+    value: Callable[[Any], float | int | str | None]
+    told: str
+
+    def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
+        """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
+        if MEASURES.get(self.name) is self:
+            return _measure, (self.name,)
+        return Measure, (self.name, self.per, self.quantity, self.value, self.told)
+
+    def unit(self, linkage: Loop, output: str) -> str:
+        """The unit of its numbers, "" where there is none; `output` is the column whose motion is told."""
+        slides = linkage.column_kinds[linkage.columns.index(output)] == "slide"
+        length = linkage.length_unit
+        rate = length if slides else "rad"
+        return {
+            "angle": "deg",
+            "output": length if slides else "deg",
+            "velocity": f"{rate}_s",
+            "acceleration": f"{rate}_s2",
+            "jerk": f"{rate}_s3",
+        }.get(self.quantity, "")
+
+    def column(self, linkage: Loop, output: str) -> str:
+        """Its name in tables, with the unit."""
+        unit = self.unit(linkage, output)
+        return f"{self.name}_{unit}" if unit else self.name
+
+
+def _output(circuit: Circuit, value: float | None) -> float | None:
+    """A value of the output [rad, or length] as people read it."""
+    return math.degrees(value) if value is not None and circuit.output_turns else value
+
+
+def _degrees(value: float | None) -> float | None:
+    return None if value is None else math.degrees(value)
+
+
+def _end(pick: Callable[[Circuit], Extremes | None], end: str) -> Callable[[Circuit], float | None]:
+    def value(circuit: Circuit) -> float | None:
+        extremes = pick(circuit)
+        return None if extremes is None else getattr(extremes, end)
+
+    return value
+
+
+def _ends(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]:
+    """Lowest and highest value of a rate of the output, which a circuit has under the same name."""
+    return [
+        Measure(
+            f"{rate}_{end}",
+            "circuit",
+            rate,
+            _end(lambda circuit: getattr(circuit, rate), end),
+            f"{end} {rate} of the output; none where there is no bound",
+        )
+        for end in ("lowest", "highest")
+    ]
+
+
+#: Every measure that has a name.
+MEASURES: dict[str, Measure] = {
+    measure.name: measure
+    for measure in (
+        Measure("motion_type", "linkage", "word", lambda m: m.motion_type, "motion type"),
+        Measure("circuits", "linkage", "count", lambda m: len(m.circuits), "number of circuits"),
+        Measure("limits", "linkage", "count", lambda m: len(m.limits), "number of limits of the input"),
+        Measure("circuit_type", "circuit", "word", lambda c: c.motion_type, "the circuit's own motion type"),
+        Measure(
+            "turns", "circuit", "count", lambda c: c.turns, "turns of the input until the circuit closes"
+        ),
+        Measure("swing", "circuit", "output", lambda c: _output(c, c.swing), "range of a rocking output"),
+        Measure("time_ratio", "circuit", "ratio", lambda c: c.time_ratio, "slower stroke over the quicker"),
+        Measure(
+            "transmission_lowest",
+            "circuit",
+            "angle",
+            lambda c: _degrees(_end(lambda c: c.transmission, "lowest")(c)),
+            "least transmission angle",
+        ),
+        Measure(
+            "transmission_highest",
+            "circuit",
+            "angle",
+            lambda c: _degrees(_end(lambda c: c.transmission, "highest")(c)),
+            "greatest transmission angle",
+        ),
+        *_ends("velocity"),
+        *_ends("acceleration"),
+        *_ends("jerk"),
+    )
+}
+
+
+def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -> tuple[Measure, ...]:
+    """The measures of names, or of functions of the Motion, which are measures of a linkage.
+
+    Raises `RequestError` for an unknown name, for none, and for two of one name.
+    """
+    found = [_measure(one) for one in given]
+    names = [measure.name for measure in found]
+    if not found:
+        raise RequestError(f"measure: none given; give some of {', '.join(MEASURES)}")
+    for name in names:
+        if names.count(name) > 1:
+            raise RequestError(f"measure: {shown(name)} is given twice; leave one out")
+    return tuple(found)
+
+
+def _measure(given: object) -> Measure:
+    if isinstance(given, Measure):
+        return given
+    if isinstance(given, str) and given in MEASURES:
+        return MEASURES[given]
+    if callable(given):
+        name = getattr(given, "__name__", "measure").strip("<>")
+        told = (getattr(given, "__doc__", None) or name).splitlines()[0]
+        return Measure(name, "linkage", "ratio", given, told)
+    raise RequestError(
+        f"measure: {shown(given)} is not a measure; {suggestion(str(given), list(MEASURES))}"
+        f"give some of {', '.join(MEASURES)}, or a function of the Motion"
+    )
+
+
+def rows_of(motion: Motion, measures: Sequence[Measure]) -> list[dict[str, float | int | str | None]]:
+    """The measures of a motion: one row, or where one of them is of circuits a row for each circuit.
+
+    A motion without circuits keeps one row, whose `circuit` is `None`.
+
+        >>> import sevenbar as sb
+        >>> rows_of(sb.load("seven_r").motion(), measures_named(["motion_type", "circuits"]))
+        [{'motion_type': 'double-crank', 'circuits': 8}]
+    """
+    shared = {m.name: m.value(motion) for m in measures if m.per == "linkage"}
+    own = [m for m in measures if m.per == "circuit"]
+    if not own:
+        return [shared]
+    if not motion.circuits:
+        return [{"circuit": None} | shared | {m.name: None for m in own}]
+    return [{"circuit": c.index} | shared | {m.name: m.value(c) for m in own} for c in motion.circuits]

@@ -1,0 +1,380 @@
+"""What a comparison and a calibration come to: a page for people, an object for programs, a folder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from sevenbar.drawing.figure import save
+from sevenbar.measuring.calibrate import Calibration, Parameter
+from sevenbar.measuring.compare import Comparison, per_cent
+from sevenbar.measuring.extremes import Extent, ExtremesComparison
+from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns, word
+from sevenbar.measuring.measured import Ends
+from sevenbar.reporting.folder import fill_folder, write_columns, write_csv
+from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.report import json_text
+
+#: Candidates and notes are told in full in the JSON; of candidates the page has as many.
+MOST_CANDIDATES = 4
+
+
+def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableType:
+    """The comparison for people: what explains the data, the paper's Table 1, the differences."""
+    ends = comparison.ends
+    facts = Facts()
+    parts: list[RenderableType] = [Text(comparison.linkage.name, style="bold underline"), facts.grid]
+    speed = f"{ends.input} at {comparison.speed:.6g} {ends.unit('input')}/s, output {ends.output}"
+    if isinstance(comparison, ExtremesComparison):
+        facts.add("measured", f"{comparison.source}, lowest and highest values")
+        facts.add("drive", speed)
+        first, *others = (f"circuit {i} (misfit {per_cent(m)})" for i, m in comparison.misfits)
+        facts.add("explained by", first, style="bold")
+        if others:
+            facts.add("not by", "; ".join(others[:MOST_CANDIDATES]))
+        facts.add("", "misfit: root mean square of the errors in parts of the measured range")
+        return Group(*parts, Text(), _extents_table(comparison.table, ends))
+    chosen = comparison.chosen
+    rows = np.isfinite(next(iter(comparison.computed.values()))).sum()
+    facts.add(
+        "measured", f"{comparison.source}, {rows} rows of {', '.join(_words(ends, comparison.outputs))}"
+    )
+    facts.add("drive", speed)
+    facts.add("explained by", _candidate(chosen.circuit, chosen.branch, chosen.misfit), style="bold")
+    others = [
+        _candidate(c.circuit, c.branch, c.misfit)
+        for c in comparison.candidates[1:]
+        if (c.circuit, c.branch) != (chosen.circuit, chosen.branch)
+    ]
+    if others:
+        more = len(others) - MOST_CANDIDATES
+        tail = f"; {more} more" if more > 0 else ""
+        facts.add("not by", "; ".join(others[:MOST_CANDIDATES]) + tail)
+    facts.add("", "misfit: root mean square of the differences in parts of the measured range")
+    for name, value, quantity, asked in (
+        ("phase", chosen.phase, "input", "phase"),
+        ("offset", chosen.offset, "angle", "offset"),
+    ):
+        if asked in comparison.aligned:
+            sense = "added to the measured input" if name == "phase" else "taken off the measured output"
+            facts.add(name, f"{_value(ends, quantity, value)} {sense}")
+    for note in comparison.notes:
+        facts.add("note", note)
+    return Group(*parts, Text(), _extents_table(comparison.table, ends), Text(), _spread_table(comparison))
+
+
+def calibration_text(calibration: Calibration) -> RenderableType:
+    """The calibration for people: each dimension with its interval, or why it has none."""
+    ends, chosen = calibration.ends, calibration.before.chosen
+    facts = Facts()
+    facts.add(
+        "measured",
+        f"{calibration.source}, {len(calibration.line)} rows of "
+        + ", ".join(_words(ends, calibration.outputs)),
+    )
+    speed = calibration.before.speed
+    facts.add("drive", f"{ends.input} at {speed:.6g} {ends.unit('input')}/s, output {ends.output}")
+    facts.add("explained by", f"circuit {chosen.circuit}, branch {chosen.branch}")
+    for quantity in calibration.outputs:
+        before, after = (
+            _rms(calibration.measured[quantity] - side[quantity])
+            for side in (calibration.nominal, calibration.computed)
+        )
+        facts.add(
+            f"rms of the {word(ends, quantity)}",
+            f"{before:.4g} before, {after:.4g} after [{ends.unit(quantity)}]",
+        )
+    count = len(calibration.calibrated)
+    facts.add("fitted", f"{count} parameters, {calibration.freedom} degrees of freedom")
+    for parameter in calibration.parameters:
+        if parameter.status == "untold":
+            facts.add("not told", untold_sentence(parameter, calibration))
+    opening = [p.name for p in calibration.parameters if p.status == "opens the loop"]
+    if opening:
+        facts.add("held", f"{', '.join(opening)}: a change of one alone would open this overconstrained loop")
+    for note in calibration.notes:
+        facts.add("note", note)
+    title = Text(calibration.linkage.name, style="bold underline")
+    return Group(title, facts.grid, Text(), _parameter_table(calibration))
+
+
+def untold_sentence(parameter: Parameter, calibration: Calibration) -> str:
+    """Why a parameter was held, and at what."""
+    at = _parameter_value(parameter, parameter.value, calibration.ends)
+    if not parameter.undone_by:
+        return f"{parameter.name}, held at {at}: a change of it does not show in these data"
+    others = ", ".join(parameter.undone_by)
+    return f"{parameter.name}, held at {at}: changes of {others} would hide a change of it"
+
+
+def print_comparison(comparison: Comparison | ExtremesComparison, console: Console | None = None) -> None:
+    """Prints the comparison for people."""
+    (console or Console()).print(comparison_text(comparison))
+
+
+def print_calibration(calibration: Calibration, console: Console | None = None) -> None:
+    """Prints the calibration for people."""
+    (console or Console()).print(calibration_text(calibration))
+
+
+def comparison_json(comparison: Comparison | ExtremesComparison) -> str:
+    """The comparison as one JSON object; angles in radians."""
+    ends = comparison.ends
+    common = {
+        "format": 1,
+        "linkage": comparison.linkage.name,
+        "measured": comparison.source,
+        "units": _units(ends),
+        "drive": {"input": ends.input, "output": ends.output, "speed": comparison.speed},
+    }
+    table = [
+        {
+            "quantity": extent.quantity,
+            **{
+                name: {"computed": c, "measured": m, "error": error, "per_cent": share}
+                for name, c, m, error, share in extent.rows()
+            },
+        }
+        for extent in comparison.table
+    ]
+    if isinstance(comparison, ExtremesComparison):
+        misfits = [{"circuit": i, "misfit": m} for i, m in comparison.misfits]
+        return json_text(common | {"circuit": comparison.circuit, "candidates": misfits, "table": table})
+    return json_text(
+        common
+        | {
+            "rows": len(comparison.line),
+            "circuit": comparison.chosen.circuit,
+            "branch": comparison.chosen.branch,
+            "aligned": list(comparison.aligned),
+            "phase": comparison.chosen.phase,
+            "offset": comparison.chosen.offset,
+            "candidates": [vars(c) for c in comparison.candidates],
+            "table": table,
+            "differences": {q: vars(comparison.spread(q)) for q in comparison.outputs},
+            "notes": list(comparison.notes),
+        }
+    )
+
+
+def calibration_json(calibration: Calibration) -> str:
+    """The calibration as one JSON object; angles in radians, null where there is no interval."""
+    ends = calibration.ends
+    return json_text(
+        {
+            "format": 1,
+            "linkage": calibration.linkage.name,
+            "measured": calibration.source,
+            "units": _units(ends),
+            "drive": {"input": ends.input, "output": ends.output, "speed": calibration.before.speed},
+            "rows": len(calibration.line),
+            "circuit": calibration.before.chosen.circuit,
+            "branch": calibration.before.chosen.branch,
+            "confidence": calibration.confidence,
+            "degrees_of_freedom": calibration.freedom,
+            "parameters": [{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
+            "covariance": {
+                "parameters": [p.name for p in calibration.calibrated],
+                "values": calibration.covariance.tolist(),
+            },
+            "noise": dict(calibration.noise),
+            "rms": {
+                q: {
+                    "nominal": _rms(calibration.measured[q] - calibration.nominal[q]),
+                    "calibrated": _rms(calibration.measured[q] - calibration.computed[q]),
+                }
+                for q in calibration.outputs
+            },
+            "notes": list(calibration.notes),
+        }
+    )
+
+
+def write_comparison(
+    comparison: Comparison | ExtremesComparison,
+    folder: Path,
+    figures: Sequence[str] = ("png",),
+    *,
+    force: bool = False,
+) -> list[Path]:
+    """Writes comparison.json, table.csv and, of measured rows, rows.csv and the figure: all or none."""
+
+    def fill(staging: Path) -> None:
+        (staging / "comparison.json").write_text(comparison_json(comparison) + "\n", encoding="utf-8")
+        ends = comparison.ends
+        lines = [
+            (extent.quantity, ends.unit(extent.quantity), *row)
+            for extent in comparison.table
+            for row in extent.rows()
+        ]
+        head = ("quantity", "unit", "value", "computed", "measured", "error", "per_cent")
+        write_csv(staging / "table.csv", head, lines)
+        if isinstance(comparison, Comparison):
+            sides = {"measured": comparison.measured, "computed": comparison.computed}
+            _write_rows(staging / "rows.csv", ends, comparison.line, comparison.input, sides)
+            for ending in figures:
+                save(comparison_figure(comparison), staging / f"comparison.{ending}")
+
+    return fill_folder(folder, fill, force=force)
+
+
+def write_calibration(
+    calibration: Calibration,
+    toml: str,
+    folder: Path,
+    figures: Sequence[str] = ("png",),
+    *,
+    force: bool = False,
+) -> list[Path]:
+    """Writes calibrated.toml, calibration.json, parameters.csv, rows.csv and the figure: all or none."""
+
+    def fill(staging: Path) -> None:
+        (staging / "calibrated.toml").write_text(toml, encoding="utf-8")
+        (staging / "calibration.json").write_text(calibration_json(calibration) + "\n", encoding="utf-8")
+        head = (
+            "parameter",
+            "unit",
+            "status",
+            "nominal",
+            "value",
+            "standard_error",
+            "low",
+            "high",
+            "undone_by",
+        )
+        lines = [
+            (
+                p.name,
+                _parameter_unit(p, calibration.ends),
+                p.status,
+                *(_shown(p, v) for v in (p.nominal, p.value, p.error, p.low, p.high)),
+                " ".join(p.undone_by),
+            )
+            for p in calibration.parameters
+        ]
+        write_csv(staging / "parameters.csv", head, lines)
+        sides = {
+            "measured": calibration.measured,
+            "nominal": calibration.nominal,
+            "calibrated": calibration.computed,
+        }
+        _write_rows(staging / "rows.csv", calibration.ends, calibration.line, calibration.input, sides)
+        for ending in figures:
+            save(calibration_figure(calibration), staging / f"calibration.{ending}")
+
+    return fill_folder(folder, fill, force=force)
+
+
+def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
+    return [word(ends, quantity) for quantity in quantities]
+
+
+def _candidate(circuit: int, branch: int, misfit: float) -> str:
+    return f"circuit {circuit}, branch {branch} (misfit {per_cent(misfit)})"
+
+
+def _value(ends: Ends, quantity: str, value: float) -> str:
+    if turns(ends, quantity):
+        return f"{math.degrees(value):.4f}\u00b0"
+    return f"{value:.6g} {ends.unit(quantity)}"
+
+
+def _extents_table(extents: Sequence[Extent], ends: Ends) -> Table:
+    """The paper's Table 1, a line for each of its three values of each quantity."""
+    rows = (
+        (
+            f"{word(ends, extent.quantity)} {name} [{ends.unit(extent.quantity)}]",
+            f"{computed:.6g}",
+            f"{measured:.6g}",
+            f"{error:+.4g}",
+            "-" if share is None else f"{share:+.2f} %",
+        )
+        for extent in extents
+        for name, computed, measured, error, share in extent.rows()
+    )
+    return number_table(("value", "computed", "measured", "error", "per cent"), rows)
+
+
+def _spread_table(comparison: Comparison) -> Table:
+    ends = comparison.ends
+    rows = (
+        (
+            f"{word(ends, quantity)} [{ends.unit(quantity)}]",
+            f"{spread.greatest:+.4g}",
+            str(spread.line),
+            f"{spread.rms:.4g}",
+            f"{spread.mean:+.4g}",
+        )
+        for quantity in comparison.outputs
+        for spread in [comparison.spread(quantity)]
+    )
+    return number_table(("measured less computed", "greatest", "in line", "rms", "mean"), rows)
+
+
+def _parameter_table(calibration: Calibration) -> Table:
+    heads = ("dimension", "nominal", "calibrated", f"\u00b1 {100 * calibration.confidence:g} %", "change", "")
+    rows = []
+    for p in calibration.parameters:
+        label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]"
+        nominal, value = _shown(p, p.nominal), _shown(p, p.value)
+        if p.status == "calibrated":
+            reach = _shown(p, (p.high - p.low) / 2)
+            digits = _digits(reach)
+            cells = [f"{value:.{digits}f}", f"{reach:.{digits}f}", f"{value - nominal:+.{digits}f}", ""]
+        else:
+            note = {"fixed": "held", "untold": "not told: held"}.get(p.status, p.status)
+            cells = [f"{value:.6g}", "-", "-", note]
+        rows.append((label, f"{nominal:.6g}", *cells))
+    return number_table(heads, rows, words=[5])
+
+
+def _digits(reach: float) -> int:
+    """Decimals that show two digits of an interval."""
+    if not reach > 0:
+        return 6
+    return min(max(1 - math.floor(math.log10(reach)), 0), 12)
+
+
+def _parameter_unit(parameter: Parameter, ends: Ends) -> str:
+    per = "/turn" if parameter.kind == "pitch" else ""
+    return "deg" if parameter.kind == "angle" else ends.length_unit + per
+
+
+def _shown(parameter: Parameter, value: float) -> float:
+    """A value in the unit in which people read it."""
+    return math.degrees(value) if parameter.kind == "angle" else value
+
+
+def _parameter_value(parameter: Parameter, value: float, ends: Ends) -> str:
+    return f"{_shown(parameter, value):.6g} {_parameter_unit(parameter, ends)}"
+
+
+def _rms(values: Any) -> float:
+    return math.sqrt(float(np.mean(np.asarray(values) ** 2)))
+
+
+def _units(ends: Ends) -> dict[str, str]:
+    return {"length": ends.length_unit, "angle": "rad", "time": "s"}
+
+
+def _write_rows(
+    path: Path, ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, Any]]
+) -> None:
+    """A line for each measured row: its line in the file, the input, each quantity on each side."""
+    columns = {"line": line, f"input_{_suffix(ends.unit('input'))}": inputs}
+    for quantity in next(iter(sides.values())):
+        for side, values in sides.items():
+            name = f"{word(ends, quantity)}_{side}_{_suffix(ends.unit(quantity))}"
+            columns[name] = values[quantity]
+    write_columns(path, columns)
+
+
+def _suffix(unit: str) -> str:
+    return unit.replace("/", "_").replace("\u00b2", "2")

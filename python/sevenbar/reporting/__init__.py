@@ -1,0 +1,1 @@
+"""Results as text, Markdown, JSON, CSV, and files that appear whole."""

@@ -1,0 +1,337 @@
+"""What a motion comes to: one object for programs, a page of text for people, a folder of files to keep.
+
+A report only writes down what the motion holds; it solves nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.box import SIMPLE_HEAD
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.general import left_open
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Circuit, Extremes, Modes, Motion
+from sevenbar.reporting.folder import draw, fill_folder, write_columns, write_figures
+from sevenbar.reporting.page import Facts
+from sevenbar.reporting.summary import (
+    COMPLETE,
+    GAP,
+    Sheet,
+    closure_error,
+    joint_text,
+    modes_sheets,
+    side_lengths,
+    summary,
+)
+from sevenbar.text.units import ANGLES, amount, length_sizes
+
+__all__ = [
+    "as_dict",
+    "as_json",
+    "joint_value",
+    "json_text",
+    "markdown",
+    "modes_json",
+    "posed_circuit",
+    "print_modes",
+    "print_text",
+    "without_nan",
+    "write",
+    "write_figures",
+]
+
+
+def as_dict(motion: Motion) -> dict[str, Any]:
+    """The report as plain values: angles in radians, lengths in the linkage's unit, null beside a status.
+
+    Values of a sliding input or output are lengths; `linkage.columns` tells which slide.
+
+        >>> import sevenbar as sb
+        >>> told = as_dict(sb.load("rssr").motion())
+        >>> told["motion_type"], len(told["circuits"])
+        ('crank-rocker', 2)
+    """
+    linkage = motion.linkage
+    report = {
+        "format": 1,
+        "linkage": {
+            "name": linkage.name,
+            "kind": linkage.kind,
+            "joints": [{"name": joint.name, "kind": joint.kind} for joint in linkage.joints],
+            "columns": [
+                {"name": name, "kind": kind}
+                for name, kind in zip(linkage.columns, linkage.column_kinds, strict=True)
+            ],
+            "dimensions": dict(linkage.dimensions),
+            "lengths": side_lengths(linkage),
+        },
+        "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
+        "drive": {
+            "input": motion.input,
+            "output": motion.output,
+            "speed": motion.speed,
+            "law": motion.law is not None,
+        },
+        "samples": motion.samples,
+        "motion_type": motion.motion_type,
+        "limits": motion.limits.tolist(),
+        "change_points": [
+            {
+                "input": p.input,
+                "q": p.q.tolist(),
+                "circuits": list(p.circuits),
+                "ways": p.ways,
+                "freedoms": p.freedoms,
+            }
+            for p in motion.change_points
+        ],
+        "mobility": {
+            "gruebler": motion.mobility.gruebler,
+            "freedoms": motion.mobility.freedoms,
+            "rank": motion.mobility.rank,
+            "finite": motion.mobility.finite,
+        },
+        "completeness": motion.completeness,
+        "established": motion.established,
+        "misfits": motion.misfits.tolist(),
+        "circuits": [_circuit_dict(circuit) for circuit in motion.circuits],
+        "idle": list(motion.idle),
+        "redundant": list(motion.redundant),
+    }
+    return without_nan(report)  # type: ignore[no-any-return]
+
+
+def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
+    unbounded = "change-point" if circuit.goes_round else "unbounded"
+    return {
+        "motion_type": circuit.motion_type,
+        "closed": circuit.closed,
+        "turns": circuit.turns,
+        "rows": len(circuit.time),
+        "statuses": {
+            str(word): int(count)
+            for word, count in zip(*np.unique(circuit.status, return_counts=True), strict=True)
+        },
+        "input_range": circuit.input_range,
+        "output_range": circuit.output_range,
+        "dead_centres": [vars(d) for d in circuit.dead_centres],
+        "residual_max": closure_error([circuit]),
+        "swing": circuit.swing,
+        "time_ratio": circuit.time_ratio,
+        "transmission": _extremes_dict(circuit.transmission, "not-defined"),
+        "extremes": {
+            "angle": _extremes_dict(
+                circuit.angle, "turns-fully" if circuit.output_range is None else "not-defined"
+            ),
+            "velocity": _extremes_dict(circuit.velocity, unbounded),
+            "acceleration": _extremes_dict(circuit.acceleration, unbounded),
+        },
+    }
+
+
+def _extremes_dict(extremes: Extremes | None, otherwise: str) -> dict[str, Any]:
+    if extremes is None:
+        return {"status": otherwise, "lowest": None, "lowest_at": None, "highest": None, "highest_at": None}
+    return {"status": "ok", **vars(extremes)}
+
+
+def without_nan(value: Any) -> Any:
+    """Plain values with null in place of each number that is not finite, as JSON needs it."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: without_nan(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_nan(v) for v in value]
+    return value
+
+
+def json_text(value: Any) -> str:
+    """Plain values as JSON text, null in place of each number that is not finite."""
+    return json.dumps(without_nan(value), indent=2, allow_nan=False)
+
+
+def as_json(motion: Motion) -> str:
+    """`as_dict` as JSON text."""
+    return json_text(as_dict(motion))
+
+
+def print_text(motion: Motion, console: Console | None = None) -> None:
+    """Prints the report for people; angles in degrees."""
+    console = console or Console()
+    told = summary(motion, console.width)
+    facts = Facts()
+    for name, fact in told.facts:
+        facts.add(name, fact, style="bold" if name == "motion type" else "")
+    parts: list[RenderableType] = [Text(told.title, style="bold underline"), facts.grid]
+    for sheet in told.sheets:
+        parts += [Text(), _table(sheet), *([Text(sheet.note, style="dim")] if sheet.note else [])]
+    console.print(Group(*parts))
+
+
+def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
+    """The report for people as Markdown, and pictures by their file names.
+
+    >>> import sevenbar as sb
+    >>> markdown(sb.load("rssr").motion()).splitlines()[0]
+    '# RSSR of Sun and Zhou'
+    """
+    told = summary(motion)
+    parts = [f"# {_plain(told.title)}"]
+    parts.append(
+        "\n".join(f"- {name}: {_plain(fact)}" if name else f"  {_plain(fact)}" for name, fact in told.facts)
+    )
+    for sheet in told.sheets:
+        rule = ["---:" if place in sheet.right else "---" for place in range(len(sheet.heads))]
+        lines = [sheet.heads, rule, *sheet.rows]
+        parts.append("\n".join(f"| {' | '.join(_plain(cell.strip()) for cell in line)} |" for line in lines))
+        parts += [sheet.note] if sheet.note else []
+    parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
+    return "\n\n".join(parts) + "\n"
+
+
+def _plain(words: str) -> str:
+    """Words of which Markdown leaves every character as it is, a line break apart."""
+    return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", words).replace("\n", "<br>")
+
+
+def _table(sheet: Sheet) -> Table:
+    # the box has a space of its own between columns
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, GAP - 1, 0, 0))
+    for place, head in enumerate(sheet.heads):
+        right = place in sheet.right
+        table.add_column(Text(head), justify="right" if right else "left", overflow="fold", no_wrap=right)
+    several = any("\n" in cell for row in sheet.rows for cell in row)
+    for row in sheet.rows:
+        table.add_row(*map(Text, row), end_section=False)
+        if several and row is not sheet.rows[-1]:
+            table.add_row()
+    return table
+
+
+def certain_targets(folder: Path) -> list[Path]:
+    """The files that `write` makes of every motion; its figures depend on the motion."""
+    return [folder / name for name in ("report.md", "report.json", "motion.csv")]
+
+
+def write(
+    motion: Motion,
+    folder: str | os.PathLike[str],
+    figures: Sequence[str] = ("png",),
+    *,
+    also: Callable[[Path], object] | None = None,
+    force: bool = False,
+) -> list[Path]:
+    """Writes report.md, report.json, motion.csv and the figures into a folder; returns their paths.
+
+    The folder is made if need be. The figures are configuration and motion; but for an RSSR, whose curves
+    tell all, also joints, and path_<name> for each named point. `also` writes more into the folder that it
+    is given. All files are finished in a folder beside it before the first is put in place. Raises
+    `OutputError` where that cannot be done, and where one of them exists and `force` is not given.
+
+        >>> import tempfile
+        >>> import sevenbar as sb
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     sorted(path.name for path in write(sb.load("rssr").motion(), folder, ["svg"]))
+        ['configuration.svg', 'motion.csv', 'motion.svg', 'report.json', 'report.md']
+    """
+
+    def fill(staging: Path) -> None:
+        (staging / "report.json").write_text(as_json(motion) + "\n", encoding="utf-8")
+        write_columns(staging / "motion.csv", motion.columns())
+        if motion.circuits:
+            general = motion.linkage.kind != "RSSR"
+            posed = posed_circuit(motion)
+            kinds = ["curves", *(["joints"] if general else [])]
+            if posed is not None:
+                # a law that rests leaves no path
+                inputs = motion.circuits[posed].input
+                moves = np.unique(inputs[np.isfinite(inputs)]).size > 1
+                kinds += ["configuration", *(["point"] if general and moves else [])]
+            points = {point.name: (point.link, point.at) for point in motion.linkage.points}
+            draw(motion, staging, kinds, points, posed or 0, figures)
+        # a browser shows no PDF in place; of several formats one is enough
+        shown_here = [file.name for file in sorted(staging.iterdir()) if file.suffix in (".png", ".svg")]
+        stems = {name.rpartition(".")[0]: name for name in reversed(shown_here)}
+        pictures = [stems[stem] for stem in sorted(stems)]
+        (staging / "report.md").write_text(markdown(motion, pictures), encoding="utf-8")
+        if also is not None:
+            also(staging)
+
+    return fill_folder(Path(folder), fill, force=force)
+
+
+def posed_circuit(motion: Motion) -> int | None:
+    """The first circuit with a pose to draw; `None` where a law leaves the range of all."""
+    posed = (circuit.index for circuit in motion if (circuit.status != "no-solution").any())
+    return next(posed, None)
+
+
+def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
+    """The value of a joint [rad, or length] as people write it: "30deg", "0.5rad", "12mm".
+
+    A plain number is in degrees for a turn and in the length unit for a slide. Raises `RequestError`.
+    """
+    slides = linkage.column_kinds[column] == "slide"
+    plain = linkage.length_unit if slides else "deg"
+    value = amount(text, length_sizes(linkage.length_unit) if slides else ANGLES, plain)
+    if value is None:
+        kind = "slides" if slides else "turns"
+        hint = f"12 or 12{plain}" if slides else "30, 30deg or 0.5rad"
+        raise RequestError(
+            f"{key}: {shown(text)} is no value of {linkage.columns[column]}, which {kind}; give {hint}"
+        )
+    return value
+
+
+def modes_json(linkage: Loop, modes: Modes, column: int) -> str:
+    """All assembly modes as JSON text: angles in radians, lengths in the linkage's unit."""
+    report = {
+        "format": 1,
+        "linkage": {"name": linkage.name, "kind": linkage.kind},
+        "units": {"length": linkage.length_unit, "angle": "rad"},
+        "input": {"joint": linkage.columns[column], "value": modes.input},
+        "completeness": modes.completeness,
+        "misfits": modes.misfits.tolist(),
+        "count": len(modes),
+        "columns": [
+            {"name": name, "kind": kind}
+            for name, kind in zip(linkage.columns, linkage.column_kinds, strict=True)
+        ],
+        "modes": [
+            {"q": q.tolist(), "residual": float(residual), "status": str(status)}
+            for q, residual, status in zip(modes.q, modes.residual, modes.status, strict=True)
+        ],
+    }
+    return json_text(report)
+
+
+def print_modes(linkage: Loop, modes: Modes, column: int, console: Console | None = None) -> None:
+    """Prints a table of all assembly modes, one row a mode; angles in degrees."""
+    console = console or Console()
+    console.print(Text(linkage.name, style="bold underline"))
+    count = len(modes)
+    value = joint_text(linkage, column, modes.input)
+    console.print(
+        f"{count or 'no'} assembly mode{'s' * (count != 1)} at {linkage.columns[column]} = {value}, "
+        f"{modes.completeness}: {COMPLETE[modes.completeness]}",
+        highlight=False,
+        markup=False,
+    )
+    if modes.misfits.size:
+        console.print(left_open(modes.misfits), highlight=False, markup=False)
+    for sheet in modes_sheets(linkage, modes, console.width) if count else ():
+        console.print()
+        console.print(_table(sheet))

@@ -1,0 +1,1 @@
+"""What is dragged, typed and pressed in the studio."""

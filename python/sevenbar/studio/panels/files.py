@@ -1,0 +1,80 @@
+"""Opening and saving: the gallery, files of one's own, and what can be taken home."""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from typing import Any
+
+import viser
+
+from sevenbar.description.files import decoded, text_of
+from sevenbar.description.gallery import names, title
+from sevenbar.errors import SevenbarError
+from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
+from sevenbar.studio.panels.downloads import DOWNLOADS, Scene
+from sevenbar.studio.state.session import Session
+
+#: What the list of the gallery says before something is chosen.
+CHOOSE = "choose one"
+
+
+class FilesPanel:
+    """Everything that comes into the studio and goes out of it, through the browser."""
+
+    def __init__(self, client: viser.ClientHandle, worker: Asked, session: Session) -> None:
+        gui = client.gui
+        self._client, self._worker, self._session = client, worker, session
+        self._names = {f"{name}: {title(name)}": name for name in names()}
+        with gui.add_folder("Open"):
+            self._gallery = gui.add_dropdown("gallery", (CHOOSE, *self._names))
+            self._open = gui.add_upload_button(
+                "Open a TOML file", color="gray", icon=viser.Icon.FOLDER_OPEN, mime_type=".toml,text/plain"
+            )
+            self._alert = Alert(gui)
+        with gui.add_folder("Save"):
+            save = gui.add_button("Save as TOML", color="gray", icon=viser.Icon.DEVICE_FLOPPY)
+            self._kind = gui.add_dropdown("export", tuple(DOWNLOADS))
+            write = gui.add_button("Export", icon=viser.Icon.DOWNLOAD)
+            self._unsaved = Alert(gui)
+        self._gallery.on_update(self._chosen)
+        self._open.on_upload(self._uploaded)
+        save.on_click(lambda _: worker.ask("save", lambda: self._download("linkage (TOML)")))
+        write.on_click(lambda _: worker.ask("export", lambda: self._download(self._kind.value)))
+
+    def _chosen(self, event: viser.GuiEvent[Any]) -> None:
+        if by_person(event) and self._gallery.value != CHOOSE:
+            name = self._names[self._gallery.value]
+            self._worker.ask("open", lambda: self._opened(lambda: text_of(name), name))
+
+    def _uploaded(self, _: viser.GuiEvent[Any]) -> None:
+        file = self._open.value
+        self._worker.ask("open", lambda: self._opened(lambda: decoded(file.content, file.name), file.name))
+        put(self._gallery, CHOOSE)
+
+    def _opened(self, read: Any, source: str) -> None:
+        self._alert.tried(lambda: self._session.open(read(), source))
+
+    def _download(self, kind: str) -> None:
+        scene = Scene.of(self._session)
+        # figures and bodies take seconds, in which the linkage should go on moving
+        threading.Thread(target=self._send, args=(kind, scene), daemon=True).start()
+
+    def _send(self, kind: str, scene: Scene) -> None:
+        waiting = self._client.add_notification(
+            f"Writing {kind}", "The browser will save it.", loading=True, with_close_button=False
+        )
+        try:
+            name, content = DOWNLOADS[kind](scene)
+        except SevenbarError as error:
+            message = str(error)
+            self._worker.ask("told", lambda: self._unsaved.tell(message))
+        except Exception:
+            traceback.print_exc()
+            fault = f"{kind}: this is a fault of Sevenbar; please report the lines in the terminal"
+            self._worker.ask("told", lambda: self._unsaved.tell(fault))
+        else:
+            self._client.send_file_download(name, content, save_immediately=True)
+            self._worker.ask("told", self._unsaved.clear)
+        finally:
+            waiting.remove()

@@ -1,0 +1,107 @@
+"""Points on links: add one, move it, take it away."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any
+
+import viser
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.studio.panels.controls import Alert, Asked, put
+from sevenbar.studio.panels.shaping import DimensionList
+from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.view import View, own_points
+
+
+class PointsPanel:
+    """The points of the description, and the form for one more."""
+
+    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session) -> None:
+        self._worker, self._session = worker, session
+        with gui.add_folder("New point"):
+            self._name = gui.add_text("name", "P")
+            self._link = gui.add_dropdown("link", ("1",))
+            self._at = gui.add_text("at", "0, 0, 0", hint=_HINT)
+            self._alert = Alert(gui)
+            add = gui.add_button("Add point", icon=viser.Icon.PLUS)
+        self._told = gui.add_html("")
+        self._list = DimensionList(gui, worker, session, lambda d: d.place[0] == "point")
+        self._removed = gui.add_dropdown("remove", (NONE,))
+        self._remove = gui.add_button("Remove point", color="gray", icon=viser.Icon.TRASH)
+        add.on_click(lambda _: worker.ask(("point", object()), lambda: self._alert.tried(self._add)))
+        self._remove.on_click(lambda _: worker.ask(("point", object()), self._take_away))
+        self._shown: object = None
+        self._view: object = None
+
+    def _add(self) -> None:
+        text = self._at.value
+        try:
+            u, v, w = (float(part) for part in text.replace(";", ",").split(","))
+        except ValueError:
+            raise RequestError(
+                f"at: {shown(text)} is not a place; give three numbers, as in -100, -90, -80"
+            ) from None
+        name = self._name.value.strip()
+        self._session.add_point(name, int(self._link.value.partition(" ")[0]), (u, v, w))
+
+    def _take_away(self) -> None:
+        names = [str(point["name"]) for point in self._session.draft.raw.get("point", ())]
+        if self._removed.value in names:
+            self._session.remove_point(names.index(self._removed.value))
+
+    def show(self) -> None:
+        """Shows the points as they are now."""
+        view, draft = self._session.view, self._session.draft
+        if view is not self._view:
+            self._view = view
+            self._told.content = "" if view is None else "".join(_speeds(view, i) for i in own_points(view))
+        if self._shown is draft:
+            return
+        self._shown = draft
+        linkage = draft.linkage
+        count = len(linkage.joints)
+        links = (*(f"{number}" for number in range(1, count)), f"{count} the ground")
+        if links != self._link.options:
+            self._link.options = links
+        letters = "u, v, w" if "link" in draft.raw else "x, y, z"
+        self._at.label = f"at {letters} [{linkage.length_unit}]"
+        names = tuple(str(point["name"]) for point in draft.raw.get("point", ()))
+        if (names or (NONE,)) != self._removed.options:
+            self._removed.options = names or (NONE,)
+        self._remove.disabled = not names
+        self._list.show()
+        taken = {point.name for point in linkage.points}
+        if self._name.value in taken:
+            put(self._name, next(name for name in _names() if name not in taken))
+
+
+def _speeds(view: View, index: int) -> str:
+    """How fast a point gets, and how slow, among the samples of the circuit on view."""
+    point, speeds = view.linkage.points[index], view.speeds[index]
+    parts = [
+        f"{word} {speeds[row]:.4g} {view.linkage.length_unit}/s @ {view.input_text(row)}"
+        for word, row in view.speed_extremes(index)
+    ]
+    if not parts:
+        return ""
+    told = escape(f"{point.name} on link {point.link}: {', '.join(parts)}")
+    return f'<div style="padding:2px 12px 6px;font-size:12.5px">{told}</div>'
+
+
+#: What the list of points says where there is none.
+NONE = "no points yet"
+
+_HINT = (
+    "In Denavit-Hartenberg rows: u along the link's joint, v along the link, w = u x v, from where the link "
+    "before meets the joint's axis. In [rssr]: in the link's frame. In drawn joints: in ground coordinates."
+)
+
+
+def _names() -> Any:
+    """P, Q, R .. Z, then P1, P2, .."""
+    yield from "PQRSTUVWXYZ"
+    number = 0
+    while True:
+        number += 1
+        yield f"P{number}"

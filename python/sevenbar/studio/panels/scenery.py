@@ -1,0 +1,169 @@
+"""The linkage in space: what is drawn of it, by what the tab has chosen to see."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import CIRCUIT_COLOURS
+from sevenbar.drawing.skeleton import places_of
+from sevenbar.studio.panels.controls import Asked
+from sevenbar.studio.pictures.stage import FIELD, Stage
+from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.view import View, own_points
+
+#: Ghosts of one circuit, spread over its cycle.
+POSITIONS = 8
+#: The longest arrow, as a share of the linkage's extent.
+LONGEST_ARROW = 0.35
+VELOCITY, ACCELERATION = "#0072B2", "#D55E00"
+
+NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at this input"
+
+
+class Scenery:
+    """Draws the session into the scene of a tab."""
+
+    def __init__(self, client: viser.ClientHandle, worker: Asked, session: Session) -> None:
+        self._client, self._session = client, session
+        self.stage = Stage(client.scene)
+        gui = client.gui
+        self._ghosts = gui.add_dropdown("ghosts", (NO_GHOSTS, ALONG, MODES))
+        self._switches = {
+            name: gui.add_checkbox(name, on, hint=hint)
+            for name, on, hint in (
+                ("joint axes", True, None),
+                ("paths", True, None),
+                ("names", False, "of joints and points"),
+                ("velocity arrows", True, "of the points you have added"),
+                ("acceleration arrows", True, "of the points you have added"),
+                ("extremes", True, "where the points you have added are fastest and slowest"),
+            )
+        }
+        look = gui.add_button("Look at it all", color="gray", icon=viser.Icon.FOCUS_CENTERED)
+        look.on_click(lambda _: worker.ask("look", self.look))
+        self._ghosts.on_update(lambda _: worker.ask("scenery", lambda: None))
+        for switch in self._switches.values():
+            switch.on_update(lambda _: worker.ask("scenery", lambda: None))
+        self._looked_at: object = None
+        self._drawn: dict[str, object] = {}
+        self._everything = np.empty((0, 3))
+        self._units: dict[int, tuple[float, float]] = {}
+
+    def look(self) -> None:
+        """Turns the camera so that the whole motion is seen, at the size it has now."""
+        self._looked_at = None
+        self._drawn.clear()
+
+    def aim(self) -> None:
+        """Turns the camera to what is drawn, by the shape that the window has now."""
+        camera = self._client.camera
+        place, target = self.stage.look(camera.aspect, self._everything)
+        camera.fov = FIELD
+        camera.position, camera.look_at = place, target
+
+    def show(self) -> None:
+        """Draws what has changed."""
+        view = self._session.view
+        if view is None:
+            if self._drawn:
+                self._drawn.clear()
+                self.stage.clear()
+            return
+        row, problem = self._session.row, bool(self._session.problem)
+        switches = {name: switch.value for name, switch in self._switches.items()}
+        if self._is_new("view", (view, problem)):
+            self._take(view, grey=problem)
+        elif self._is_new("pose", row):
+            self.stage.pose(view.frame.pose(row))
+        if self._is_new("switches", (view, *switches.values())):
+            self.stage.axes(switches["joint axes"])
+            self.stage.paths(switches["paths"])
+            self.stage.labels(switches["names"])
+            self._mark(view, switches["extremes"])
+        if self._is_new("arrows", (view, row, problem, *switches.values())):
+            self._point(view, switches)
+        ghosts = self._ghosts.value
+        if self._is_new("ghosts", (view, ghosts, row if ghosts == MODES else None)):
+            self._ghost(view)
+
+    def _is_new(self, what: str, state: object) -> bool:
+        """Whether something has to be drawn anew, since what it shows has changed."""
+        if self._drawn.get(what) == state:
+            return False
+        self._drawn[what] = state
+        return True
+
+    def _take(self, view: View, *, grey: bool) -> None:
+        """Draws another view; what was opened anew is looked at from where all of it is seen."""
+        fresh = self._looked_at is not self._session.draft.text
+        if fresh:
+            # of every circuit, so that none is out of the picture when it is chosen
+            places = [View(view.motion, circuit).frame.places.reshape(-1, 3) for circuit in view.motion]
+            every = np.concatenate(places)
+            self._everything = every[np.isfinite(every).all(axis=1)]
+            self.stage.frame_view(self._everything)
+        self.stage.set(view.linkage, view.frame, (view.motion.input, view.motion.output))
+        self.stage.pose(view.frame.pose(self._session.row))
+        self._drawn["pose"] = self._session.row
+        self.stage.grey(grey)
+        self._units = {
+            index: (
+                _arrow_unit(view, view.speeds[index]),
+                _arrow_unit(view, np.linalg.norm(view.traces[index].acceleration, axis=1)),
+            )
+            for index in own_points(view)
+        }
+        if fresh:
+            self._looked_at = self._session.draft.text
+            self.aim()
+
+    def _ghost(self, view: View) -> None:
+        match self._ghosts.value:
+            case word if word == ALONG:
+                rows = np.linspace(0, len(view.path.rows) - 1, POSITIONS, endpoint=False)
+                self.stage.ghosts([(view.frame.pose(float(row)), None) for row in rows])
+            case word if word == MODES:
+                modes = self._session.modes()
+                shown = self._session.mode(modes)
+                others = [mode for i, mode in enumerate(modes) if i != shown]
+                q = np.array([each.joints(row) for each, row in others])
+                places = list(places_of(view.linkage, q, view.frame)) if others else []
+                colours = [CIRCUIT_COLOURS[each.circuit.index % len(CIRCUIT_COLOURS)] for each, _ in others]
+                self.stage.ghosts(list(zip(places, colours, strict=True)))
+            case _:
+                self.stage.ghosts([])
+
+    def _point(self, view: View, switches: dict[str, bool]) -> None:
+        """The arrows of the points at the row on view."""
+        arrows = []
+        for index, units in self._units.items():
+            place, velocity, acceleration = view.rates(index, self._session.row)
+            for wanted, vector, unit, colour in (
+                ("velocity arrows", velocity, units[0], VELOCITY),
+                ("acceleration arrows", acceleration, units[1], ACCELERATION),
+            ):
+                if switches[wanted] and np.isfinite(vector).all() and unit > 0:
+                    arrows.append((place, vector / unit, colour, ""))
+        self.stage.arrows(arrows)
+
+    def _mark(self, view: View, wanted: bool) -> None:
+        """The places along the paths where the points are fastest and slowest."""
+        places: list[Floats] = []
+        words: list[str] = []
+        for index in own_points(view) if wanted else ():
+            name = view.linkage.points[index].name
+            speeds = view.speeds[index]
+            for word, row in view.speed_extremes(index):
+                places.append(view.traces[index].position[view.path.rows][row])
+                words.append(f"{name} {word}: {speeds[row]:.4g} {view.linkage.length_unit}/s")
+        self.stage.marks(np.array(places).reshape(-1, 3), words)
+
+
+def _arrow_unit(view: View, sizes: Floats) -> float:
+    """What an arrow as long as the length unit stands for, by the sizes (n,) that arrows show."""
+    # near dead centres rates grow without bound; those rows do not set the scale
+    kept = sizes[np.isfinite(sizes)]
+    usual = float(np.percentile(kept, 95)) if kept.size else 0.0
+    return usual / (LONGEST_ARROW * view.frame.span)

@@ -1,0 +1,167 @@
+"""Running the motion: play, step, scrub along the input, and the choice of circuit and mode."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+import viser
+
+from sevenbar.reporting.report import joint_value
+from sevenbar.reporting.summary import joint_text
+from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
+from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.verdict import heading
+from sevenbar.studio.state.view import View
+from sevenbar.studio.worker import Worker
+
+#: A cycle takes so long [s] at the speed "1 x".
+CYCLE = 6.0
+SPEEDS = {"1/8 x": 0.125, "1/4 x": 0.25, "1/2 x": 0.5, "1 x": 1.0, "2 x": 2.0, "4 x": 4.0}
+STEPS = {"-10": -10, "-1": -1, "+1": 1, "+10": 10}
+
+
+class Transport:
+    """The controls that move the linkage, above all others."""
+
+    def __init__(self, gui: viser.GuiApi, worker: Worker, session: Session) -> None:
+        self._worker, self._session = worker, session
+        self._heading = gui.add_html("")
+        self._play = gui.add_button("Play", icon=viser.Icon.PLAYER_PLAY_FILLED, hint="the space bar, too")
+        self._steps = gui.add_button_group("step", tuple(STEPS), hint="by samples, of which a turn has 360")
+        self._travel = gui.add_slider("input", min=0.0, max=360.0, step=0.5, initial_value=0.0)
+        self._goto = gui.add_text("go to input", "", hint="a value of the input, as in 30, 30deg or 0.5rad")
+        self._alert = Alert(gui)
+        self._reading = gui.add_html("")
+        self._circuit = gui.add_dropdown("circuit", ("0",))
+        self._next = gui.add_button("Next mode at this input", color="gray", icon=viser.Icon.ARROWS_SHUFFLE)
+        self._speed = gui.add_dropdown(
+            "speed", tuple(SPEEDS), initial_value="1 x", hint="at 1 x a cycle takes six seconds"
+        )
+        command = gui.add_command("Play or pause", hotkey="space")
+        command.on_trigger(lambda _: worker.ask("play", self._toggle))
+        self._play.on_click(lambda _: worker.ask("play", self._toggle))
+        self._next.on_click(lambda _: worker.ask("mode", session.next_mode))
+        self._steps.on_click(self._stepped)
+        self._travel.on_update(self._scrubbed)
+        self._goto.on_update(self._typed)
+        self._circuit.on_update(self._chosen)
+        self._shown: tuple[object, ...] = ()
+
+    def tick(self, seconds: float) -> None:
+        """Lets the linkage run for seconds of a person's time."""
+        view = self._session.view
+        if view is not None:
+            self._session.advance(seconds * view.period / CYCLE * SPEEDS[self._speed.value])
+
+    def _toggle(self) -> None:
+        self._worker.playing = not self._worker.playing and self._session.view is not None
+        self._play.label = "Pause" if self._worker.playing else "Play"
+        self._play.icon = (
+            viser.Icon.PLAYER_PAUSE_FILLED if self._worker.playing else viser.Icon.PLAYER_PLAY_FILLED
+        )
+
+    def _pause(self) -> None:
+        if self._worker.playing:
+            self._toggle()
+
+    def _stepped(self, event: viser.GuiEvent[Any]) -> None:
+        rows = STEPS[event.target.value]
+        self._worker.ask(("step", object()), lambda: self._halt_and(lambda: self._session.step(rows)))
+
+    def _halt_and(self, action: Callable[[], None]) -> None:
+        self._pause()
+        action()
+
+    def _scrubbed(self, event: viser.GuiEvent[Any]) -> None:
+        if by_person(event):
+            travel = float(self._travel.value)
+            self._worker.ask("scrub", lambda: self._halt_and(lambda: self._seek(travel)))
+
+    def _seek(self, travel: float) -> None:
+        view = self._session.view
+        if view is not None:
+            time = travel / abs(_shown_speed(view))
+            last = len(view.path.rows) - 1
+            self._session.seek(last if time >= view.period else view.row_at(max(time, 0.0)))
+
+    def _typed(self, event: viser.GuiEvent[Any]) -> None:
+        if by_person(event):
+            text = self._goto.value
+            self._worker.ask("goto", lambda: self._halt_and(lambda: self._go(text)), delay=PAUSE)
+
+    def _go(self, text: str) -> None:
+        view = self._session.view
+        if view is None or not text.strip():
+            self._alert.clear()
+            return
+        linkage, column = view.linkage, view.circuit.input_column
+        self._alert.tried(lambda: self._session.seek_input(joint_value(text, "input", linkage, column)))
+
+    def _chosen(self, event: viser.GuiEvent[Any]) -> None:
+        if by_person(event):
+            index = int(self._circuit.value.partition(":")[0])
+            self._worker.ask("circuit", lambda: self._session.choose(index))
+
+    def show(self) -> None:
+        """Shows what the session has come to."""
+        session, view = self._session, self._session.view
+        shown = (view, session.draft, session.problem)
+        if any(a is not b for a, b in zip(shown, self._shown, strict=False)) or not self._shown:
+            self._shown = shown
+            self._heading.content = heading(session)
+            self._offer(view)
+        if view is None:
+            self._reading.content = ""
+            return
+        travel = view.time_at(session.row) * abs(_shown_speed(view))
+        if abs(travel - self._travel.value) > 1e-6 and not self._worker.awaits("scrub"):
+            put(self._travel, min(travel, self._travel.max))
+        self._reading.content = _reading(session, view)
+
+    def _offer(self, view: View | None) -> None:
+        """What can be chosen of the motion on view."""
+        for control in (self._play, self._travel, self._goto, self._circuit, self._next):
+            control.disabled = view is None
+        if view is None:
+            self._pause()
+            return
+        options = tuple(f"{c.index}: {c.motion_type}" for c in view.motion)
+        if options != self._circuit.options:
+            self._circuit.options = options
+        put(self._circuit, options[view.circuit.index])
+        self._travel.max = view.period * abs(_shown_speed(view)) or 1.0
+        self._travel.step = self._travel.max / 720
+        unit = view.linkage.length_unit if _slides(view) else "deg"
+        there = "" if view.circuit.goes_round else ", there and back"
+        self._travel.label = f"input{there} [{unit}]"
+
+
+def _slides(view: View) -> bool:
+    return view.linkage.column_kinds[view.circuit.input_column] == "slide"
+
+
+def _shown_speed(view: View) -> float:
+    """The input's speed in the unit in which the page shows it: deg/s, or length/s."""
+    return view.motion.speed if _slides(view) else math.degrees(view.motion.speed)
+
+
+def _reading(session: Session, view: View) -> str:
+    """Where the linkage stands: input, output, time and mode."""
+    circuit = view.circuit
+    second = float(view.along(view.path.output, session.row))
+    way = ""
+    if not circuit.goes_round:
+        way = " rising" if view.way[int(session.row)] * view.motion.speed > 0 else " falling"
+    modes = session.modes()
+    lines = [
+        f"input {view.input_text(session.row)}{way}",
+        f"output {joint_text(view.linkage, circuit.output_column, second)}",
+        f"t = {view.time_at(session.row):.4g} s",
+    ]
+    if modes:
+        lines.append(f"mode {session.mode(modes) + 1} of {len(modes)} at this input")
+    told = " &nbsp; ".join(escape(line) for line in lines)
+    return f'<div style="padding:2px 12px 8px;font-size:12.5px;color:#333">{told}</div>'

@@ -1,0 +1,1 @@
+"""Linkages as simple bodies in the studio's scene."""

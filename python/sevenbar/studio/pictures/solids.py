@@ -1,0 +1,312 @@
+"""The simple solids that stand for a linkage: tubes for links, and for joints what engineers know them by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.scene import GROUND, JOINT, POINT_COLOURS, chain_colours
+from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
+from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, slices, turns
+from sevenbar.studio.pictures.shapes import TURNS
+
+__all__ = ["Plan", "Poses", "plan", "poses", "rgb"]
+
+#: The measure of all thicknesses, as a share of the linkage's extent.
+UNIT = 0.02
+#: A link thinner than it is short looks like a link: the unit is at most this share of the shortest ...
+SHORTEST = 0.24
+#: ... save where that made all others threads.
+THINNEST = 0.4
+#: A link shorter than this share of the extent is none: two joints in one place.
+NO_LINK = 0.02
+
+#: Radii, and lengths where two are given, in units.
+LINK, POINT, STAY, RAIL, STEM = 0.55, 0.9, 0.2, 0.45, 0.6
+HINGE, PIN, SLEEVE, NUT, ARM = (1.05, 3.4), (0.5, 4.1), (1.05, 5.0), (1.75, 2.2), (0.62, 5.0)
+BALL, SOCKET, KNUCKLE, THREAD = 1.2, 1.5, 0.95, 0.85
+#: The sides of a block across and along its rail, of a foot across and along, and its distance, in units.
+BLOCK, FOOT, REACH = (1.9, 5.0), (5.4, 0.6), 4.2
+#: Strokes behind a foot: how many, how far each leans out as a share of its width, how thick in units.
+STROKES, LEAN, STROKE = 5, 0.13, 0.12
+#: Where feet go that are free to choose: down, and level ones always to the same side.
+DOWNWARDS = np.array([0.01, 0.1, -1.0])
+#: How far a rail reaches past what slides on it, in units.
+PAST = 2.6
+
+#: Pins and rails, and the balls of ball joints.
+STEEL, BRIGHT = "#5c6066", "#e6e6e6"
+#: Joints that are neither input nor output, lighter than the ground; and the strokes behind a foot.
+OTHER_JOINT, STROKE_COLOUR = "#c6c9ce", "#a9a9a9"
+#: The least and greatest pitch of a thread that is drawn as it is, in units.
+FINE, COARSE = 0.7, 1.1
+
+
+@cache
+def rgb(colour: str, white: float = 0.0) -> Colours:
+    """The colour (3,), mixed with a share of white, as the scene takes it: 0 to 255, linear in light."""
+    coded = white + (1.0 - white) * np.array(to_rgb(colour))
+    light = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
+    return np.round(light * 255).astype(np.uint8)
+
+
+@dataclass
+class _Solids:
+    """Solids as they are collected, by shape."""
+
+    layout: Layout
+    fixed: list[Floats]
+    rows: dict[str, list[tuple[object, ...]]] = field(default_factory=dict)
+
+    def anchor(self, place: Floats) -> int:
+        """A new place that never moves."""
+        self.fixed.append(place)
+        return self.layout.count + len(self.fixed) - 1
+
+    def add(
+        self,
+        shape: str,
+        joins: Pair,
+        sides: float | Floats,
+        colour: str,
+        *,
+        share: float = 0.5,
+        shift: float = 0.0,
+        length: float = np.nan,
+        guide: Pair = NOWHERE,
+        roll: Pair = NOWHERE,
+        slide: Pair = NOWHERE,
+        twist: float = 0.0,
+        moves: bool = True,
+    ) -> None:
+        row = ((*joins, *guide, *roll, *slide), share, shift, length, twist, sides, rgb(colour), moves)
+        self.rows.setdefault(shape, []).append(row)
+
+
+def plan(linkage: Loop, frame: Skeleton, ends: tuple[str, str], size: float) -> Plan:
+    """The solids of a linkage along a circuit, from the columns of input and output and its extent [length].
+
+    Thicknesses are shares of the extent, less where a link is short. Rails reach over the whole of the
+    frame's motion. The frame needs a row without NaN.
+    """
+    where = layout(linkage, frame)
+    solids = _Solids(where, list(where.fixed))
+    solved = ~np.isnan(frame.places.sum(axis=(1, 2)))
+    every = frame.places if solved.all() else frame.places[solved]
+    if len(where.fixed):
+        every = np.concatenate(
+            [every, np.broadcast_to(where.fixed, (len(every), *where.fixed.shape))], axis=1
+        )
+    unit = _unit(where, every[0], size)
+    links, joints = chain_colours(linkage, ends)
+    links.append(GROUND)
+    joints = [OTHER_JOINT if colour == JOINT else colour for colour in joints]
+    for way, colour in zip(where.links, links, strict=True):
+        moves = colour is not GROUND
+        for pair in pairwise(way):
+            solids.add("cylinder", pair, LINK * unit, colour, moves=moves)
+        for corner in way[1:-1]:
+            solids.add("ball", (corner, corner), LINK * unit, colour, length=LINK * unit, moves=moves)
+    for i, (joint, colour) in enumerate(zip(where.joints, joints, strict=True)):
+        if joint.kind in "PCH":
+            _add_slide(solids, i, joint, colour, every, unit)
+        else:
+            _add_joint(solids, i, joint, colour, links, unit)
+    for joint, link in ((where.joints[0], 0), (where.joints[-1], len(links) - 2)):
+        if joint.kind not in "PCH":
+            _add_ground(solids, joint, link, every, unit, size)
+    for i, (start, place, end) in enumerate(frame.stays):
+        link = next((n for n, way in enumerate(where.links) if (way[0], way[-1]) == (start, end)), -1)
+        for corner in (start, end):
+            solids.add("cylinder", (corner, place), STAY * unit, links[link], moves=False)
+        colour = POINT_COLOURS[i % len(POINT_COLOURS)]
+        solids.add("ball", (place, place), POINT * unit, colour, length=POINT * unit, moves=False)
+    return _made(solids, frame, every[0], size)
+
+
+def _unit(where: Layout, pose: Floats, size: float) -> float:
+    """The measure of all thicknesses [length]."""
+    lengths = [float(np.linalg.norm(np.diff(pose[list(way)], axis=0), axis=1).sum()) for way in where.links]
+    shortest = min((length for length in lengths if length > NO_LINK * size), default=size)
+    return UNIT * size * min(1.0, max(THINNEST, SHORTEST * shortest / (UNIT * size)))
+
+
+def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> Plan:
+    rows = [row for shape in solids.rows.values() for row in shape]
+    places, share, shift, length, twist, sides, colours, moves = zip(*rows, strict=True)
+    where = solids.layout
+    return Plan(
+        slices({shape: len(found) for shape, found in solids.rows.items()}),
+        np.array(places).T.copy(),
+        np.array(share),
+        np.array(shift),
+        np.array(length),
+        np.array(twist),
+        np.array([np.broadcast_to(side, 2) for side in sides]),
+        np.array(colours),
+        np.array(moves),
+        where.count,
+        np.array(solids.fixed).reshape(-1, 3),
+        np.array([pair for joint in where.joints for pair in joint.axes]).reshape(-1, 2),
+        _labels(frame, pose, size),
+    )
+
+
+def _labels(frame: Skeleton, pose: Floats, size: float) -> tuple[tuple[str, int], ...]:
+    """The names of places; those in one place share a label."""
+    named: dict[int, list[str]] = {}
+    for place, name in enumerate(frame.names):
+        if name:
+            near = (other for other in named if np.abs(pose[other] - pose[place]).max() < 1e-6 * size)
+            named.setdefault(next(near, place), []).append(name)
+    return tuple((", ".join(dict.fromkeys(names)), place) for place, names in named.items())
+
+
+def _add_joint(
+    solids: _Solids, index: int, joint: JointPlaces, colour: str, links: list[str], unit: float
+) -> None:
+    """The solids of a joint that does not slide."""
+    spin, far = joint.spin, joint.far
+    if joint.kind == "R":
+        solids.add("cylinder", spin, HINGE[0] * unit, colour, length=HINGE[1] * unit)
+        solids.add("cylinder", spin, PIN[0] * unit, STEEL, length=PIN[1] * unit)
+    elif joint.kind == "U":
+        for axis in joint.axes:
+            solids.add("cylinder", axis, ARM[0] * unit, colour, length=ARM[1] * unit)
+        solids.add("ball", (far, far), KNUCKLE * unit, colour, length=KNUCKLE * unit)
+    else:
+        # the link between two ball joints has both sockets
+        link = index - 1 if solids.layout.joints[index - 1].kind == "S" else index
+        way = solids.layout.links[link]
+        out = (way[1], way[0]) if link == index else (way[-2], way[-1])
+        solids.add("ball", (far, far), BALL * unit, BRIGHT, length=BALL * unit)
+        solids.add("socket", out, SOCKET * unit, links[link], share=1.0, length=SOCKET * unit)
+
+
+def _add_slide(
+    solids: _Solids, index: int, joint: JointPlaces, colour: str, every: Floats, unit: float
+) -> None:
+    """A rail and what slides on it, over its whole reach in poses `every` (n, places, 3)."""
+    # the ground, else the link before, has the rail, and the other what slides
+    last = index == len(solids.layout.joints) - 1
+    start, end = joint.axes[0]
+    rail, slider = (joint.far, joint.near) if last else (joint.near, joint.far)
+    to_rail, to_slider = ((rail, end), (start, slider)) if last else ((start, rail), (slider, end))
+    at_rail, at_slider = (0.0, 1.0) if last else (1.0, 0.0)
+    carriers = (index, index - 1) if last else (index - 1, index)
+    guide = joint.spin
+    if guide == NOWHERE:
+        guide = _best(
+            [pair for link in carriers for pair in solids.layout.rigid(link)], to_rail, every, along=True
+        )
+    ways = _unit_ways(every, to_rail)
+    turned = np.where(np.einsum("ij,ij->i", ways, _ways(every, guide)) < 0, -1.0, 1.0)
+    slid = np.einsum("ij,ij->i", _ways(every, (rail, slider)), ways) * turned
+    low, high = min(0.0, slid.min()) - PAST * unit, max(0.0, slid.max()) + PAST * unit
+    if guide == NOWHERE:
+        low, high = -max(-low, high), max(-low, high)
+    rail_roll, roll = (_best(solids.layout.rigid(link), to_rail, every, along=False) for link in carriers)
+    # where a link has nothing off the axis, the other's turn tells its own
+    rate = math.tau / joint.pitch if joint.kind == "H" and joint.pitch else 0.0
+    rail_twist = -rate if rail_roll == NOWHERE else 0.0
+    twist = rate if roll == NOWHERE else 0.0
+    rail_roll, roll = (rail_roll if rail_roll != NOWHERE else roll), (roll if roll != NOWHERE else rail_roll)
+    rod, radius, pieces, piece = "cylinder", RAIL, 1, high - low
+    if joint.kind == "H":
+        rod, radius = ("thread" if joint.pitch >= 0 else "left thread"), THREAD
+        piece = TURNS * float(np.clip(abs(joint.pitch), FINE * unit, COARSE * unit))
+        pieces = math.ceil((high - low) / piece)
+    for k in range(pieces):
+        solids.add(
+            rod, to_rail, radius * unit, STEEL,
+            share=at_rail, shift=low + (k + 0.5) * piece, length=piece, guide=guide,
+            roll=rail_roll, slide=(rail, slider), twist=rail_twist,
+        )  # fmt: skip
+    shape, (wide, long) = {"P": ("box", BLOCK), "C": ("cylinder", SLEEVE), "H": ("hexagon", NUT)}[joint.kind]
+    solids.add(
+        shape,
+        to_slider,
+        wide * unit,
+        colour,
+        share=at_slider,
+        length=long * unit,
+        guide=guide,
+        roll=roll,
+        slide=(rail, slider),
+        twist=twist,
+    )
+    if last or index == 0:
+        for reach in (low, high):
+            outward = np.sign(reach) * turned[0] * ways[0]
+            _add_foot(solids, every[0, rail] + abs(reach) * outward, outward, 0.6 * FOOT[0], unit)
+
+
+def _ways(every: Floats, pair: Pair) -> Floats:
+    """The ways (n, 3) between two places."""
+    return every[:, pair[1]] - every[:, pair[0]]
+
+
+def _unit_ways(every: Floats, pair: Pair) -> Floats:
+    ways = _ways(every, pair)
+    unit: Floats = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    return unit
+
+
+def _best(pairs: list[Pair], axis: Pair, every: Floats, *, along: bool) -> Pair:
+    """Of pairs rigid with a link the one most along the axis, or across it; nowhere if there is none."""
+    way = _unit_ways(every[:1], axis)[0]
+    best, most = NOWHERE, 1e-6
+    for pair in pairs:
+        other = _ways(every[:1], pair)[0]
+        length = float(np.linalg.norm(other))
+        part = abs(float(other @ way)) / (length or 1.0)
+        share = part if along else float(np.sqrt(max(0.0, 1.0 - part**2)))
+        if length > 0 and share > most + 1e-6:
+            best, most = pair, share
+    return best
+
+
+def _add_ground(
+    solids: _Solids, joint: JointPlaces, link: int, every: Floats, unit: float, size: float
+) -> None:
+    """The foot of a joint on the ground, on the side of its axis that the moving link leaves free."""
+    ground = joint.far if link == len(solids.layout.links) - 2 else joint.near
+    pose = every[0]
+    centre, side = pose[ground], np.array([0.0, 0.0, -1.0])
+    if joint.axes:
+        axis = _unit_ways(every[:1], joint.axes[-1 if ground == joint.far else 0])[0]
+        beside = float((pose[list(solids.layout.links[link])].mean(axis=0) - centre) @ axis)
+        outside = float((centre - every[:: max(1, len(every) // 24)].mean(axis=(0, 1))) @ axis)
+        if abs(beside) > 0.5 * unit:
+            side = -np.sign(beside) * axis
+        elif abs(outside) > 0.1 * size:
+            side = np.sign(outside) * axis
+        else:
+            side = axis if axis @ DOWNWARDS >= 0 else -axis
+    foot = centre + REACH * unit * side
+    solids.add("cylinder", (solids.anchor(centre), solids.anchor(foot)), STEM * unit, GROUND, moves=False)
+    _add_foot(solids, foot, side, FOOT[0], unit)
+
+
+def _add_foot(solids: _Solids, place: Floats, outward: Floats, wide: float, unit: float) -> None:
+    """A plate that stands for the ground, hatched on its far side."""
+    back = place + FOOT[1] * unit * outward
+    pair = solids.anchor(place), solids.anchor(back)
+    solids.add("box", pair, wide * unit, GROUND, moves=False)
+    # in the plate's own axes, as `poses` turns it
+    w, x, y, z = turns(outward, np.zeros(3))
+    across = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
+    sideways = solids.anchor(np.zeros(3)), solids.anchor(np.cross(outward, across))
+    for share in np.linspace(-0.5, 0.5 - LEAN, STROKES):
+        start = back + share * wide * unit * across
+        pair = solids.anchor(start), solids.anchor(start + LEAN * wide * unit * (across + outward))
+        sides = np.array([wide, STROKE]) * unit
+        solids.add("box", pair, sides, STROKE_COLOUR, roll=sideways, moves=False)

@@ -1,0 +1,336 @@
+"""The 3D picture: a linkage, its paths, ghosts and arrows in a viser scene, moved by their handles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from viser import GridHandle, LineSegmentsHandle, SceneApi
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.scene import PATH, POINT_COLOURS, chain_colours, view
+from sevenbar.drawing.skeleton import A, Chain, Skeleton
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.studio.pictures.batches import Batches, Labels
+from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, stretched
+from sevenbar.studio.pictures.solids import plan, rgb
+
+#: Where an axis line has its dashes and the dots between them, as shares of its length.
+DASHES = np.array(
+    [pair for k in range(7) for pair in ((0.15 * k, 0.15 * k + 0.1), (0.15 * k + 0.12, 0.15 * k + 0.13))][:-1]
+)
+#: How far an axis is drawn beyond its two places, as a share of the linkage's extent.
+OVERHANG = 0.07
+#: Thicknesses of lines [pixels].
+AXIS_LINE, JOINT_PATH, POINT_PATH = 1.4, 1.8, 2.8
+#: How much white is in the path of A or B.
+PALE = 0.4
+#: Opacity of ghosts, and the most there are.
+GHOST, MOST_GHOSTS = 0.2, 16
+#: Radii of an arrow's shaft and head, and its head's length; a mark's radius [1].
+SHAFT, HEAD, HEAD_LENGTH, MARK = 0.011, 0.03, 0.095, 0.022
+#: From a place to its label.
+ABOVE = np.array([0.0, 0.0, 0.045])
+#: The head's greatest share of a short arrow.
+HEAD_MOST = 0.5
+#: The camera's field of view from bottom to top [rad], narrow as machines are drawn, that `look` reckons
+#: with; how much of it the motion fills; and how wide the picture is taken to be, in heights.
+FIELD, FILL, ASPECT = math.radians(30.0), 0.84, 1.2
+#: How bright the sky is, and the lights and whence they shine.
+SKY = 2.2
+LIGHTS = {"key": (2.4, (0.6, -1.0, 1.6)), "fill": (0.8, (-1.4, -0.4, 0.5)), "back": (0.5, (0.3, 1.2, 0.8))}
+#: The darkest grey of a state that is out of date, 0 to 255, linear in light.
+GREYEST = 95
+#: How far the floor lies below the lowest place [1].
+FLOOR = 0.14
+
+#: The axes' colour, as lines of one colour take it, and the marks'.
+AXIS_COLOUR, MARK_COLOUR = np.array([72, 72, 72], np.uint8), "#303030"
+
+
+class Stage:
+    """A linkage in a scene, `server.scene` or `client.scene`.
+
+    The scene has a scale of its own, at which the motion fills a ball of radius 1; only `frame_view` sets
+    it, so that dragging a dimension does not. Call `frame_view`, `set` and `pose`, in this order.
+    """
+
+    def __init__(self, scene: SceneApi) -> None:
+        self._scene = scene
+        self._fresh, self._size = False, 1.0
+        self.centre, self.scale = np.zeros(3), 1.0
+        self._grey, self._labels_on, self._axes_on, self._paths_on = False, False, True, True
+        self._solids, self._ghosts = Batches(scene, "/linkage"), Batches(scene, "/ghosts", opacity=GHOST)
+        self._arrows, self._marks = Batches(scene, "/arrows"), Batches(scene, "/marks")
+        self._names = Labels(scene, "/names")
+        self._arrow_labels, self._mark_labels = Labels(scene, "/arrow_labels"), Labels(scene, "/mark_labels")
+        self._lines: dict[str, LineSegmentsHandle] = {}
+        self._path_colours: dict[str, Colours] = {}
+        self._grid: GridHandle | None = None
+        self._plan: Plan | None = None
+        self._moving: Plan | None = None
+        self._frame: Skeleton | None = None
+        self._places: Floats | None = None
+        scene.set_up_direction("+z")
+        scene.configure_default_lights(enabled=False)
+        scene.configure_environment_map(None)
+        scene.add_light_hemisphere(
+            "/lights/sky", intensity=SKY, ground_color=(205, 208, 214), position=(0.0, 0.0, 1.0)
+        )
+        for name, (intensity, place) in LIGHTS.items():
+            scene.add_light_directional(f"/lights/{name}", intensity=intensity, position=place)
+
+    def frame_view(self, places: Floats) -> None:
+        """Fixes scale and centre such that places (..., 3) [length] fill the view; lays the floor below."""
+        flat = places.reshape(-1, 3)
+        flat = flat[np.isfinite(flat).all(axis=1)]
+        low, high = flat.min(axis=0), flat.max(axis=0)
+        self.centre = (low + high) / 2
+        radius = float(np.linalg.norm(flat - self.centre, axis=1).max())
+        self.scale = 1.0 / radius if radius > 0 else 1.0
+        floor = float((low - self.centre)[2]) * self.scale - FLOOR
+        if self._grid is None:
+            self._grid = self._scene.add_grid(
+                "/floor",
+                plane="xy",
+                width=6.0,
+                height=6.0,
+                cell_size=0.2,
+                section_size=1.0,
+                cell_color=(232, 234, 237),
+                section_color=(214, 217, 222),
+                fade_distance=4.5,
+                fade_strength=1.6,
+                fade_from="origin",
+                position=(0.0, 0.0, floor),
+            )
+        self._grid.position = np.array([0.0, 0.0, floor])
+
+    def in_scene(self, places: Floats) -> Floats:
+        """Places (..., 3) [length] in the scene's own frame."""
+        return (places - self.centre) * self.scale
+
+    def look(self, aspect: float = ASPECT, also: Floats | None = None) -> tuple[Floats, Floats]:
+        """Where the camera stands and what it looks at, in the scene, to see the whole motion well.
+
+        `aspect` is the picture's width over its height; places `also` (n, 3) [length] are to be seen too.
+        """
+        if self._frame is None:
+            return np.array([2.0, -2.0, 1.5]), np.zeros(3)
+        elevation, azimuth = (math.radians(angle) for angle in view(self._frame))
+        back = np.array(
+            [
+                math.cos(elevation) * math.cos(azimuth),
+                math.cos(elevation) * math.sin(azimuth),
+                math.sin(elevation),
+            ]
+        )
+        right = np.array([-math.sin(azimuth), math.cos(azimuth), 0.0])
+        axes = np.stack([right, np.cross(back, right), back])
+        every = self._drawn() if also is None else np.concatenate([self._drawn(), also])
+        seen = self.in_scene(every) @ axes.T
+        middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+        seen -= middle
+        half = math.tan(FIELD / 2) * FILL
+        distance = float((seen[:, 2] + np.abs(seen[:, :2] / (aspect, 1.0)).max(axis=1) / half).max())
+        target = middle @ axes
+        return target + distance * back, target
+
+    def _drawn(self) -> Floats:
+        """Places (n, 3) [length] that all that is drawn along the motion lies between."""
+        if self._frame is None or self._plan is None:
+            return np.empty((0, 3))
+        every = self._frame.places
+        drawn = [every.reshape(-1, 3)]
+        for turn, middle, scale in poses(self._plan, every[:: max(1, len(every) // 24)]).values():
+            w, x, y, z = np.moveaxis(turn, -1, 0)
+            along = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+            half = along * scale[..., 2:] / 2
+            shown = scale[..., 2] > 0
+            drawn += [(middle - half)[shown], (middle + half)[shown]]
+        places = np.concatenate(drawn)
+        return places[np.isfinite(places).all(axis=1)]
+
+    def set(self, linkage: Loop, frame: Skeleton, ends: tuple[str, str], paths: bool = True) -> None:
+        """Takes another linkage or circuit, by its frame and the columns of input and output.
+
+        Its paths are drawn at once, save with `paths` False; its solids, axes and names by the `pose` that
+        must follow.
+        """
+        self._size = frame.span
+        self._plan = plan(linkage, frame, ends, self._size)
+        self._moving, self._frame = self._plan.moving(), frame
+        self._places, self._fresh = None, True
+        colours = chain_colours(linkage, ends)[0]
+        joints, points = [], []
+        for place in frame.moving if paths else ():
+            if place >= frame.solid:
+                points.append((place, rgb(POINT_COLOURS[(place - frame.solid) % len(POINT_COLOURS)])))
+            elif isinstance(frame, Chain):
+                joints.append((place, rgb(PATH)))
+            else:
+                joints.append((place, rgb(colours[0 if place == A else 2], PALE)))
+        self._draw_path("joints", joints, JOINT_PATH)
+        self._draw_path("points", points, POINT_PATH)
+
+    def clear(self) -> None:
+        """Takes everything out of the scene, but for the floor."""
+        self._plan = self._moving = self._frame = self._places = None
+        for batches in (self._solids, self._ghosts, self._arrows, self._marks):
+            batches.clear()
+        for labels in (self._names, self._arrow_labels, self._mark_labels):
+            labels.put([], np.empty((0, 3)))
+        for name in list(self._lines):
+            self._lines.pop(name).remove()
+        self._path_colours.clear()
+
+    def pose(self, places: Floats) -> None:
+        """Moves the linkage to a pose, places (k, 3) [length] as those of the frame."""
+        if self._plan is None:
+            return
+        self._places = places
+        colours = self._colours(self._plan) if self._fresh else None
+        self._fresh = False
+        self._solids.put(self._shown(poses(self._plan, places)), colours)
+        self._draw_axes()
+        self._draw_names()
+
+    def ghosts(self, shown: Sequence[tuple[Floats, str | None]]) -> None:
+        """Faint copies of links and joints at up to 16 poses (k, 3) [length], each in a colour or its own."""
+        if not shown or self._moving is None:
+            self._ghosts.clear()
+            return
+        shown = shown[:MOST_GHOSTS]
+        found = poses(self._moving, np.stack([places for places, _ in shown]))
+        every = {
+            shape: (turn.reshape(-1, 4), middle.reshape(-1, 3), scale.reshape(-1, 3))
+            for shape, (turn, middle, scale) in found.items()
+        }
+        colours = {}
+        for shape in found:
+            own = self._moving.colours_of(shape)
+            each = [own if colour is None else np.tile(rgb(colour), (len(own), 1)) for _, colour in shown]
+            colours[shape] = self._shade(np.concatenate(each))
+        self._ghosts.put(self._shown(every), colours)
+
+    def arrows(self, rows: Sequence[tuple[Floats, Floats, str, str]]) -> None:
+        """Arrows, each by origin and vector (3,) [length], colour and label; none clears them."""
+        if not rows:
+            self._arrows.clear()
+            self._arrow_labels.put([], np.empty((0, 3)))
+            return
+        origins, vectors, names, texts = zip(*rows, strict=True)
+        start, way = self.in_scene(np.array(origins, float)), np.array(vectors, float) * self.scale
+        length = np.linalg.norm(way, axis=1, keepdims=True)
+        neck = start + way * (1 - np.minimum(HEAD_LENGTH / np.where(length > 0, length, 1.0), HEAD_MOST))
+        colours = self._shade(np.array([rgb(name) for name in names]))
+        shafts, heads = stretched(start, neck, SHAFT), stretched(neck, start + way, HEAD)
+        self._arrows.put({"cylinder": shafts, "cone": heads}, {"cylinder": colours, "cone": colours})
+        self._arrow_labels.put(list(texts), start + way + ABOVE / 2)
+
+    def marks(self, points: Floats, labels: Sequence[str]) -> None:
+        """Little marks at points (n, 3) [length], with a text each; none clears them."""
+        places = self.in_scene(np.asarray(points, float).reshape(-1, 3))
+        known = np.isfinite(places).all(axis=1, keepdims=True)
+        self._mark_labels.put(list(labels), places + ABOVE)
+        if not len(places):
+            self._marks.clear()
+            return
+        turn, scale = np.tile([1.0, 0.0, 0.0, 0.0], (len(places), 1)), np.full((len(places), 3), MARK)
+        balls = (turn, np.where(known, places, 0.0), np.where(known, scale, 0.0))
+        self._marks.put({"ball": balls}, {"ball": np.tile(rgb(MARK_COLOUR), (len(places), 1))})
+
+    def labels(self, on: bool) -> None:
+        """Shows or hides the names of joints and points."""
+        self._labels_on = on
+        self._draw_names()
+
+    def axes(self, on: bool) -> None:
+        """Shows or hides the joints' axes."""
+        self._axes_on = on
+        if "axes" in self._lines:
+            self._lines["axes"].visible = on
+        self._draw_axes()
+
+    def paths(self, on: bool) -> None:
+        """Shows or hides the paths of joints and points."""
+        self._paths_on = on
+        for name in ("joints", "points"):
+            if name in self._lines:
+                self._lines[name].visible = on
+
+    def grey(self, on: bool) -> None:
+        """Shows linkage and ghosts in greys, for a state that is out of date; or in their colours again."""
+        if on == self._grey:
+            return
+        self._grey = on
+        if self._plan is not None and not self._fresh:
+            self._solids.paint(self._colours(self._plan))
+        for name, colours in self._path_colours.items():
+            self._lines[name].colors = self._shade(colours)
+
+    def _colours(self, shown: Plan) -> dict[str, Colours]:
+        return {shape: self._shade(shown.colours_of(shape)) for shape in shown.shapes}
+
+    def _shade(self, colours: Colours) -> Colours:
+        """The colours (..., 3), as greys where all is grey."""
+        if not self._grey:
+            return colours
+        light = GREYEST + (1 - GREYEST / 255) * 0.5 * (colours @ np.array([0.21, 0.72, 0.07]))
+        return np.repeat(light[..., None], 3, axis=-1).astype(np.uint8)
+
+    def _shown(self, found: Poses) -> Poses:
+        return {
+            shape: (turn, self.in_scene(middle), scale * self.scale)
+            for shape, (turn, middle, scale) in found.items()
+        }
+
+    def _draw_path(self, name: str, found: Sequence[tuple[int, Colours]], thickness: float) -> None:
+        self._path_colours.pop(name, None)
+        if self._frame is None or not found:
+            self._draw_lines(name, np.empty((0, 2, 3)), np.empty((0, 2, 3), np.uint8), thickness)
+            return
+        trace = self.in_scene(self._frame.places[:, [place for place, _ in found]])
+        steps = np.stack([trace[:-1], trace[1:]], axis=2)
+        colours = np.array([colour for _, colour in found])
+        colours = np.broadcast_to(colours[None, :, None], steps.shape).reshape(-1, 2, 3)
+        self._draw_lines(name, steps.reshape(-1, 2, 3), self._shade(colours), thickness)
+        if name in self._lines:
+            self._path_colours[name] = colours
+
+    def _draw_axes(self) -> None:
+        if not self._axes_on or self._plan is None or self._places is None:
+            return
+        start, end = np.moveaxis(self.in_scene(self._plan.known(self._places)[self._plan.axes]), 1, 0)
+        way = end - start
+        length = np.linalg.norm(way, axis=1, keepdims=True)
+        beyond = self._size * OVERHANG * self.scale * way / np.where(length > 0, length, 1.0)
+        start, way = start - beyond, way + 2 * beyond
+        dashes = start[:, None, None] + DASHES[..., None] * way[:, None, None]
+        self._draw_lines("axes", dashes.reshape(-1, 2, 3), AXIS_COLOUR, AXIS_LINE)
+
+    def _draw_lines(self, name: str, steps: Floats, colours: Colours, thickness: float) -> None:
+        """Draws segments (n, 2, 3); those with NaN are drawn as nothing, at the place of another."""
+        handle = self._lines.get(name)
+        known = np.isfinite(steps.sum(axis=(1, 2)))
+        if not known.any():
+            if handle is not None:
+                self._lines.pop(name).remove()
+            return
+        if not known.all():
+            steps = np.where(known[:, None, None], steps, steps[known][0, 0])
+        if handle is not None and len(handle.points) == len(steps):
+            handle.points, handle.colors = steps.astype(np.float32), colours
+            return
+        on = self._axes_on if name == "axes" else self._paths_on
+        self._lines[name] = self._scene.add_line_segments(
+            f"/{name}", steps, colours, thickness=thickness, thickness_units="screen", visible=on
+        )
+
+    def _draw_names(self) -> None:
+        if self._plan is None or self._places is None:
+            return
+        named = self._plan.labels if self._labels_on else ()
+        places = self._places[[place for _, place in named]]
+        self._names.put([text for text, _ in named], self.in_scene(places) + ABOVE)

@@ -1,0 +1,229 @@
+"""The state behind one tab: the description and its history, what is on view, whether that is still true."""
+
+from __future__ import annotations
+
+import math
+import time
+
+import numpy as np
+
+from sevenbar.description.draft import Draft, Place
+from sevenbar.errors import RequestError, SevenbarError
+from sevenbar.kinematics.motion import Motion
+from sevenbar.reporting.summary import meaning
+from sevenbar.studio.state.view import View, modes_at, nearest
+
+#: Inputs in a full turn.
+SAMPLES = 360
+#: Steps that can be undone.
+MOST_STEPS = 500
+#: Changes of one dimension that follow each other within this time [s] are one step.
+ONE_DRAG = 1.0
+
+
+class Session:
+    """A description that is shaped, and the last motion it gave.
+
+    `draft` is always a valid description. `problem` says why it has no motion, and is empty where it has one;
+    `view` then shows the last one that moved, and is `None` only where there never was one. `row` is the
+    place on the view's path.
+    """
+
+    def __init__(self, text: str, source: str) -> None:
+        """Raises `DescriptionError` for a text that describes no linkage."""
+        self.view: View | None = None
+        self.row, self.forwards = 0.0, True
+        self.past: list[Draft] = []
+        self.future: list[Draft] = []
+        self._last_change: tuple[Place, float] = ((), -math.inf)
+        self.draft = Draft.of(text, source)
+        self._take(self.draft)
+
+    def open(self, text: str, source: str) -> None:
+        """Shows a TOML text as one more step; raises `DescriptionError`, and then nothing has changed."""
+        draft = Draft.of(text, source)
+        self.view, self.forwards = None, True
+        self._step(draft)
+
+    def _take(self, draft: Draft) -> None:
+        """Shows the motion of a draft; where there is none, says why and keeps what is on view."""
+        if draft.text is not self.draft.text:
+            # another file; the one before would be no picture of it
+            self.view, self.forwards = None, True
+        self.draft = draft
+        self.motion: Motion | None = None
+        try:
+            motion = draft.linkage.motion(SAMPLES)
+        except SevenbarError as error:
+            self.problem = str(error)
+            return
+        self.motion = motion
+        self.problem = ""
+        if not motion.circuits:
+            self.problem = f"{motion.motion_type}: {meaning(motion) or 'it closes along no circuit'}"
+        elif any(np.isnan(circuit.input).any() for circuit in motion):
+            self.problem = "its dimensions differ so much in size that its motion is lost in rounding"
+        elif self.view is None:
+            self.view, self.row = View(motion, motion.circuits[0]), 0.0
+        else:
+            self.view, self.row = nearest(motion, self.view, self.row)
+
+    def change(self, place: Place, value: object) -> None:
+        """Gives a number of the description another value.
+
+        Raises `DescriptionError` for a value that is refused, and then nothing has changed.
+        """
+        draft = self.draft.with_value(place, value)
+        now = time.monotonic()
+        goes_on = self._last_change[0] == place and now - self._last_change[1] < ONE_DRAG
+        self._step(draft, remember=not goes_on)
+        self._last_change = (place, now)
+
+    def drive(self, input: str, output: str) -> None:
+        """Drives the joint `input` and tells of `output`; where both are one, the two change places.
+
+        Raises `SevenbarError` where that cannot be.
+        """
+        linkage = self.draft.linkage
+        ends = (input, output) if input != output else (linkage.drive.output, linkage.drive.joint)
+        first = linkage.column(ends[0], "input")
+        draft = self.draft.with_value(("drive", "joint"), ends[0]).with_value(("drive", "output"), ends[1])
+        was = linkage.column_kinds[linkage.columns.index(linkage.drive.joint)]
+        if "speed" in draft.raw["drive"] and linkage.column_kinds[first] != was:
+            unit = "rad" if linkage.column_kinds[first] == "turn" else linkage.length_unit
+            draft = draft.with_value(("drive", "speed"), f"1 {unit}/s")
+        self._step(draft)
+
+    def add_point(self, name: str, link: int, at: tuple[float, float, float]) -> None:
+        """Adds a named point; raises `SevenbarError` for one that cannot be."""
+        if any(point.name == name.strip() for point in self.draft.linkage.points):
+            raise RequestError(f"point: there is a point {name!r} already; give another name")
+        draft = self.draft.with_point(name, link, at)
+        self._step(draft)
+
+    def remove_point(self, index: int) -> None:
+        """Takes away a point of the description, counted from 0."""
+        self._step(self.draft.without_point(index))
+
+    def _step(self, draft: Draft, *, remember: bool = True) -> None:
+        """Takes a draft as the next step; raises `DescriptionError` for one that describes no linkage."""
+        draft.linkage  # noqa: B018  looked at before anything is forgotten
+        if remember:
+            self.past = [*self.past, self.draft][-MOST_STEPS:]
+        self.future = []
+        self._last_change = ((), -math.inf)
+        self._take(draft)
+
+    def undo(self) -> None:
+        """Takes back the last step, if there is one."""
+        if self.past:
+            self.future.append(self.draft)
+            self._last_change = ((), -math.inf)
+            self._take(self.past.pop())
+
+    def redo(self) -> None:
+        """Takes the last step that was undone again, if there is one."""
+        if self.future:
+            self.past.append(self.draft)
+            self._last_change = ((), -math.inf)
+            self._take(self.future.pop())
+
+    def reset(self) -> None:
+        """Goes back to the description as its file has it, as one more step."""
+        opened = self.draft.as_opened()
+        if opened.raw != self.draft.raw:
+            self._step(opened)
+
+    def choose(self, circuit: int) -> None:
+        """Shows another circuit, at the same input where it gets there."""
+        if self.view is None or circuit == self.view.circuit.index:
+            return
+        motion = self.view.motion
+        met = [mode for mode in self.modes() if mode[0].circuit.index == circuit]
+        self.view, self.row = met[0] if met else (View(motion, motion.circuits[circuit]), 0.0)
+
+    def next_mode(self) -> None:
+        """Shows the next mode at the same input."""
+        if self.view is None:
+            return
+        modes = self.modes()
+        if modes:
+            self.view, self.row = modes[(self.mode(modes) + 1) % len(modes)]
+
+    def modes(self) -> list[tuple[View, float]]:
+        """All modes at the input on view: views and rows of their paths; the circuit on view by its own."""
+        if self.view is None:
+            return []
+        value = self.view.input_at(self.row)
+        return [
+            (self.view if view.circuit is self.view.circuit else view, row)
+            for view, row in modes_at(self.view.motion, value)
+        ]
+
+    def mode(self, modes: list[tuple[View, float]]) -> int:
+        """Which of the modes at the input on view is on view."""
+        own = [i for i, (view, _) in enumerate(modes) if view is self.view]
+        last = len(self.view.path.rows) - 1 if self.view else 1
+
+        def apart(index: int) -> float:
+            gap = abs(modes[index][1] - self.row)
+            return min(gap, last - gap) if modes[index][0].circuit.closed else gap
+
+        return min(own, key=apart, default=0)
+
+    def seek(self, row: float) -> None:
+        """Goes to a row of the path on view."""
+        if self.view is not None:
+            self.row = float(np.clip(row, 0, len(self.view.path.rows) - 1))
+
+    def seek_input(self, value: float) -> None:
+        """Goes to a value of the input [rad, or length], along the present pass if that gets there.
+
+        Raises `RequestError` where the circuit on view does not get there.
+        """
+        view = self.view
+        if view is None:
+            return
+        rows = view.rows_at(value)
+        if not rows:
+            slide = view.linkage.column_kinds[view.circuit.input_column] == "slide"
+            unit, size = (view.linkage.length_unit, 1.0) if slide else ("deg", math.degrees(1))
+            low, high = (end * size for end in view.circuit.input_range or (0.0, 0.0))
+            raise RequestError(
+                f"input: {value * size:.6g} {unit} is out of reach of circuit {view.circuit.index}; "
+                f"give {_within(low, high)} to {_within(high, low)} {unit}"
+            )
+        part = view.pass_of(self.row)
+        own = [row for row in rows if part.start <= row <= part.last]
+        self.row = min(own or rows, key=lambda row: abs(row - self.row))
+
+    def step(self, rows: int) -> None:
+        """Goes on, or back, by whole rows; a closed circuit runs over its end."""
+        if self.view is None:
+            return
+        last = len(self.view.path.rows) - 1
+        target = math.floor(self.row + 1e-9) + rows if rows > 0 else math.ceil(self.row - 1e-9) + rows
+        self.row = float(target % last if self.view.circuit.closed and last else min(max(target, 0), last))
+
+    def advance(self, seconds: float) -> None:
+        """Lets the mechanism run for some of its seconds; a motion that does not close turns at its ends."""
+        view = self.view
+        if view is None or not view.period > 0:
+            return
+        now = view.time_at(self.row)
+        if view.circuit.closed:
+            self.row = view.row_at(now + seconds)
+            return
+        target = now + (seconds if self.forwards else -seconds)
+        if not 0 <= target <= view.period:
+            self.forwards = not self.forwards
+        self.row = view.row_at(target)
+
+
+def _within(end: float, other: float) -> str:
+    """The end of a range as a person may type it: in six digits, and not beyond the end itself."""
+    text = f"{end:.6g}"
+    if (float(text) - end) * (other - end) < 0:
+        step = 10.0 ** (math.floor(math.log10(abs(end))) - 5)
+        text = f"{float(text) + math.copysign(step, other - end):.6g}"
+    return text

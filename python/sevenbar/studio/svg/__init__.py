@@ -1,0 +1,1 @@
+"""Curves of the studio as SVG."""

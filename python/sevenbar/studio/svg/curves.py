@@ -1,0 +1,295 @@
+"""The studio's curves: one quantity of a motion as a picture, and the cursor that is laid over it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Literal
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import CIRCUIT_COLOURS, input_label, shown_value, slides, told_range
+from sevenbar.drawing.plot import inputs_between, place_of
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.motion import Extremes, Motion, chosen_circuit
+from sevenbar.studio.svg.axis import Axis, axis
+from sevenbar.studio.svg.panel import Panel
+from sevenbar.studio.svg.picture import (
+    GROUND,
+    INK,
+    LABELLED,
+    MARGINS,
+    QUIET,
+    ZERO,
+    Frame,
+    breadth,
+    fitted,
+    grid,
+    head,
+    stroke,
+    words,
+)
+from sevenbar.studio.svg.quantities import Quantity, Walked
+
+#: What stands along the axis below.
+Over = Literal["input", "time"]
+
+#: A curve that varies less than this share of its natural size is drawn flat: what is left is rounding.
+FLAT = 1e-6
+
+#: Larger values [any unit] count as none, lest the scale overflow.
+LARGEST = 1e200
+
+#: Circuits in the background are drawn with about so many rows.
+FAINT_ROWS = 180
+
+#: The ends of a range.
+Span = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """The `values` of a circuit over what is `across`, along its walk, in the units shown, (n,)."""
+
+    walked: Walked
+    across: Floats
+    values: Floats
+
+    @property
+    def colour(self) -> str:
+        """The circuit's colour, as in all figures."""
+        return CIRCUIT_COLOURS[self.walked.circuit.index % len(CIRCUIT_COLOURS)]
+
+    @property
+    def passes(self) -> tuple[slice, ...]:
+        """The rows of each pass between input dead centres."""
+        return self.walked.path.passes
+
+    def told(self, kind: str) -> Span | None:
+        """The range worth showing, without endless rates at input dead centres; `None` without values."""
+        spans = (told_range(self.walked.circuit, self.values[part], kind) for part in self.passes)
+        return _union([span for span in spans if span is not None])
+
+    def lines(self, frame: Frame, x: Floats, y: Floats, most: int) -> str:
+        """The passes as SVG, in tenths of px from the plot area's corner, with at most about `most` rows."""
+        left, top, _, _ = frame.box
+        step = max(1, round(len(x) / most))
+        drawn = []
+        for part in self.passes:
+            rows = np.arange(part.start, part.stop)
+            if step > 1:
+                rows = np.append(rows[:-1:step], rows[-1:])
+            inputs = self.walked.path.input[part]
+            falls = len(self.passes) > 1 and inputs[-1] < inputs[0]
+            look = ' stroke-dasharray="50 30"' if falls else ""
+            drawn.append(f'<path d="{stroke(x[rows] - left, y[rows] - top)}"{look}/>')
+        return "".join(drawn)
+
+
+def panels(
+    motion: Motion,
+    picked: Sequence[Quantity],
+    circuit: int = 0,
+    *,
+    over: Over = "input",
+    width: int = 420,
+    height: int = 170,
+) -> tuple[Panel, ...]:
+    """A panel for each quantity: every circuit over the input, or over the time of the chosen one's cycle.
+
+    `circuit` is the index in `motion.circuits` of the one drawn strong; `width` and `height` [px] are those
+    of one picture. Without circuits, or values, a frame says so. Raises `RequestError` for a circuit that
+    does not exist.
+    """
+    if over not in ("input", "time"):
+        raise RequestError(f"over: {shown(over)} is not offered; give input or time")
+    labelled = over == "input" and motion.limits.size > 0
+    frame = Frame(width, height, LABELLED if labelled else MARGINS[1])
+    if not motion.circuits:
+        return tuple(_empty(frame, quantity, f"{motion.motion_type}: nothing to draw") for quantity in picked)
+    chosen_circuit(motion, circuit)
+    walked = [Walked.of(motion, each) for each in motion.circuits]
+    across = [each.input if over == "input" else each.path.time for each in walked]
+    reach = _reach(motion, across if over == "input" else [across[circuit]], over)
+    made = []
+    for quantity in picked:
+        curves = [
+            Curve(each, places, _bounded(quantity.values(each)))
+            for each, places in zip(walked, across, strict=True)
+        ]
+        told = curves[circuit].told(quantity.kind)
+        if told is None or reach is None:
+            made.append(_empty(frame, quantity, f"no value along circuit {circuit}"))
+        else:
+            made.append(_panel(frame, quantity, curves, circuit, reach, told, over))
+    return tuple(made)
+
+
+def _panel(
+    frame: Frame,
+    quantity: Quantity,
+    curves: Sequence[Curve],
+    circuit: int,
+    reach: Span,
+    told: Span,
+    over: Over,
+) -> Panel:
+    own = curves[circuit]
+    motion = own.walked.motion
+    left, top, right, bottom = frame.box
+    wide, tall = right - left, bottom - top
+    label = input_label(motion) if over == "input" else "time [s]"
+    name, _, unit = label.removesuffix("]").rpartition(" [")
+    below = axis(*reach, max(2, wide // 50), degrees=unit == "deg")
+    spans = [each.told(quantity.kind) for each in curves if each is not own]
+    everything = _union([told, *(span for span in spans if span is not None)]) or told
+    least = max(FLAT * quantity.natural(own.walked), 1e-9 * max(map(abs, told)))
+    low, high = _shown_range(quantity, told, everything, least)
+    beside = axis(low, high, max(2, tall // 18), degrees=quantity.unit == "deg")
+    places = [(frame.x(below, each.across), frame.y(beside, each.values)) for each in curves]
+    x, y = places[circuit]
+    faint = [
+        f'<g stroke="{_pale(each.colour)}">{each.lines(frame, *place, FAINT_ROWS)}</g>'
+        for each, place in zip(curves, places, strict=True)
+        if each is not own
+    ]
+    content = [
+        f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
+        head(frame, quantity.name, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
+        grid(frame, below, beside, name, unit),
+        _limits(own.walked, frame, below, unit) if over == "input" else "",
+        f'<svg x="{left}" y="{top}" width="{wide}" height="{tall}" viewBox="0 0 {wide}0 {tall}0" '
+        'fill="none" stroke-linejoin="round">',
+        f'<g stroke-width="12">{"".join(faint)}</g>',
+        f'<g stroke-width="20" stroke="{own.colour}">{own.lines(frame, x, y, len(x))}</g></svg>',
+        _marks(quantity, own, frame, below, beside) if told[1] - told[0] > least else "",
+    ]
+    svg = frame.svg("".join(content), name=f"{quantity.name}, circuit {circuit}")
+    return Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
+
+
+def _empty(frame: Frame, quantity: Quantity, reason: str) -> Panel:
+    left, top, right, bottom = frame.box
+    content = [
+        f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
+        f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" fill="#f4f5f7"/>',
+        head(frame, quantity.name, quantity.unit, [], INK),
+        words(
+            frame,
+            (left + right) / 2,
+            (top + bottom) / 2 + 4,
+            fitted(reason, frame.width - 4),
+            anchor="middle",
+            look=f'fill="{QUIET}"',
+        ),
+    ]
+    nothing = np.empty(0)
+    svg = frame.svg("".join(content), name=f"{quantity.name}: {reason}")
+    return Panel(frame, svg, nothing, nothing, nothing)
+
+
+def _bounded(values: Floats) -> Floats:
+    return np.where(np.abs(values) < LARGEST, values, np.nan)
+
+
+def _union(spans: Sequence[Span]) -> Span | None:
+    return (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None
+
+
+def _reach(motion: Motion, places: Sequence[Floats], over: Over) -> Span | None:
+    """The range of the axis below; `None` where there is no place on it."""
+    across = np.concatenate(places)
+    across = across[np.abs(across) < LARGEST]
+    if not across.size:
+        return None
+    low, high = float(across.min()), float(across.max())
+    if high - low <= 1e-9 * max(abs(low), abs(high), 1e-9):
+        return low - 0.5, high + 0.5
+    room = 0.02 * (high - low) if over == "input" and motion.limits.size else 0.0
+    return low - room, high + room
+
+
+def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) -> Span:
+    """The range of the axis at the left: of places all circuits, of rates the chosen one and some more."""
+    low, high = everything
+    span = own[1] - own[0]
+    if quantity.order and span > least:
+        # at least a third of the height is left to the chosen circuit
+        low, high = max(low, own[0] - span), min(high, own[1] + span)
+    if quantity.point is not None:
+        low = 0.0
+    if high - low <= least:
+        half = 0.1 * max(abs(low + high) / 2, least / FLAT) or 1.0
+        return (low + high) / 2 - half, (low + high) / 2 + half
+    room = 0.07 * (high - low)
+    return low - (0.2 * room if quantity.point is not None else room), high + room
+
+
+def _keys(quantity: Quantity, own: Curve) -> list[tuple[str, str]]:
+    """Short words, with their dashes, that tell the passes apart and that rates are cut."""
+    keys = [("axis cut", "")] if quantity.order and own.walked.circuit.turns_back else []
+    if len(own.passes) > 1 and own.walked.motion.law is None:
+        keys += [("rising", "20 0"), ("falling", "5 3")]
+    return keys
+
+
+def _limits(walked: Walked, frame: Frame, below: Axis, unit: str) -> str:
+    """Dashed lines with values at input limits, paler for other circuits; dotted ones at change points."""
+    motion = walked.motion
+    left, top, _, bottom = frame.box
+    own = shown_value(
+        motion, motion.input, np.array([d.input for d in walked.circuit.dead_centres if d.kind == "input"])
+    )
+    parts: list[str] = []
+    free = 0.0
+    sorts = ((motion.limits, "4 3", "input limit"), (motion.change_point_inputs, "1 3", "change point"))
+    for inputs, dashes, name in sorts:
+        values = np.sort(inputs_between(motion, inputs, below.low, below.high))
+        for value, x in zip(values.tolist(), frame.x(below, values).tolist(), strict=True):
+            told = below.reading(value, unit)
+            colour = QUIET if (np.abs(own - value) < 1e-6 * (1 + abs(value))).any() else ZERO
+            parts.append(
+                f'<path d="M{x:.1f} {top}V{bottom}" stroke="{colour}" stroke-dasharray="{dashes}">'
+                f"<title>{escape(f'{name} {told}')}</title></path>"
+            )
+            # a number without room beside its neighbour is left to the tooltip
+            wide = breadth(told)
+            start = max(x - wide / 2, left)
+            if name == "input limit" and start >= free:
+                parts.append(words(frame, start, top - 3, told, look=f'fill="{QUIET}"'))
+                free = start + wide + 4
+    return "".join(parts)
+
+
+def _pale(colour: str) -> str:
+    """A colour (#rrggbb) as it stands behind, opaque, so that lines that meet do not mix."""
+    return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
+
+
+def _marks(quantity: Quantity, own: Curve, frame: Frame, below: Axis, beside: Axis) -> str:
+    """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
+    motion, circuit = own.walked.motion, own.walked.circuit
+    extremes: Extremes | None = getattr(circuit, quantity.kind)
+    if quantity.column != circuit.output_column or extremes is None:
+        return ""
+    period = math.inf if slides(motion, motion.input) else 360.0
+    inputs = own.walked.input
+    lines = [(inputs[part], own.across[part], own.values[part]) for part in own.passes]
+    parts: list[str] = []
+    for word, value, at in (
+        ("lowest", extremes.lowest, extremes.lowest_at),
+        ("highest", extremes.highest, extremes.highest_at),
+    ):
+        if quantity.order == 0:
+            value = shown_value(motion, motion.output, value) + quantity.shift(own.walked)
+        across = place_of(lines, value, shown_value(motion, motion.input, at), period)
+        x, y = float(frame.x(below, np.array(across))), float(frame.y(beside, np.array(value)))
+        _, top, _, bottom = frame.box
+        if math.isfinite(x) and top <= y <= bottom:
+            told = escape(f"{word} {beside.reading(value, quantity.unit)}")
+            look = f'fill="{GROUND}" stroke="{own.colour}" stroke-width="1.5"'
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.2" {look}><title>{told}</title></circle>')
+    return "".join(parts)

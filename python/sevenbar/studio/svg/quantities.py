@@ -1,0 +1,147 @@
+"""What the studio's curves can show of a motion: the output, every joint, the points' speeds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import shown_value, slides
+from sevenbar.drawing.skeleton import Walk, along, walk
+from sevenbar.kinematics.motion import Circuit, Motion, Trace
+
+#: What a column has, by the order of its derivative, as the figures call them.
+ORDERS = ("angle", "velocity", "acceleration")
+
+#: The same of a point, whose place has no single number.
+SIZES = {1: "speed", 2: "acceleration"}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One thing that a curve shows, by the `order` of its derivative: of a column or of a named point.
+
+    `key` stays the same from one motion of a linkage to the next; `name` and `unit` are what people read;
+    one of `column` and `point` is set, their places in the linkage's `columns` and `points`.
+    """
+
+    key: str
+    name: str
+    unit: str
+    order: int
+    column: int | None = None
+    point: int | None = None
+
+    @property
+    def kind(self) -> str:
+        """The word of its order: "angle" (or place), "velocity", "acceleration"."""
+        return ORDERS[self.order]
+
+    def values(self, walked: Walked) -> Floats:
+        """The values along the walk of a circuit, in `unit`, (n,); NaN where a row has none.
+
+        Angles start within (-180, 180] and run on; where a rocking input goes back, velocities turn their
+        sign. Of a point's velocity and acceleration the size is given.
+        """
+        motion, circuit, path = walked.motion, walked.circuit, walked.path
+        if self.column is None:
+            trace = walked.trace(self.point or 0)
+            vectors = trace.velocity if self.order == 1 else trace.acceleration
+            sizes: Floats = np.linalg.norm(vectors, axis=1)[path.rows]
+            return sizes
+        if self.order == 0:
+            values: Floats = shown_value(
+                motion, motion.linkage.columns[self.column], along(motion, circuit, path, self.column)
+            )
+            return values + self.shift(walked)
+        rates: Floats = (circuit.dq if self.order == 1 else circuit.ddq)[path.rows, self.column]
+        if self.order == 1:
+            for way, part in zip(path.ways, path.passes, strict=True):
+                if way < 0:
+                    rates[part] *= way
+        return rates
+
+    def shift(self, walked: Walked) -> float:
+        """The whole turns [deg] that bring the angle's first value into (-180, 180]; 0 for all else."""
+        if self.column is None or self.order or walked.motion.linkage.column_kinds[self.column] == "slide":
+            return 0.0
+        angles = np.degrees(walked.circuit.q[:, self.column])
+        known = angles[np.isfinite(angles)]
+        # a start at half a turn but for rounding stays at +180
+        return -360.0 * math.ceil((float(known[0]) - 180.0 - 1e-6) / 360.0) if known.size else 0.0
+
+    def natural(self, walked: Walked) -> float:
+        """The size of a value that a designer would call neither small nor large, in `unit`."""
+        motion, size = walked.motion, walked.circuit.size
+        turn = self.column is not None and motion.linkage.column_kinds[self.column] == "turn"
+        if self.order == 0:
+            return 90.0 if turn else size
+        rate = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max())
+        if slides(motion, motion.input):
+            rate /= size
+        natural = (1.0 if turn else size) * rate * (rate if self.order == 2 else 1.0)
+        return natural if math.isfinite(natural) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Walked:
+    """A circuit with its walk; the traces of its points are made once, for all their quantities."""
+
+    motion: Motion
+    circuit: Circuit
+    path: Walk
+    _traces: dict[int, Trace] = field(default_factory=dict)
+
+    @staticmethod
+    def of(motion: Motion, circuit: Circuit) -> Walked:
+        """A circuit of the motion, walked."""
+        return Walked(motion, circuit, walk(motion, circuit))
+
+    @property
+    def input(self) -> Floats:
+        """The input along the walk [deg, or length], (n,)."""
+        values: Floats = shown_value(self.motion, self.motion.input, self.path.input)
+        return values
+
+    def trace(self, point: int) -> Trace:
+        """The trace of a named point, by its place in the linkage's points."""
+        if point not in self._traces:
+            named = self.motion.linkage.points[point]
+            self._traces[point] = self.circuit.point(named.link, named.at)
+        return self._traces[point]
+
+
+def quantities(motion: Motion) -> tuple[Quantity, ...]:
+    """All that can be drawn, in the order of a menu: output, every column but the input, named points."""
+    linkage = motion.linkage
+    found: list[Quantity] = []
+    names: set[str] = set()
+
+    def add(
+        key: str, name: str, unit: str, order: int, *, column: int | None = None, point: int | None = None
+    ) -> None:
+        # names come from files: a joint may be called "output"
+        while name in names:
+            name += " (joint)" if point is None else " (point)"
+        names.add(name)
+        found.append(Quantity(key, name, unit, order, column, point))
+
+    def add_column(key: str, name: str, column: int) -> None:
+        slide = linkage.column_kinds[column] == "slide"
+        length = linkage.length_unit
+        units = (length, f"{length}/s", f"{length}/s²") if slide else ("deg", "rad/s", "rad/s²")
+        for order, (word, unit) in enumerate(zip(ORDERS, units, strict=True)):
+            shown = "position" if slide and order == 0 else word
+            add(f"{key}.{word}", f"{name} {shown}", unit, order, column=column)
+
+    add_column("output", "output", linkage.columns.index(motion.output))
+    for column, name in enumerate(linkage.columns):
+        if name != motion.input:
+            add_column(f"column.{name}", name, column)
+    for place, point in enumerate(linkage.points):
+        for order, word in SIZES.items():
+            unit = linkage.length_unit + ("/s" if order == 1 else "/s²")
+            add(f"point.{point.name}.{word}", f"{point.name} {word}", unit, order, point=place)
+    return tuple(found)

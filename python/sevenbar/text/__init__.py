@@ -1,0 +1,1 @@
+"""What people write: numbers with units, ranges, tables of text."""

@@ -1,0 +1,79 @@
+"""NAME=VALUE, ranges and grids as people write them: one grammar for every option.
+
+A range is LOW:HIGH or LOW..HIGH, a grid LOW:HIGH:COUNT. A unit at the end of a range is that of both ends;
+in a list each value has its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.text.units import split_quantity
+
+
+def split_name(text: str) -> tuple[str, str] | None:
+    """Name and value of NAME=VALUE; `None` where one is missing.
+
+    >>> split_name("L1 = 100:400")
+    ('L1', '100:400')
+    """
+    name, _, value = (part.strip() for part in text.partition("="))
+    return (name, value) if name and value else None
+
+
+def split_named(option: str, words: Iterable[str], what: str, hint: str) -> dict[str, str]:
+    """The values of words NAME=VALUE by their names.
+
+    Raises `RequestError` for a word that has another form, and so is not `what`, and for a name given twice.
+    """
+    found: dict[str, str] = {}
+    for word in words:
+        parts = split_name(word)
+        if parts is None:
+            raise RequestError(f"{option}: {shown(word)} is not {what}; {hint}")
+        name, value = parts
+        if name in found:
+            raise RequestError(f"{option}: {shown(name)} is given twice; leave one out")
+        found[name] = value
+    return found
+
+
+def split_range(text: str) -> tuple[str, str] | None:
+    """The two ends of LOW:HIGH or LOW..HIGH; `None` for a text of another form.
+
+    >>> split_range("10:40cm"), split_range("10mm..4cm")
+    (('10cm', '40cm'), ('10mm', '4cm'))
+    """
+    ends = _parts(text.replace("..", ":"))
+    return with_common_unit(ends[0], ends[1]) if len(ends) == 2 else None
+
+
+def split_grid(text: str) -> tuple[str, str, int] | None:
+    """The two ends of LOW:HIGH:COUNT, and the count; `None` for a text of another form.
+
+    >>> split_grid("20:30cm:51")
+    ('20cm', '30cm', 51)
+    """
+    parts = _parts(text)
+    if len(parts) != 3 or not parts[2].isdecimal():
+        return None
+    return *with_common_unit(parts[0], parts[1]), int(parts[2])
+
+
+def with_common_unit(low: str, high: str) -> tuple[str, str]:
+    """The two ends of a range, the unit of the high one added to a low one that has none.
+
+    >>> with_common_unit("0", "90 deg"), with_common_unit("5cm", "1m"), with_common_unit("1", "2")
+    (('0deg', '90 deg'), ('5cm', '1m'), ('1', '2'))
+    """
+    first, second = split_quantity(low), split_quantity(high)
+    if first and second and second[1] and not first[1]:
+        return f"{low}{second[1]}", high
+    return low, high
+
+
+def _parts(text: str) -> list[str]:
+    """The parts between colons; none where one is empty."""
+    parts = [part.strip() for part in text.split(":")]
+    return parts if all(parts) else []

@@ -1,0 +1,306 @@
+"""A text table of numbers as other programs write it: CSV, MATLAB's and ADAMS's; cells keep their lines.
+
+What is taken: cells parted by commas, semicolons, tabs or blanks; a decimal point, or a decimal comma where
+cells are not parted by commas; any lines of text before the first row of numbers, the last of which are the
+header and perhaps a line of units; lines that begin with # or % anywhere; no header at all, as MATLAB's
+`save -ascii` and `writematrix` leave it. Like ADAMS's own reader it takes a line that does not begin with a
+number, before the rows, for text. What the columns mean is for `law_file` and `measuring.measured` to tell.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.errors import TableError, shown
+from sevenbar.text.units import is_unit, measured_unit
+
+#: A table of a million rows has some 50 MB; a larger file [bytes] is a mistake of the name.
+LARGEST_FILE = 200_000_000
+
+#: A row of a table has some dozen cells; a longer line [characters] is something else.
+LONGEST_LINE = 100_000
+
+#: How many lines a message names.
+MOST_NAMED = 3
+
+#: What programs write where there is no number.
+NO_NUMBER = frozenset(
+    {"", "-", "nan", "+nan", "-nan", "na", "n/a", "#n/a", "null", "none", "inf", "-inf", "+inf"}
+)
+
+#: A line of these alone is an empty one, as spreadsheets leave them; \x1a ends files of DOS.
+NOTHING = " \t\r\f\x1a,;"
+
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+_COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
+_NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
+
+
+@dataclass(frozen=True)
+class Table:
+    """Text cells: `names` and `units` of the columns ("" where not given), rows with their lines."""
+
+    source: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    #: Line of the header, counted from 1; 0 where there is none.
+    header_line: int
+    lines: tuple[int, ...]
+    rows: tuple[tuple[str, ...], ...]
+    decimal_comma: bool
+
+    @property
+    def labels(self) -> list[str]:
+        """The columns as they are quoted in messages."""
+        return [shown(name) if name else str(i) for i, name in enumerate(self.names, 1)]
+
+    @property
+    def header(self) -> str:
+        """The columns as a message lists them."""
+        return f"the columns are {', '.join(self.labels)}" if any(self.names) else "the file has no header"
+
+    def wrong(self, message: str, *, row: int | None = None, column: int | None = None) -> TableError:
+        """The error of a mistake in this table: at the line of a row, in a column, or as a whole."""
+        line = [] if row is None else [f"line {self.lines[row]}"]
+        label = [] if column is None else [f"column {self.labels[column]}"]
+        return TableError(": ".join([self.source, *filter(None, [", ".join(line + label)]), message]))
+
+    def name_and_unit(self, column: int) -> tuple[str, str]:
+        """Name and unit of a column; header and line of units must agree, else `TableError`."""
+        name, unit = name_and_unit(self.names[column])
+        below = self.units[column]
+        if unit and below and measured_unit(unit) != measured_unit(below):
+            raise self.wrong(
+                f"mixed units: column {self.labels[column]} has {shown(unit)} in its name and {shown(below)} "
+                "in the line of units; keep the right one"
+            )
+        return name, unit or below
+
+    def numbers(self, column: int) -> npt.NDArray[np.float64]:
+        """The numbers of a column (rows,); NaN where it holds none. Raises `TableError` for other text."""
+        return np.array([self._number(row, column) for row in range(len(self.rows))])
+
+    def _number(self, row: int, column: int) -> float:
+        cell = self.rows[row][column]
+        value = number(cell, decimal_comma=self.decimal_comma)
+        if value is not None:
+            return value
+        match = _NUMBER.match(cell)
+        if match is not None and is_unit(cell[match.end() :]):
+            what = "carries a unit of its own; write plain numbers, all in the one unit that the header names"
+        else:
+            what = "is not a number; mend the cell or leave the row out"
+        raise self.wrong(f"{shown(cell)} {what}", row=row, column=column)
+
+    def refuse_gaps(self, numbers: Mapping[int, npt.NDArray[np.float64]], remedy: str) -> None:
+        """`TableError` where a row has no finite number in one of these columns, (rows,) each."""
+        good = np.all([np.isfinite(values) for values in numbers.values()], axis=0)
+        bad = np.flatnonzero(~good)
+        if not bad.size:
+            return
+        first = int(bad[0])
+        column = next(column for column, values in numbers.items() if not np.isfinite(values[first]))
+        named = ", ".join(str(self.lines[row]) for row in bad[:MOST_NAMED])
+        more = f" and {bad.size - MOST_NAMED} more" if bad.size > MOST_NAMED else ""
+        cell, them = shown(self.rows[first][column]), "it" if bad.size == 1 else "them"
+        raise self.wrong(
+            f"line{'s' * (bad.size > 1)} {named}{more}: no number in column {self.labels[column]} ({cell}); "
+            f"mend {them}, or {remedy}"
+        )
+
+    def refuse_falling(self, times: npt.NDArray[np.float64], rows: npt.NDArray[np.intp]) -> None:
+        """`TableError` where the times (n,) of these rows (n,) do not rise."""
+        back = np.flatnonzero(np.diff(times) <= 0)
+        if not back.size:
+            return
+        i = int(back[0])
+        before, after = times[i : i + 2]
+        again = "again, as" if after == before else f"after {before:g}"
+        more = f" (and so {back.size - 1} more times)" if back.size > 1 else ""
+        raise self.wrong(
+            f"time {after:g} {again} in line {self.lines[rows[i]]}{more}; times must rise: sort the rows, "
+            "and keep one run only",
+            row=int(rows[i + 1]),
+        )
+
+
+def name_and_unit(text: str) -> tuple[str, str]:
+    """Name and unit of a header: `theta [deg]`, `theta (deg)`, `rocker_rad_s2`, `time_s`, `angle, deg`.
+
+    >>> name_and_unit("rocker_rad_s2")
+    ('rocker', 'rad/s2')
+    """
+    bracket = re.fullmatch(r"(.*?)\s*[\[(]([^\])]*)[\])]\s*", text)
+    if bracket is not None:
+        return bracket[1].strip(), bracket[2].strip()
+    comma = re.fullmatch(r"(.+?)\s*[,/]\s*(\S+)", text)
+    if comma is not None and is_unit(comma[2]):
+        return comma[1].strip(), comma[2]
+    words = text.split("_")
+    for start in range(1, len(words)):
+        unit = "/".join(words[start:])
+        if is_unit(unit):
+            return "_".join(words[:start]).strip(), unit
+    return text.strip(), ""
+
+
+def number(cell: str, *, decimal_comma: bool = False) -> float | None:
+    """The number that a cell holds, NaN for one of the words for none, `None` for other text."""
+    if cell.lower() in NO_NUMBER:
+        return float("nan")
+    text = cell.replace(",", ".") if decimal_comma else cell
+    if _NUMBER.fullmatch(text) is None:
+        return None
+    return float(text.replace("d", "e").replace("D", "e"))
+
+
+def read_text(path: Path, of: str) -> str:
+    """The text of a file in UTF-8, UTF-16 with its mark, or Windows-1252: a table `of` what messages say."""
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except FileNotFoundError:
+        raise TableError(f"{path}: no such file; give the path of a table of {of}") from None
+    except IsADirectoryError:
+        raise TableError(f"{path}: is a folder; give the path of a table in it") from None
+    except (OSError, ValueError) as error:
+        reason = (getattr(error, "strerror", None) or str(error)).lower()
+        raise TableError(f"{path}: cannot be read: {reason}; give the path of a table") from None
+    if len(content) > LARGEST_FILE:
+        raise TableError(
+            f"{path}: larger than {LARGEST_FILE} bytes; give a table of fewer rows, a thousand are plenty"
+        )
+    if not content.strip():
+        raise TableError(f"{path}: is empty; give a table with a header and rows of numbers")
+    wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
+    for encoding in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
+        try:
+            text = content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        bad = next((c for c in text if c < " " and c not in "\t\n\r\f\x1a"), None)
+        if bad is None:
+            return text
+        break
+    raise TableError(
+        f"{path}: not a table of text (it holds bytes that no text has); export it as CSV or text"
+    )
+
+
+def read_table(path: Path, of: str) -> Table:
+    """The table of a file, `of` what messages say; `TableError` with the line where it is none."""
+    source = str(path)
+    lines = read_text(path, of).splitlines()
+    for i, line in enumerate(lines, 1):
+        if len(line) > LONGEST_LINE:
+            raise TableError(
+                f"{source}: line {i} has {len(line)} characters, so it is no row of a table; export it as CSV"
+            )
+    first = next((i for i, line in enumerate(lines) if _begins_with_number(line) or _has_gap(line)), None)
+    if first is None:
+        what = "has text but no row of numbers" if any(line.strip() for line in lines) else "is empty"
+        raise TableError(f"{source}: {what}; give a table with a header and rows of numbers")
+    delimiter = _delimiter(lines[first])
+    width = len(_cells(lines[first], delimiter))
+    names, units, header_line = _header(lines[:first], delimiter, width)
+    rows, numbers = [], []
+    for i, line in enumerate(lines[first:], first + 1):
+        if not line.strip(NOTHING) or _is_remark(line):
+            continue
+        cells = _cells(line, delimiter)
+        if len(cells) != width:
+            if len(cells) == 1 and not _begins_with_number(line):
+                what = f"{shown(line.strip())} is no row of numbers"
+            else:
+                what = f"{len(cells)} cell{'s' * (len(cells) != 1)} where line {first + 1} has {width}"
+            raise TableError(
+                f"{source}: line {i}: {what}; the file is cut or damaged there, or holds a second table: "
+                "mend it"
+            )
+        rows.append(tuple(cells))
+        numbers.append(i)
+    decimal_comma = delimiter != "," and _decimal_comma(rows)
+    return Table(source, names, units, header_line, tuple(numbers), tuple(rows), decimal_comma)
+
+
+def _is_remark(line: str) -> bool:
+    return line.lstrip().startswith(("#", "%"))
+
+
+def _begins_with_number(line: str) -> bool:
+    cells = re.split(r"[\t;, ]+", line.strip().strip('"'), maxsplit=1)
+    return bool(cells[0]) and (
+        _NUMBER.fullmatch(cells[0].strip('"')) is not None or cells[0].lower() == "nan"
+    )
+
+
+def _has_gap(line: str) -> bool:
+    """Whether a line is a row whose first cells hold no number: no other text, and a number somewhere."""
+    words = [cell.strip(' "') for cell in re.split(r"[\t;,]", line)]
+    numbers = [word for word in words if _NUMBER.fullmatch(word)]
+    return bool(numbers) and all(word in numbers or word.lower() in NO_NUMBER for word in words)
+
+
+def _delimiter(line: str) -> str:
+    """What parts the cells of a row of numbers; "" for blanks."""
+    for delimiter in ("\t", ";"):
+        if delimiter in line:
+            return delimiter
+    blank = line.split()
+    if len(blank) > 1 and all(_COMMA_NUMBER.fullmatch(cell) for cell in blank):
+        return ""
+    return "," if "," in line else ""
+
+
+def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
+    """Whether decimals have commas, by the first row that has decimals: 0;0 may stand before 0,1;0,5."""
+    for row in rows:
+        point = any("." in cell and _NUMBER.fullmatch(cell) for cell in row)
+        comma = any(_COMMA_NUMBER.fullmatch(cell) for cell in row)
+        if point or comma:
+            return comma and not point
+    return False
+
+
+def _cells(line: str, delimiter: str) -> list[str]:
+    if not delimiter:
+        return line.split()
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True))]
+
+
+def _header(
+    before: Sequence[str], delimiter: str, width: int
+) -> tuple[tuple[str, ...], tuple[str, ...], int]:
+    """Names and units of the columns, and the line of the names, from the text before the rows."""
+    none = ("",) * width
+    units = none
+    # a remark may be the header, as of MATLAB's tables, where no plain line is
+    for i in sorted(range(len(before), 0, -1), key=lambda i: _is_remark(before[i - 1])):
+        line = before[i - 1].strip().lstrip("#%").strip()
+        cells = _header_cells(line, delimiter, width)
+        if cells is None:
+            continue
+        bare = [cell.strip("[]() ") for cell in cells]
+        if units == none and all(is_unit(cell) or cell in ("", "-") for cell in bare) and any(bare):
+            units = tuple("" if cell == "-" else cell for cell in bare)
+            continue
+        return tuple(cells), units, i
+    return none, units, 0
+
+
+def _header_cells(line: str, delimiter: str, width: int) -> list[str] | None:
+    if not line:
+        return None
+    ways = [[cell.strip('" ') for cell in _NAME_AND_UNIT.findall(line)], re.split(r"\s{2,}|\t", line)]
+    if delimiter:
+        cells = _cells(line, delimiter)
+        # some programs end each row with a delimiter, but not the header
+        ways = [cells, [*cells, ""], *ways]
+    return next((cells for cells in ways if len(cells) == width), None)
