@@ -144,20 +144,6 @@ def test_a_linkage_that_cannot_be_simulated_says_why():
         NotCoveredError, match="turn of link 4 about the common axis of first and second: an idle"
     ):
         simulate(sb.from_axes(joints), "mujoco", input="first", output="crank")
-    with pytest.raises(
-        NotCoveredError, match="link 1 spins idly between theta_1 and theta_2 and no axis stands"
-    ):
-        simulate(
-            sb.from_axes(
-                [
-                    {"kind": "S", "at": (250, 0, 700)},
-                    {"kind": "S", "at": (700, 550, 0)},
-                    {"kind": "R", "at": (700, 0, 0), "axis": (1, 0, 0)},
-                    {"kind": "R", "at": (0, 0, 700), "axis": (0, 0, 1)},
-                ]
-            ),
-            "mujoco",
-        )
     with pytest.raises(RequestError, match=r"short does not move \(cannot-assemble\), so no engine"):
         simulate(sb.rssr(M=700, N=700, L1=250, L3=550, L2=2, name="short"), "mujoco")
 

@@ -115,6 +115,12 @@ impl Loop {
             .collect()
     }
 
+    /// Joints at which the idle spin of the link after them is held, counted from 0, and the axis that does it, in the frame before.
+    #[getter]
+    fn spin_axes(&self) -> Vec<(usize, [f64; 3])> {
+        self.0.spin_axes()
+    }
+
     /// Joint values (m, columns) and closure errors (m,) of every assembly mode at one value of a column, how complete they are, and
     /// by how much redundant constraints keep other poses open.
     fn assembly_modes<'py>(&self, py: Python<'py>, column: usize, value: f64) -> PyResult<Modes<'py>> {

@@ -97,14 +97,26 @@ class GeneralLoop:
             return None
         return self.idle()[-1]
 
-    def _idle(self) -> list[tuple[str, int, int, int]]:
-        """Each such freedom: the core's word, the link, and the joints held and beside it."""
+    def spin_axes(self) -> dict[str, Floats]:
+        """The axis (3,) that holds the idle spin beyond a ball, by the ball's name, in its frame before."""
+        owner = self._owners()
+        return {
+            self._linkage.joints[owner[joint]].name: np.array(axis) for joint, axis in self._core.spin_axes
+        }
+
+    def _owners(self) -> list[int]:
+        """The joint of the description that each of the core's joints belongs to."""
         owner = [0] * (max(self._link) + 1)
         for joint, last in enumerate(self._link):
             owner[last] = joint
         for inner in range(len(owner)):
             if inner not in self._link:
                 owner[inner] = owner[inner + 1]
+        return owner
+
+    def _idle(self) -> list[tuple[str, int, int, int]]:
+        """Each such freedom: the core's word, the link, and the joints held and beside it."""
+        owner = self._owners()
         count = len(self._linkage.joints)
         found = []
         for word, held, other in self._core.idle:

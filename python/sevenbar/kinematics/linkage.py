@@ -160,6 +160,19 @@ class Linkage(Solvable):
         return self._general.idle()
 
     @property
+    def spin_axes(self) -> dict[str, Floats]:
+        """The axis (3,) that holds the idle spin beyond a ball, by the ball's name, in the frame before it.
+
+        A direction of the link beyond stays at right angles to it. It is the axis of the joint before the
+        ball, or, where the line of the two balls comes near that, one that the line keeps away from.
+
+        Source: docs/theory.md, idle spin.
+        """
+        if self.kind == "RSSR":
+            return {self.joints[1].name: self.links[0][2, :3]}
+        return self._general.spin_axes()
+
+    @property
     def idle_links(self) -> frozenset[int]:
         """Links, counted from 1, with a freedom of their own that moves no other link."""
         return self._general.idle_links()

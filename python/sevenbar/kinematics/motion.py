@@ -440,6 +440,11 @@ class Solvable(Loop):
         """Freedoms that move no other link."""
         raise NotImplementedError
 
+    @property
+    def spin_axes(self) -> dict[str, Floats]:
+        """The axis that holds the idle spin beyond a ball, by the ball's name."""
+        raise NotImplementedError
+
     def mobility(self) -> Mobility:
         """How freely the loop moves."""
         raise NotImplementedError

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -214,30 +215,24 @@ def _value(values: Floats, place: int | None) -> float:
 
 
 def _spin_rules(linkage: Solvable, bodies: list[Body], connections: list[Connection]) -> tuple[SpinRule, ...]:
-    """The rule of the idle spin of each link between two balls: its y stays across the axis before."""
+    """The rule of the idle spin of each link between two balls: its y stays across an axis before."""
+    axes = linkage.spin_axes
     rules = []
-    for first, joint in enumerate(connections[:-1]):
-        following = connections[first + 1]
-        if joint.kind != "S" or following.kind != "S":
+    for joint, following in pairwise(connections):
+        if joint.name not in axes or joint.kind != "S" or following.kind != "S":
             continue
-        if first == 0:
-            raise NotCoveredError(
-                f"simulate: link 1 spins idly between {joint.name} and {following.name} and no axis stands "
-                "before it; describe the loop from another joint on"
-            )
         body = bodies[joint.after]
         line = body.frame[:3, :3] @ following.frame_before[:3, 3]
-        axis_frame = connections[first - 1].frame_after
-        axis = bodies[joint.before].frame[:3, :3] @ axis_frame[:3, 2]
+        axis_before = joint.frame_before[:3, :3] @ axes[joint.name]
+        axis = axis_before if joint.before == GROUND else bodies[joint.before].frame[:3, :3] @ axis_before
         second = np.cross(axis, line)
         if np.linalg.norm(second) <= LEAST_SINE * np.linalg.norm(line):
             raise NotCoveredError(
                 f"simulate: at the start the line of {joint.name} and {following.name} is parallel to the "
-                f"axis of {connections[first - 1].name}, where the rule of the spin names no direction; "
-                "start at another input"
+                "axis before it, where the rule of the spin names no direction; start at another input"
             )
         second /= np.linalg.norm(second)
-        rules.append(SpinRule(joint.before, joint.after, axis_frame[:3, 2], body.frame[:3, :3].T @ second))
+        rules.append(SpinRule(joint.before, joint.after, axis_before, body.frame[:3, :3].T @ second))
     idle = linkage.idle
     if len(idle) > len(rules):
         raise NotCoveredError(

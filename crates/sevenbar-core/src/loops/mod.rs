@@ -31,6 +31,7 @@ mod polish;
 mod rates;
 mod reduce;
 mod rows;
+mod spin_axis;
 mod spun;
 mod starts;
 mod survey;
@@ -130,6 +131,17 @@ impl Loop {
     /// Freedoms that no joint elsewhere takes part in.
     pub fn idle(&self) -> &[Idle] {
         &self.reduced.idle
+    }
+
+    /// Balls that hold an idle spin: the joint, and the axis in the frame before it across which a direction of the link stays.
+    pub fn spin_axes(&self) -> Vec<(usize, [f64; 3])> {
+        let parts = self.reduced.parts.iter().enumerate();
+        parts
+            .filter_map(|(joint, part)| match part.source {
+                Source::Universal(_, frame) => Some((joint, frame.map(|row| row[2]))),
+                _ => None,
+            })
+            .collect()
     }
 
     /// Freedoms of the joints less the idle ones.

@@ -2,6 +2,7 @@
 
 use super::chain::{BALLS, COLUMNS, Chain, Half, Joint, Rotation, transposed};
 use super::idle::{Idle, idle_freedoms};
+use super::spin_axis::{Way, spin_axis};
 use super::spun::{Spun, away_from_line};
 use crate::rigid::{Pose, Vec3, add, cross, dot, most_perpendicular_axis, norm, scale, sub, unit};
 
@@ -173,13 +174,30 @@ impl Described<'_> {
         })
     }
 
-    /// The first axis of a ball that holds a spin: that of the joint before.
-    fn axis_before(&self, ball: usize, line: Vec3) -> Vec3 {
-        if ball > 0 && self.kinds[ball - 1] != Kind::Ball {
+    /// The first axis of a ball that holds a spin: that of the joint before, or one that the line keeps away from.
+    fn spin_axis(&self, ball: usize, line: Vec3) -> Vec3 {
+        let before = if ball > 0 && self.kinds[ball - 1] != Kind::Ball {
             self.around[ball - 1].turn_back([0.0, 0.0, 1.0])
         } else {
             most_perpendicular_axis(line)
-        }
+        };
+        let count = self.kinds.len();
+        let others = (1..count).map(|k| (ball + k) % count);
+        let ways = others
+            .filter(|&other| self.kinds[other] == Kind::Ball)
+            .filter_map(|other| {
+                let &[first, second] = &self.moving(other, ball)[..] else {
+                    return None;
+                };
+                let poses = [
+                    self.way(other, first),
+                    self.way(first, second),
+                    self.way(second, ball),
+                ];
+                Some(Way { kinds: [self.kinds[first], self.kinds[second]], poses })
+            });
+        ways.last()
+            .map_or(before, |way| spin_axis(before, &way, norm(line)))
     }
 
     /// The same before links that spin together: a direction that the line to the other ball keeps away from.
@@ -270,7 +288,7 @@ pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose])
             after_spun = true;
         }
         let source = if let Some(line) = line_of(i) {
-            let axis = described.axis_before(i, line);
+            let axis = described.spin_axis(i, line);
             let frame = spin_frame(axis, line);
             let first = built.push_universal(&frame);
             built

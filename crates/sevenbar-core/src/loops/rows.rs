@@ -1,15 +1,16 @@
 //! Rows of a circuit as the description's joints and links have them.
 
 use super::Loop;
-use super::chain::{BALLS, COLUMNS, Chain, Configuration, Joint, product, short_way, transposed};
+use super::chain::{BALLS, COLUMNS, Chain, Configuration, Joint, Rotation, product, short_way, transposed};
 use super::circuits::Row;
 use super::modes::ball_rotation;
 use super::rates::{ORDERS, Rates, point_rates, product_series};
-use super::reduce::{Carrier, Kind, Source, SpunLinks};
+use super::reduce::{Carrier, Kind, Source, SpunLinks, Z_TO_X};
 use super::spun::first_terms;
 use crate::outcome::RowStatus;
 use crate::rigid::{Pose, Vec3, Vec3Taylor, scale, turns_zyx};
 use crate::taylor::Taylor;
+use std::f64::consts::PI;
 
 /// Numbers that a row is kept as: joint values, balls, rates, and status, pass, residual and condition.
 pub const ROW_NUMBERS: usize = COLUMNS + 9 * BALLS + ORDERS * COLUMNS + 4;
@@ -142,6 +143,7 @@ impl Loop {
     /// The configuration with these joint values; the idle spin of links is left out.
     pub(super) fn configuration(&self, values: &[f64]) -> Configuration {
         let mut out = Configuration::ZERO;
+        let mut left_out = [Pose::STILL.rotation; BALLS];
         let Some(chain) = &self.reduced.chain else {
             return out;
         };
@@ -158,14 +160,20 @@ impl Loop {
                     out.values[chain.first[joint]] = values[first] * self.inward(first);
                 }
                 (Source::Universal(joint, frame), _) => {
-                    // Rz Rx in that frame
-                    let turn = product(&product(&transposed(&frame), &turns()), &frame);
-                    out.values[chain.first[joint]] = turn[1][0].atan2(turn[0][0]);
-                    out.values[chain.first[joint + 1]] = turn[2][1].atan2(turn[2][2]);
+                    let spun = configure_universal(chain, joint, &frame, &turns(), &mut out);
+                    // what is left out of the spin goes to the other ball, which is the next joint of the chain
+                    let next = (joint + 2) % chain.joints.len();
+                    let way = product(&product(&frame, &Z_TO_X), &chain.links[joint + 1].rotation);
+                    if let Joint::Ball(b) = chain.joints[next] {
+                        left_out[b] = product(&product(&transposed(&way), &spun), &way);
+                    }
                 }
                 // both below, for they need the joint between them
                 (Source::BeforeSpun(..) | Source::AfterSpun(_), _) => {}
             }
+        }
+        for (ball, spun) in out.balls.iter_mut().zip(&left_out) {
+            *ball = product(spun, ball);
         }
         if let Some(links) = &self.reduced.spun {
             self.configure_spun(links, values, &mut out);
@@ -393,4 +401,32 @@ fn write_turns(out: &mut [[f64; 4]], turns: Option<[Taylor<4>; 3]>) {
             None => [f64::NAN; 4],
         };
     }
+}
+
+/// The two turns of a ball whose link's spin is held, at which the line to the other ball lies as the ball's rotation takes it; and the
+/// spin that this leaves out.
+fn configure_universal(
+    chain: &Chain,
+    joint: usize,
+    frame: &Rotation,
+    turns: &Rotation,
+    out: &mut Configuration,
+) -> Rotation {
+    let middle = chain
+        .halves
+        .iter()
+        .find(|half| half.joint == joint + 1)
+        .map_or(0.0, |half| half.middle);
+    // the line's angle in the plane across the second axis, which the half turn that counts takes beyond a quarter
+    let line = PI - middle;
+    let to = Pose::turning(product(&product(&transposed(frame), turns), frame)).turn([
+        0.0,
+        line.cos(),
+        line.sin(),
+    ]);
+    out.values[chain.first[joint]] = to[0].atan2(-to[1]);
+    out.values[chain.first[joint + 1]] = short_way(to[2].atan2(-to[0].hypot(to[1])) - line);
+    let still = [[0.0; COLUMNS]; ORDERS];
+    let held = first_terms(&chain.universal_series(joint, frame, out, &still));
+    product(&transposed(&held), turns)
 }
