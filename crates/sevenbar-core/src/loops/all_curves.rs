@@ -1,9 +1,9 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
 use super::arcs::{Arcs, contains, narrow_places};
-use super::around::Circle;
 use super::chain::{COLUMNS, Chain, Configuration, Joint};
 use super::change_points::ChangePoint;
+use super::circle::Circle;
 use super::counting::{Count, Known, Uncounted};
 use super::curve::{Curve, End, Node, REACH, dot, length};
 use super::dense::singular_values;

@@ -7,11 +7,13 @@
 //!
 //! Source: docs/theory_many.md, (12) to (16), (20).
 
-use super::around::{Around, Circle, Place};
 use super::chain::Configuration;
+use super::circle::{Circle, InputClosure};
+use super::closure::{Slides, Solution, UNKNOWNS};
+use super::continuation::CAREFUL;
+use super::continuation::Place;
 use super::locating::{Branching, branch_points};
 use super::modes::{CIRCLE, REAL as REAL_SOLUTION, SAME_MODE, Unknown};
-use super::paths::{CAREFUL, Slides, Solution, UNKNOWNS};
 use super::phases::FACTORS;
 use super::starts::distinct;
 use super::survey::{Infinite, Survey};
@@ -145,7 +147,7 @@ struct Stand {
 
 struct Account<'a> {
     survey: &'a Survey<'a>,
-    closure: &'a Around<'a>,
+    closure: &'a InputClosure<'a>,
     known: Known,
     located: Vec<Branching>,
     open: Vec<Open>,

@@ -7,7 +7,7 @@
 //!
 //! Source: docs/theory.md, (6).
 
-use super::paths::{JOINTS, Parameters};
+use super::closure::{JOINTS, Parameters};
 use super::starts::{Frame, NO_TWIST};
 use crate::rigid::Pose;
 use num_complex::Complex64;

@@ -7,11 +7,12 @@
 //!
 //! Source: docs/theory_many.md, (12).
 
-use super::around::{Around, side_by_side};
 use super::chain::{Chain, Configuration};
+use super::circle::{InputClosure, side_by_side};
+use super::closure::Solution;
+use super::continuation::Homotopy;
 use super::curve::Curve;
 use super::modes::Unknown;
-use super::paths::Solution;
 use super::survey::Survey;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 use num_complex::Complex64;
@@ -21,7 +22,7 @@ const HALVINGS: usize = 50;
 
 /// The determinant of the passive screws at real solutions.
 struct Determinants<'a> {
-    closure: &'a Around<'a>,
+    closure: &'a InputClosure<'a>,
     at: &'a [(Solution, Complex64)],
     out: &'a mut Vec<f64>,
 }
@@ -31,7 +32,7 @@ impl LaneKernel for Determinants<'_> {
     fn run<V: Vector>(self) {
         for block in self.at.chunks(LANES) {
             let (x, input) = side_by_side::<V>(block);
-            let (.., determinant) = self.closure.linearise(&x, input).solve();
+            let (.., determinant) = self.closure.linearise::<V, true>(&x, input).solve();
             self.out.extend_from_slice(&determinant.re.store()[..block.len()]);
         }
     }

@@ -6,7 +6,7 @@
 //!
 //! Source: docs/theory_many.md, (17) and (18).
 
-use super::paths::{JOINTS, Parameters, Slides, UNKNOWNS};
+use super::closure::{JOINTS, Parameters, Slides, UNKNOWNS};
 use num_complex::Complex64;
 use std::ops::{Add, Mul};
 

@@ -5,8 +5,10 @@
 //! carried round loops in the space of the parameters, the solutions are exchanged until all have been seen. The numbers
 //! come from a fixed seed, so every machine has the same starts.
 
+use super::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
+use super::continuation::BRISK;
 use super::geometry::Pattern;
-use super::paths::{BRISK, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
+use super::straight::carried;
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::collections::HashMap;
@@ -100,7 +102,7 @@ impl Class {
         for _ in 0..TRIES {
             let parameters = random.parameters();
             let parameters = self.pattern.map_or(parameters, |p| p.imposed_on(parameters));
-            let ends = follow(
+            let ends = carried(
                 &self.slides,
                 &first.parameters,
                 &parameters,
@@ -125,7 +127,7 @@ impl Class {
         let mut idle = 0;
         for n in 0..STARTS {
             let start = self.start(n);
-            let ends = follow(&self.slides, &start.parameters, target, &start.solutions, BRISK);
+            let ends = carried(&self.slides, &start.parameters, target, &start.solutions, BRISK);
             let before = solutions.len();
             solutions = distinct(
                 &self.slides,
@@ -149,15 +151,15 @@ fn by_monodromy(slides: &Slides, random: &mut Random) -> Start {
         let mut known = vec![solution];
         for _ in 0..60 {
             let (a, b) = (random.parameters(), random.parameters());
-            let there = follow(slides, &parameters, &a, &known, BRISK);
-            let across = follow(
+            let there = carried(slides, &parameters, &a, &known, BRISK);
+            let across = carried(
                 slides,
                 &a,
                 &b,
                 &there.into_iter().flatten().collect::<Vec<_>>(),
                 BRISK,
             );
-            let back = follow(
+            let back = carried(
                 slides,
                 &b,
                 &parameters,

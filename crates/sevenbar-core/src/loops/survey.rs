@@ -4,9 +4,9 @@
 
 use super::afar::{Afar, afar};
 use super::chain::{Chain, Joint};
+use super::closure::{Solution, UNKNOWNS};
 use super::locating::still;
 use super::modes::{Algebraic, ModeFinder, Unknown};
-use super::paths::{Solution, UNKNOWNS};
 use super::phases::Watch;
 use super::starts::Random;
 use num_complex::Complex64;
