@@ -10,8 +10,8 @@ use super::chain::Chain;
 use super::closure::UNKNOWNS;
 use super::locating::{linearised, solve};
 use super::modes::{Algebraic, ModeFinder};
-use super::starts::Random;
-use super::survey::solutions_with;
+use super::other_input::solutions_with;
+use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
 

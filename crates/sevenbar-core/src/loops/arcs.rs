@@ -1,11 +1,12 @@
 //! Curves that pass change points: each arc between two of them once, and arcs that pass smoothly joined.
 
-use super::all_curves::lies_on;
-use super::chain::{COLUMNS, Chain, Columns, Configuration};
+use super::chain::{Chain, Configuration};
 use super::change_points::{AT_POINT, ChangePoint};
-use super::curve::{Curve, End, Node, length, measure};
+use super::curve::{Curve, End, Node, measure};
+use super::dense::{COLUMNS, Columns, length};
+use super::follow::{Start, Stop};
+use super::on_curve::lies_on;
 use super::turnings::begun_at;
-use super::walk::{Start, Stop};
 use std::f64::consts::TAU;
 
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.

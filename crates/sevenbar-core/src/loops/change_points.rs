@@ -8,12 +8,14 @@
 //!
 //! Source: docs/theory.md, (19) to (22).
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Twist, squared_up, twist_of};
-use super::curve::{Curve, Node, dot, length};
-use super::dense::{least_squares, singular_values};
+use super::chain::{Chain, Configuration};
+use super::curve::{Curve, Node};
+use super::dense::{COLUMNS, Columns, dot, least_squares, length, singular_values};
+use super::follow::{Start, Stop};
 use super::polish::{self, AGREE, CLOSED, NO_RANK, wrenches};
-use super::starts::Random;
-use super::walk::{Start, Stop};
+use super::rotations::squared_up;
+use super::screws::{Twist, twist_of};
+use crate::random::Random;
 
 /// Singular values below this part of the greatest, and this many times the one that is known to vanish near by, vanish there too.
 const NEARLY_ZERO: f64 = 1e-3;

@@ -1,18 +1,18 @@
 //! A followed curve as rows over an input: passes between dead centres, rows on a grid of inputs, extremes.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Placed, squared_up};
-use super::curve::{Curve, End, Node, bordered_inverse, combined, dot, length};
-use super::dense::Inverse;
-use super::many;
+use super::chain::{Chain, Configuration, Placed};
+use super::curve::{Curve, End, Node};
+use super::dense::{COLUMNS, Inverse, combined, dot, length};
 use super::polish::AGREE;
-use super::rates::{ORDERS, Rates};
+use super::rates::ORDERS;
+use super::rotations::squared_up;
+use super::row::{Row, Solved, UNIT};
+use super::row_lanes::{Near, rows_near};
+use super::screws::{bordered_inverse, input_row};
 use super::turnings::{begun_at, insert, turns_at};
+use crate::number::Number;
 use crate::outcome::RowStatus;
-use crate::vectors::Number;
 use std::f64::consts::TAU;
-
-/// The input at unit speed.
-pub(super) const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
 
 /// A row nearer than this part of a grid step to a dead centre is that dead centre's.
 const SAME_ROW: f64 = 1e-9;
@@ -30,24 +30,13 @@ const FARTHEST_CORRECTION: f64 = 0.3;
 /// The closure error [rad, or parts of the size] that a row may keep.
 const ROW_CLOSED: f64 = 1e-10;
 
-/// A row of a circuit.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub at: Configuration,
-    pub rates: Rates,
-    pub status: RowStatus,
-    pub pass: usize,
-    pub residual: f64,
-    pub condition: f64,
-}
-
 /// A place near a node of the curve: so far along its tangent.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rough {
+struct Rough {
     node: usize,
     along: f64,
     /// Radius about the place within which the curve is alone.
-    pub tube: f64,
+    tube: f64,
 }
 
 /// A stretch of the curve on which the input only rises or only falls.
@@ -68,15 +57,6 @@ pub(super) struct Passes<'a> {
     pub passes: Vec<Pass>,
     /// The dead centres at the passes' ends; the first and last are one where the circuit is closed.
     pub limits: Vec<Node>,
-}
-
-/// A row's numbers.
-#[derive(Clone, Copy)]
-pub(super) struct Solved<N> {
-    pub at: Configuration<N>,
-    pub rates: Rates<N>,
-    pub residual: N,
-    pub condition: N,
 }
 
 impl Chain {
@@ -141,13 +121,6 @@ impl Chain {
             condition: (square * inverse.square(7)).sqrt(),
         }
     }
-}
-
-/// The row of the Jacobian that names the input.
-pub(super) fn input_row<N: Number>(input: usize) -> Columns<N> {
-    let mut row = [N::splat(0.0); COLUMNS];
-    row[input] = N::splat(1.0);
-    row
 }
 
 impl<'a> Passes<'a> {
@@ -334,7 +307,7 @@ impl<'a> Passes<'a> {
     }
 
     /// The configuration that a rough place stands for.
-    pub fn start(&self, rough: &Rough) -> Configuration {
+    fn start(&self, rough: &Rough) -> Configuration {
         let node = &self.curve.nodes[rough.node];
         self.chain
             .moved(&node.at, &self.chain.predicted(node, rough.along))
@@ -449,7 +422,7 @@ impl<'a> Passes<'a> {
                 let row = (value >= low && value <= high)
                     .then(|| self.row(n, value, &[q[1], q[2], q[3]]))
                     .flatten();
-                let mut row = row.unwrap_or(missing(n));
+                let mut row = row.unwrap_or(Row::missing(n));
                 if row.status == RowStatus::Ok && !row.condition.is_finite() {
                     row.status = RowStatus::DeadCentre;
                 }
@@ -467,27 +440,19 @@ impl Passes<'_> {
         let value_at = |node: usize| self.curve.nodes[node].at.values[self.input];
         let rising = p.end > p.start;
         let mut segment = p.from;
-        let starts: Vec<(Rough, f64)> = values
+        let starts: Vec<Near> = values
             .map(|value| {
                 while segment + 1 < p.to && (value_at(segment + 1) <= value) == rising {
                     segment += 1;
                 }
-                (self.rough_in(segment, value), value)
+                let rough = self.rough_in(segment, value);
+                Near { at: self.start(&rough), value, tube: rough.tube }
             })
             .collect();
-        many::add_rows(self, pass, &starts, rows);
-    }
-}
-
-pub(super) fn missing(pass: usize) -> Row {
-    let mut at = Configuration::ZERO;
-    at.values = [f64::NAN; COLUMNS];
-    Row {
-        at,
-        rates: [[f64::NAN; COLUMNS]; ORDERS],
-        status: RowStatus::NoSolution,
-        pass,
-        residual: f64::NAN,
-        condition: f64::NAN,
+        let found = rows_near(self.chain, self.input, pass, &starts);
+        rows.extend(starts.iter().zip(found).map(|(near, row)| {
+            row.or_else(|| self.row(pass, near.value, &UNIT))
+                .unwrap_or(Row::missing(pass))
+        }));
     }
 }

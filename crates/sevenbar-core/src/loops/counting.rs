@@ -10,8 +10,7 @@
 use super::chain::Configuration;
 use super::circle::{Circle, InputClosure};
 use super::closure::{Slides, Solution, UNKNOWNS};
-use super::continuation::CAREFUL;
-use super::continuation::Place;
+use super::continuation::{CAREFUL, Place};
 use super::locating::{Branching, branch_points};
 use super::modes::{CIRCLE, REAL as REAL_SOLUTION, SAME_MODE, Unknown};
 use super::phases::FACTORS;
@@ -559,8 +558,8 @@ impl Account<'_> {
 mod tests {
     use super::super::chain::{Chain, Joint};
     use super::super::modes::{ModeFinder, random_pose};
-    use super::super::starts::Random;
     use super::*;
+    use crate::random::Random;
     use crate::rigid::Pose;
 
     /// What is counted between the places of the first circle.

@@ -18,12 +18,12 @@
 //!
 //! Source: docs/theory.md, (7) to (12).
 
-use super::chain::{
-    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Twist, cross, short_way, squared_up, twist_of,
-};
-use super::dense::{Factored, Inverse, ROWS};
+use super::chain::{Chain, Configuration, Joint};
+use super::dense::{COLUMNS, Columns, Inverse, combined, dot, length};
 use super::rates::Rates;
-use crate::vectors::Number;
+use super::rotations::{cross, short_way, squared_up};
+use super::screws::{Twist, bordered_inverse, correction, twist_of};
+use crate::number::Number;
 
 /// Longest step [rad, or parts of the size].
 const LONGEST: f64 = 0.25;
@@ -109,67 +109,6 @@ pub(super) enum End {
 pub(super) struct Curve {
     pub nodes: Vec<Node>,
     pub end: End,
-}
-
-#[inline(always)]
-pub(super) fn dot<N: Number>(a: &Columns<N>, b: &Columns<N>) -> N {
-    let mut sum = N::splat(0.0);
-    for k in 0..COLUMNS {
-        sum = sum.plus_product(a[k], b[k]);
-    }
-    sum
-}
-
-#[inline(always)]
-pub(super) fn combined(a: &Columns, x: f64, b: &Columns, y: f64) -> Columns {
-    std::array::from_fn(|k| a[k] * x + b[k] * y)
-}
-
-#[inline(always)]
-pub(super) fn length<N: Number>(a: &Columns<N>) -> N {
-    dot(a, a).sqrt()
-}
-
-/// The pseudo-inverse of the screws with one more row.
-#[inline(always)]
-pub(super) fn bordered_inverse<N: Number>(
-    screws: &[Twist<N>; COLUMNS],
-    count: usize,
-    row: &Columns<N>,
-) -> Inverse<N> {
-    let mut columns = [[N::splat(0.0); ROWS]; COLUMNS];
-    for c in 0..count {
-        columns[c][..6].copy_from_slice(&screws[c]);
-        columns[c][6] = row[c];
-    }
-    Factored::new(columns, count).inverse()
-}
-
-/// The move `d` with `(A + change) d = -error`, by the inverse of `A` and a few terms of Neumann's series.
-#[inline(always)]
-pub(super) fn correction<N: Number>(
-    inverse: &Inverse<N>,
-    (from, now): (&[Twist<N>; COLUMNS], &Placed<N>),
-    terms: usize,
-) -> (Columns<N>, Columns<N>) {
-    let mut change = now.screws;
-    for c in 0..COLUMNS {
-        for k in 0..6 {
-            change[c][k] = change[c][k] - from[c][k];
-        }
-    }
-    let mut first = inverse.times(&now.error);
-    for x in &mut first {
-        *x = -*x;
-    }
-    let mut d = first;
-    for _ in 0..terms {
-        let seen = inverse.times(&twist_of(&change, &d));
-        for c in 0..COLUMNS {
-            d[c] = first[c] - seen[c];
-        }
-    }
-    (d, first)
 }
 
 impl Curve {
@@ -435,10 +374,20 @@ impl Chain {
         let node = &from.node;
         let start = self.moved(&node.at, &self.predicted(node, s));
         let placed = self.place(&start);
-        let (d, first) = correction(&from.inverse, (&from.screws, &placed), NEUMANN);
+        let (d, first) = correction(
+            &from.inverse,
+            (&from.screws, &placed.screws),
+            &placed.error,
+            NEUMANN,
+        );
         let rough = self.moved(&start, &d);
         let again = self.place(&rough);
-        let (d, _) = correction(&from.inverse, (&from.screws, &again), NEUMANN);
+        let (d, _) = correction(
+            &from.inverse,
+            (&from.screws, &again.screws),
+            &again.error,
+            NEUMANN,
+        );
         let next = self.stand(&self.moved(&rough, &d), &node.rates[0]);
         let (k, rest) = self.change(node, s);
         let error = length(&first);

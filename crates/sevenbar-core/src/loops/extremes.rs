@@ -6,9 +6,10 @@
 //!
 //! Source: docs/theory_many.md, (11).
 
-use super::chain::Columns;
-use super::circuits::{Passes, Row, UNIT};
+use super::circuits::Passes;
+use super::dense::Columns;
 use super::rates::ORDERS;
+use super::row::{Row, UNIT};
 use crate::outcome::RowStatus;
 
 /// The least and the greatest value of a quantity, each with the input there.

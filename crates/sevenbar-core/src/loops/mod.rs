@@ -4,34 +4,43 @@
 #![allow(clippy::needless_range_loop)]
 
 mod afar;
-mod all_curves;
 mod arcs;
 mod chain;
 mod change_points;
 mod circle;
 mod circuits;
 mod closure;
+mod complex_frame;
 mod continuation;
 mod counting;
 mod curve;
 mod dense;
 mod extremes;
+mod flat;
+mod follow;
 mod geometry;
 mod idle;
+mod join;
+mod kinds;
 mod lanes;
 mod locating;
-mod many;
 mod measures;
 mod meetings;
 mod modes;
 mod motion;
+mod on_curve;
+mod other_input;
 mod phases;
-mod pieces;
 mod poles;
 mod polish;
 mod rates;
 mod reduce;
+mod rotations;
+mod row;
+mod row_lanes;
 mod rows;
+mod screws;
+mod search;
 mod spun;
 mod starts;
 mod straight;
@@ -39,18 +48,17 @@ mod survey;
 #[cfg(test)]
 mod tests;
 mod turnings;
-mod walk;
 
-pub use all_curves::Found;
 pub use counting::{Count, Open, Uncounted};
 pub use extremes::Ends;
 pub use idle::Idle;
+pub use kinds::Kind;
 pub use measures::{CircuitMeasures, Driven, Measures};
 pub use modes::Completeness;
 pub use motion::{ChangePoint, Circuit, Motion, Through};
 pub use polish::AGREE;
-pub use reduce::Kind;
 pub use rows::{ROW_NUMBERS, Rows};
+pub use search::Found;
 
 use crate::rigid::{Pose, norm};
 use reduce::{Reduced, Source, reduce};

@@ -5,7 +5,7 @@
 //! any real input only the input moves. Chains with fewer than six passive freedoms close although they have too few; joints
 //! about axes in general position are added, and the solutions kept in which these stay at zero.
 
-use super::chain::{BALLS, Chain, Configuration, Joint, Rotation, product, short_way, squared_up};
+use super::chain::{BALLS, Chain, Configuration, Joint};
 use super::circle::{Circle, InputClosure};
 use super::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
 use super::continuation::{BRISK, CAREFUL, Pace};
@@ -13,9 +13,10 @@ use super::geometry::Form;
 use super::phases::Watch;
 use super::poles::{poles, untold_three};
 use super::polish::{self, Settled, polish};
-use super::reduce::Z_TO_X;
-use super::starts::{Class, Random, distinct, general_count};
+use super::rotations::{Rotation, Z_TO_X, ball_rotation, rotation, short_way, squared_up};
+use super::starts::{Class, distinct, general_count};
 use super::straight::carried;
+use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::cell::OnceCell;
@@ -566,17 +567,9 @@ impl Closure {
 pub(super) fn random_pose(random: &mut Random) -> Pose {
     let v = std::array::from_fn(|_| 2.0 * random.uniform() - 1.0);
     Pose {
-        rotation: squared_up(&super::chain::rotation(crate::rigid::scale(v, 2.0))),
+        rotation: squared_up(&rotation(crate::rigid::scale(v, 2.0))),
         translation: std::array::from_fn(|_| 1.2 * random.uniform() - 0.6),
     }
-}
-
-/// `Rz(t1) Ry(t2) Rx(t3)`
-pub(super) fn ball_rotation(t: &[f64; 3]) -> [[f64; 3]; 3] {
-    let about = |axis: usize, angle: f64| {
-        super::chain::rotation(std::array::from_fn(|k| if k == axis { angle } else { 0.0 }))
-    };
-    product(&product(&about(2, t[0]), &about(1, t[1])), &about(0, t[2]))
 }
 
 pub(super) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool {

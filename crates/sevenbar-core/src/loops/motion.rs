@@ -1,16 +1,19 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
 use super::Loop;
-use super::all_curves::{Curves, Found, curves};
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
-use super::circuits::{Passes, Row};
+use super::chain::{Chain, Configuration, Joint};
+use super::circuits::Passes;
 use super::counting::{Count, Uncounted};
 use super::curve::{Curve, End, Node};
+use super::dense::{COLUMNS, Columns};
 use super::extremes::{Ends, output_extremes};
 use super::modes::Completeness;
 use super::polish::{Settled, polish};
 use super::rates::ORDERS;
+use super::rotations::short_way;
+use super::row::Row;
 use super::rows::Rows;
+use super::search::{Curves, Found, curves};
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
 use std::f64::consts::TAU;
 

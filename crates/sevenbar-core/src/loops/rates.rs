@@ -6,16 +6,13 @@
 //!
 //! Source: docs/theory.md, (13) to (16).
 
-use super::chain::{
-    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket, transposed, twist_of,
-};
-use super::circuits::input_row;
-use super::curve::bordered_inverse;
-use super::dense::{Inverse, ROWS};
-use super::reduce::Z_TO_X;
+use super::chain::{Chain, Configuration, Joint, Placed};
+use super::dense::{COLUMNS, Columns, Inverse, ROWS};
+use super::rotations::{Rotation, Z_TO_X, transposed};
+use super::screws::{Twist, bordered_inverse, bracket, input_row, twist_of};
+use crate::number::Number;
 use crate::rigid::{Pose, Vec3};
 use crate::taylor::Taylor;
-use crate::vectors::Number;
 
 /// Orders of the rates: velocity, acceleration, jerk.
 pub(super) const ORDERS: usize = 3;

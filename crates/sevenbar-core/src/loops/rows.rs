@@ -1,11 +1,13 @@
 //! Rows of a circuit as the description's joints and links have them.
 
 use super::Loop;
-use super::chain::{BALLS, COLUMNS, Chain, Configuration, Joint, product, short_way, transposed};
-use super::circuits::Row;
-use super::modes::ball_rotation;
+use super::chain::{BALLS, Chain, Configuration, Joint};
+use super::dense::COLUMNS;
+use super::kinds::Kind;
 use super::rates::{ORDERS, Rates, point_rates, product_series};
-use super::reduce::{Carrier, Kind, Source, SpunLinks};
+use super::reduce::{Carrier, Source, SpunLinks};
+use super::rotations::{ball_rotation, product, short_way, transposed};
+use super::row::Row;
 use super::spun::first_terms;
 use crate::outcome::RowStatus;
 use crate::rigid::{Pose, Vec3, Vec3Taylor, scale, turns_zyx};
@@ -192,7 +194,7 @@ impl Loop {
                     let second = to[2].atan2(-to[0].hypot(to[1])) - flat[2].atan2(flat[1]);
                     out.values[chain.first[joint]] = to[0].atan2(-to[1]);
                     out.values[chain.first[joint + 1]] = short_way(second);
-                    let still = [[0.0; super::chain::COLUMNS]; ORDERS];
+                    let still = [[0.0; super::dense::COLUMNS]; ORDERS];
                     let two = chain.universal_series(joint, &frame, out, &still);
                     let held = product(&first_terms(&two), &first_terms(&links.spun.lie(value)));
                     // what is left out of the spin

@@ -1,11 +1,12 @@
 //! The numerical work on loops with known answers.
 
-use super::chain::{Chain, Columns, Configuration, Joint, rotation, squared_up};
+use super::chain::{Chain, Configuration, Joint};
 use super::circuits::Passes;
 use super::curve::{Curve, End};
-use super::dense::singular_values;
+use super::dense::{Columns, singular_values};
 use super::modes::{ModeFinder, random_pose, same};
-use super::starts::Random;
+use super::rotations::{rotation, squared_up};
+use crate::random::Random;
 use crate::rigid::Pose;
 
 /// The direction in which a closed configuration can move.

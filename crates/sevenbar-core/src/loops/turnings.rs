@@ -1,7 +1,8 @@
 //! Where a column changes direction along a followed curve, and the curve with these places among its nodes.
 
-use super::chain::{COLUMNS, Chain};
-use super::curve::{Curve, End, Node, dot, length, measure};
+use super::chain::Chain;
+use super::curve::{Curve, End, Node, measure};
+use super::dense::{COLUMNS, dot, length};
 
 /// A rate of a column below this part of the curve's is zero.
 const AT_REST: f64 = 1e-13;

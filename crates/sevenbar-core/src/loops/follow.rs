@@ -1,7 +1,8 @@
 //! Curves walked eight side by side in vector lanes, each until it comes back or cannot go on.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint};
-use super::curve::{Curve, End, Node, Stand, dot, length};
+use super::chain::{Chain, Configuration, Joint};
+use super::curve::{Curve, End, Node, Stand};
+use super::dense::{COLUMNS, Columns, dot, length};
 use super::polish::AGREE;
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};

@@ -1,16 +1,17 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
 use super::arcs::{Arcs, contains, narrow_places};
-use super::chain::{COLUMNS, Chain, Configuration, Joint};
+use super::chain::{Chain, Configuration, Joint};
 use super::change_points::ChangePoint;
 use super::circle::Circle;
 use super::counting::{Count, Known, Uncounted};
-use super::curve::{Curve, End, Node, REACH, dot, length};
-use super::dense::singular_values;
+use super::curve::{Curve, End, Node};
+use super::dense::{COLUMNS, dot, length, singular_values};
+use super::follow::Start;
 use super::modes::{Completeness, ModeFinder, REAL};
+use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
 use super::survey::Survey;
-use super::walk::Start;
 use std::f64::consts::TAU;
 
 /// Values of a joint at which the modes are found, all of which must lie on the circuits.
@@ -554,58 +555,4 @@ fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
         // the power of force f and moment m on (w, v) is m w + f v
         .map(|v| [v[3], v[4], v[5], v[0], v[1], v[2]])
         .collect()
-}
-
-fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
-    curves.iter().any(|c| lies_on(chain, c, mode))
-}
-
-/// Whether a mode is a place of a curve.
-pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
-    place_on(chain, curve, mode).is_some()
-}
-
-/// Those modes that lie on none of the curves.
-fn not_on_any(chain: &Chain, curves: &[Curve], mut modes: Vec<Configuration>) -> Vec<Configuration> {
-    for curve in curves {
-        if modes.is_empty() {
-            break;
-        }
-        // in a row, for the nodes are far apart in memory
-        let reaches: Vec<f64> = reaches(curve).collect();
-        modes.retain(|mode| place_within(chain, curve, reaches.iter().copied(), mode).is_none());
-    }
-    modes
-}
-
-/// The node of a curve from which a step leads over a mode.
-pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
-    place_within(chain, curve, reaches(curve), mode)
-}
-
-/// The most by which each step of a curve changes a turn.
-fn reaches(curve: &Curve) -> impl Iterator<Item = f64> {
-    curve.nodes.iter().map(|node| REACH * node.step)
-}
-
-fn place_within<'a>(
-    chain: &Chain,
-    curve: &'a Curve,
-    reaches: impl Iterator<Item = f64>,
-    mode: &Configuration,
-) -> Option<&'a Node> {
-    // no nearer to the mode than this, in the turn that is farthest off
-    let mut least = 0.0;
-    for (k, reach) in reaches.enumerate() {
-        if least <= reach {
-            let node = &curve.nodes[k];
-            least = chain.farthest_turn(&node.at, mode);
-            if least <= reach && chain.passes_through(node, mode).is_some() {
-                return Some(node);
-            }
-        }
-        // a step changes no turn by more than its reach
-        least -= reach;
-    }
-    None
 }

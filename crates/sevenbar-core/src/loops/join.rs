@@ -5,11 +5,11 @@
 //!
 //! Source: docs/theory_many.md, (9).
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration};
+use super::chain::{Chain, Configuration};
 use super::curve::{Curve, End};
-use super::dense::free_direction;
+use super::dense::{COLUMNS, Columns, free_direction};
+use super::follow::Start;
 use super::modes::same;
-use super::walk::Start;
 
 /// A pivot of the screws below this part of the greatest may be zero: such places are left to the ordinary way.
 const LEAST_PIVOT: f64 = 1e-6;
