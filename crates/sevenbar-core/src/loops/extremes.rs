@@ -8,7 +8,7 @@
 
 use super::circuits::Passes;
 use super::dense::Columns;
-use super::rates::ORDERS;
+use super::rates::{self, ORDERS};
 use super::row::{Row, UNIT};
 use crate::outcome::RowStatus;
 
@@ -97,7 +97,7 @@ impl Search<'_, '_> {
             self.rate(row, order + 1)
         } else {
             let chain = self.passes.chain;
-            chain.fourth_derivative(&row.at, self.passes.input, self.output)
+            rates::fourth_derivative(chain, &row.at, self.passes.input, self.output)
         }
     }
 

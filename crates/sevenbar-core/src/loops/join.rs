@@ -8,68 +8,66 @@
 use super::chain::{Chain, Configuration};
 use super::curve::{Curve, End};
 use super::dense::{COLUMNS, Columns, free_direction};
-use super::follow::Start;
+use super::follow::{self, Start};
 use super::modes::same;
 
 /// A pivot of the screws below this part of the greatest may be zero: such places are left to the ordinary way.
 const LEAST_PIVOT: f64 = 1e-6;
 
-impl Chain {
-    /// The closed curves through some of these closed configurations; those on other curves are left out.
-    pub fn closed_curves(&self, places: &[Configuration]) -> Vec<Curve> {
-        if self.is_redundant() {
-            return Vec::new();
-        }
-        let mut starts: Vec<Start> = Vec::with_capacity(places.len());
-        for place in places {
-            if let Some(direction) = free_direction(&self.place(place).screws, LEAST_PIVOT)
-                && starts.iter().all(|s| !same(self, &s.0, place))
-            {
-                starts.push((*place, direction));
-            }
-        }
-        let (pieces, next) = self.pieces(&starts);
-        let mut joined = vec![false; pieces.len()];
-        let mut curves = Vec::new();
-        for first in 0..pieces.len() {
-            if joined[first] {
-                continue;
-            }
-            if let Some(round) = round_from(first, &next) {
-                for &k in &round {
-                    joined[k] = true;
-                }
-                curves.push(self.joined(&pieces, &round));
-            }
-        }
-        curves
+/// The closed curves through some of these closed configurations; those on other curves are left out.
+pub(super) fn closed_curves(chain: &Chain, places: &[Configuration]) -> Vec<Curve> {
+    if chain.is_redundant() {
+        return Vec::new();
     }
+    let mut starts: Vec<Start> = Vec::with_capacity(places.len());
+    for place in places {
+        if let Some(direction) = free_direction(&chain.place(place).screws, LEAST_PIVOT)
+            && starts.iter().all(|s| !same(chain, &s.0, place))
+        {
+            starts.push((*place, direction));
+        }
+    }
+    let (pieces, next) = follow::pieces(chain, &starts);
+    let mut joined = vec![false; pieces.len()];
+    let mut curves = Vec::new();
+    for first in 0..pieces.len() {
+        if joined[first] {
+            continue;
+        }
+        if let Some(round) = round_from(first, &next) {
+            for &k in &round {
+                joined[k] = true;
+            }
+            curves.push(one_of(chain, &pieces, &round));
+        }
+    }
+    curves
+}
 
-    /// One closed curve from pieces that follow each other, turns counted on.
-    fn joined(&self, pieces: &[Curve], round: &[usize]) -> Curve {
-        let mut nodes = Vec::with_capacity(1 + round.iter().map(|&k| pieces[k].nodes.len()).sum::<usize>());
-        let mut turns: Columns = [0.0; COLUMNS];
-        for (n, &k) in round.iter().enumerate() {
-            let next = &pieces[round[(n + 1) % round.len()]].nodes[0];
-            let (end, piece) = pieces[k].nodes.split_last().unwrap_or_else(|| unreachable!());
-            for node in piece {
-                let mut node = *node;
-                for c in 0..COLUMNS {
-                    node.at.values[c] += turns[c];
-                }
-                nodes.push(node);
+/// One closed curve from pieces that follow each other, turns counted on.
+fn one_of(chain: &Chain, pieces: &[Curve], round: &[usize]) -> Curve {
+    let mut nodes = Vec::with_capacity(1 + round.iter().map(|&k| pieces[k].nodes.len()).sum::<usize>());
+    let mut turns: Columns = [0.0; COLUMNS];
+    for (n, &k) in round.iter().enumerate() {
+        let next = &pieces[round[(n + 1) % round.len()]].nodes[0];
+        let (end, piece) = pieces[k].nodes.split_last().unwrap_or_else(|| unreachable!());
+        for node in piece {
+            let mut node = *node;
+            for c in 0..COLUMNS {
+                node.at.values[c] += turns[c];
             }
-            for c in (0..COLUMNS).filter(|&c| self.is_turn(c)) {
-                turns[c] += end.at.values[c] - next.at.values[c];
-            }
+            nodes.push(node);
         }
-        let mut end = nodes[0];
-        for c in 0..COLUMNS {
-            end.at.values[c] += turns[c];
+        for c in (0..COLUMNS).filter(|&c| chain.is_turn(c)) {
+            turns[c] += end.at.values[c] - next.at.values[c];
         }
-        nodes.push(end);
-        Curve { nodes, end: End::Closed }
     }
+    let mut end = nodes[0];
+    for c in 0..COLUMNS {
+        end.at.values[c] += turns[c];
+    }
+    nodes.push(end);
+    Curve { nodes, end: End::Closed }
 }
 
 /// The pieces from one until it comes again; none if it does not.

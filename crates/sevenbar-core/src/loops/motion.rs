@@ -14,6 +14,7 @@ use super::rotations::short_way;
 use super::row::Row;
 use super::rows::Rows;
 use super::search::{Curves, Found, curves};
+use super::turnings;
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
 use std::f64::consts::TAU;
 
@@ -302,7 +303,7 @@ impl Loop {
                 condition: limit.inverse_norm,
             });
         }
-        let turnings = passes.curve.turnings(chain, b);
+        let turnings = turnings::turnings(&passes.curve, chain, b);
         for t in &turnings {
             let (input, output) = place(&t.node.at);
             let branch = passes.passes.iter().position(|p| t.segment < p.to).unwrap_or(0);

@@ -1,7 +1,7 @@
 //! Whether a pose is a place of a curve that is known.
 
 use super::chain::{Chain, Configuration};
-use super::curve::{Curve, Node, REACH};
+use super::curve::{self, Curve, Node, REACH};
 
 pub(super) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
     curves.iter().any(|c| lies_on(chain, c, mode))
@@ -50,8 +50,8 @@ fn place_within<'a>(
     for (k, reach) in reaches.enumerate() {
         if least <= reach {
             let node = &curve.nodes[k];
-            least = chain.farthest_turn(&node.at, mode);
-            if least <= reach && chain.passes_through(node, mode).is_some() {
+            least = curve::farthest_turn(chain, &node.at, mode);
+            if least <= reach && curve::passes_through(chain, node, mode).is_some() {
                 return Some(node);
             }
         }

@@ -3,7 +3,7 @@
 use super::chain::{Chain, Configuration};
 use super::dense::{COLUMNS, length};
 use super::rates::ORDERS;
-use super::row::{Row, UNIT};
+use super::row::{self, Row, UNIT};
 use super::screws::{bordered_inverse, correction, input_row};
 use crate::outcome::RowStatus;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
@@ -75,7 +75,7 @@ impl RowsNear<'_> {
         let last = length(&more);
         let gone = (length(&by) + last).store();
         let last = last.store();
-        let solved = chain.finished(at, &chain.place(&at), &inverse, (input, &UNIT));
+        let solved = row::finished(chain, at, &chain.place(&at), &inverse, (input, &UNIT));
         let (residual, condition) = (solved.residual.store(), solved.condition.store());
         let first = self.rows.len();
         for (k, near) in starts.iter().enumerate() {

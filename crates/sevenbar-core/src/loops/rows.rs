@@ -4,7 +4,7 @@ use super::Loop;
 use super::chain::{BALLS, Chain, Configuration, Joint};
 use super::dense::COLUMNS;
 use super::kinds::Kind;
-use super::rates::{ORDERS, Rates, point_rates, product_series};
+use super::rates::{self, ORDERS, Rates, point_rates, product_series};
 use super::reduce::{Carrier, Source, SpunLinks};
 use super::rotations::{ball_rotation, product, short_way, transposed};
 use super::row::Row;
@@ -195,7 +195,7 @@ impl Loop {
                     out.values[chain.first[joint]] = to[0].atan2(-to[1]);
                     out.values[chain.first[joint + 1]] = short_way(second);
                     let still = [[0.0; super::dense::COLUMNS]; ORDERS];
-                    let two = chain.universal_series(joint, &frame, out, &still);
+                    let two = rates::universal_series(chain, joint, &frame, out, &still);
                     let held = product(&first_terms(&two), &first_terms(&links.spun.lie(value)));
                     // what is left out of the spin
                     spun = product(&transposed(&held), &turns(first));
@@ -237,7 +237,7 @@ impl Loop {
             match (part.source, part.kind) {
                 (Source::Held, _) => {}
                 (Source::Joint(joint), Kind::Ball) => {
-                    let series = chain.joint_series(joint, at, rates);
+                    let series = rates::joint_series(chain, joint, at, rates);
                     write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
                 }
                 (Source::Joint(joint), kind) => {
@@ -251,19 +251,22 @@ impl Loop {
                     ];
                 }
                 (Source::Universal(joint, frame), _) => {
-                    let series = chain.universal_series(joint, &frame, at, rates);
+                    let series = rates::universal_series(chain, joint, &frame, at, rates);
                     write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
                 }
                 (Source::BeforeSpun(joint, frame), _) => {
                     let Some(links) = &self.reduced.spun else { continue };
-                    let lie = links.spun.lie(chain.value_series(links.joint, at, rates));
-                    let series = product_series(&chain.universal_series(joint, &frame, at, rates), &lie);
+                    let lie = links.spun.lie(rates::value_series(chain, links.joint, at, rates));
+                    let series =
+                        product_series(&rates::universal_series(chain, joint, &frame, at, rates), &lie);
                     write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
                 }
                 (Source::AfterSpun(joint), _) => {
                     let Some(links) = &self.reduced.spun else { continue };
-                    let lie = links.spun.lie_beyond(chain.value_series(links.joint, at, rates));
-                    let series = product_series(&lie, &chain.joint_series(joint, at, rates));
+                    let lie = links
+                        .spun
+                        .lie_beyond(rates::value_series(chain, links.joint, at, rates));
+                    let series = product_series(&lie, &rates::joint_series(chain, joint, at, rates));
                     write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
                 }
             }
@@ -334,7 +337,7 @@ impl Loop {
         let rates = rows.rates(row);
         let carried = |joint: usize, pose: &Pose, at: Vec3| {
             let frame = chain.frames(&row.at)[joint];
-            let twist = chain.link_twist(&chain.place(&row.at), &rates, joint);
+            let twist = rates::link_twist(chain, &chain.place(&row.at), &rates, joint);
             point_rates(frame.carry(pose.carry(at)), &twist)
         };
         match self.reduced.parts[link].link {
@@ -345,47 +348,54 @@ impl Loop {
             Carrier::Joint(joint, pose) => Some(carried(joint, &pose, at)),
             Carrier::Spun(pose) => {
                 let links = self.reduced.spun.as_ref()?;
-                Some(links.moved(chain, row, &rates, pose.carry(at).map(Taylor::constant), carried))
+                Some(moved(
+                    links,
+                    chain,
+                    row,
+                    &rates,
+                    pose.carry(at).map(Taylor::constant),
+                    carried,
+                ))
             }
             Carrier::SpunBeyond(pose) => {
                 let links = self.reduced.spun.as_ref()?;
-                let value = chain.value_series(links.joint, &row.at, &rates);
+                let value = rates::value_series(chain, links.joint, &row.at, &rates);
                 let place = links.spun.beyond(value, pose.carry(at));
-                Some(links.moved(chain, row, &rates, place, carried))
+                Some(moved(links, chain, row, &rates, place, carried))
             }
         }
     }
 }
 
-impl SpunLinks {
-    /// A point that moves against the first of the links, carried on by the chain.
-    fn moved(
-        &self,
-        chain: &Chain,
-        row: &Row,
-        rates: &Rates,
-        place: Vec3Taylor<4>,
-        carried: impl Fn(usize, &Pose, Vec3) -> [Vec3; 4],
-    ) -> [Vec3; 4] {
-        let (joint, pose) = &self.carrier;
-        let lie = self.spun.lie(chain.value_series(self.joint, &row.at, rates));
-        // the chain's frame as three points that it carries, and the point in that frame
-        let origin = carried(*joint, pose, [0.0; 3]);
-        let series = |v: &[Vec3; 4], i: usize| Taylor::<4>::from_derivatives(&v.map(|order| order[i]));
-        let mut out: Vec3Taylor<4> = std::array::from_fn(|i| series(&origin, i));
-        for k in 0..3 {
-            let own = lie[k][0] * place[0] + lie[k][1] * place[1] + lie[k][2] * place[2];
-            let axis = carried(
-                *joint,
-                pose,
-                std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }),
-            );
-            for i in 0..3 {
-                out[i] = out[i] + own * (series(&axis, i) - series(&origin, i));
-            }
+/// A point that moves against the first of the links, carried on by the chain.
+fn moved(
+    links: &SpunLinks,
+    chain: &Chain,
+    row: &Row,
+    rates: &Rates,
+    place: Vec3Taylor<4>,
+    carried: impl Fn(usize, &Pose, Vec3) -> [Vec3; 4],
+) -> [Vec3; 4] {
+    let (joint, pose) = &links.carrier;
+    let lie = links
+        .spun
+        .lie(rates::value_series(chain, links.joint, &row.at, rates));
+    // the chain's frame as three points that it carries, and the point in that frame
+    let origin = carried(*joint, pose, [0.0; 3]);
+    let series = |v: &[Vec3; 4], i: usize| Taylor::<4>::from_derivatives(&v.map(|order| order[i]));
+    let mut out: Vec3Taylor<4> = std::array::from_fn(|i| series(&origin, i));
+    for k in 0..3 {
+        let own = lie[k][0] * place[0] + lie[k][1] * place[1] + lie[k][2] * place[2];
+        let axis = carried(
+            *joint,
+            pose,
+            std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }),
+        );
+        for i in 0..3 {
+            out[i] = out[i] + own * (series(&axis, i) - series(&origin, i));
         }
-        std::array::from_fn(|order| out.map(|x| x.derivative(order)))
     }
+    std::array::from_fn(|order| out.map(|x| x.derivative(order)))
 }
 
 fn write_turns(out: &mut [[f64; 4]], turns: Option<[Taylor<4>; 3]>) {

@@ -4,14 +4,17 @@ use super::arcs::{Arcs, contains, narrow_places};
 use super::chain::{Chain, Configuration, Joint};
 use super::change_points::ChangePoint;
 use super::circle::Circle;
-use super::counting::{Count, Known, Uncounted};
+use super::counting::{self, Count, Known, Uncounted};
 use super::curve::{Curve, End, Node};
 use super::dense::{COLUMNS, dot, length, singular_values};
-use super::follow::Start;
+use super::follow::{self, Start};
+use super::join;
+use super::meetings;
 use super::modes::{Completeness, ModeFinder, REAL};
 use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
 use super::survey::Survey;
+use super::turnings;
 use std::f64::consts::TAU;
 
 /// Values of a joint at which the modes are found, all of which must lie on the circuits.
@@ -247,8 +250,8 @@ impl Curves {
     ) -> Result<Count, Uncounted> {
         let known = self.known(chain, survey, column);
         let mut far: Vec<f64> = Vec::new();
-        survey.count(circle, known, &mut |pose| {
-            if chain.is_far(pose) {
+        counting::count(survey, circle, known, &mut |pose| {
+            if follow::is_far(chain, pose) {
                 // a curve is not followed so far, but may turn back there
                 far.push(pose.values[column]);
             } else {
@@ -292,12 +295,12 @@ impl Curves {
         let mut known = Known { singular: singular.collect(), ..Known::default() };
         let joined = self.arcs.joined(chain, self.wished[0]);
         for curve in self.curves.iter().chain(&joined) {
-            let turnings = curve.turnings(chain, column);
+            let turnings = turnings::turnings(curve, chain, column);
             let smooth = turnings.iter().filter(|t| !t.node.is_crossing());
             known
                 .dead_centres
                 .extend(smooth.map(|t| t.node.at.values[column]));
-            known.meetings.extend(survey.meetings(chain, curve));
+            known.meetings.extend(meetings::meetings(survey, chain, curve));
         }
         known
     }
@@ -329,7 +332,7 @@ impl Curves {
                     places.extend(finder.polished(&self.unforeseen(chain, modes)).modes);
                 }
             }
-            self.ahead.extend(chain.closed_curves(&places));
+            self.ahead.extend(join::closed_curves(chain, &places));
         }
     }
 
@@ -348,7 +351,7 @@ impl Curves {
     fn taken_ahead(&mut self, chain: &Chain, which: usize, backwards: bool) -> Curve {
         let curve = self.ahead.swap_remove(which);
         if backwards {
-            chain.turned_round(&curve, &[])
+            follow::turned_round(chain, &curve, &[])
         } else {
             curve
         }
@@ -430,7 +433,7 @@ impl Curves {
             if self.holds(chain, mode) || curves.iter().flatten().any(known) {
                 continue;
             }
-            if chain.is_far(mode) {
+            if follow::is_far(chain, mode) {
                 self.still += 1;
                 continue;
             }
@@ -483,7 +486,7 @@ impl Curves {
             .filter(|(_, c)| c.is_none())
             .map(|(s, _)| *s)
             .collect();
-        let mut followed = chain.follow(&left, &self.arcs.stops()).into_iter();
+        let mut followed = follow::follow(chain, &left, &self.arcs.stops()).into_iter();
         let mut fresh: Vec<Curve> = Vec::new();
         for (curve, start) in curves.into_iter().zip(&starts) {
             let Some(curve) = curve.or_else(|| followed.next()) else {
