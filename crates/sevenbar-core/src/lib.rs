@@ -5,7 +5,9 @@
 
 pub mod error;
 pub mod loops;
+mod number;
 pub mod outcome;
+mod random;
 pub mod rigid;
 pub mod rssr;
 pub mod simd;

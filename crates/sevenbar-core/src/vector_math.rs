@@ -3,8 +3,8 @@
 //! Polynomials are minimax fits (Remez exchange in 50-digit arithmetic) on the reduced ranges; together with the reduction
 //! the error stays below 1e-15.
 
+use crate::number::Number;
 use crate::simd::multiply_add;
-use crate::vectors::Number;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// Angles up to this size [rad] are reduced by three-part subtraction of quarter turns.

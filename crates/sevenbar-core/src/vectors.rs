@@ -5,6 +5,7 @@
 
 #![allow(unsafe_code)]
 
+use crate::number::Number;
 use crate::vector_math::sin_cos_side_by_side;
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{
@@ -22,37 +23,6 @@ pub(crate) const LANES: usize = 8;
 /// One number for each lane.
 pub(crate) type Reals = [f64; LANES];
 
-/// A number, or several side by side: what the formulas of a loop are written in, once for both.
-pub(crate) trait Number:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
-{
-    /// The same number in each lane.
-    fn splat(x: f64) -> Self;
-    /// `self + a b`
-    fn plus_product(self, a: Self, b: Self) -> Self;
-    /// `self - a b`
-    fn minus_product(self, a: Self, b: Self) -> Self;
-    /// The square root.
-    fn sqrt(self) -> Self;
-    /// `yes` in the lanes where `self > b`, `no` in the others, and where either is not a number.
-    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self;
-    /// Sine and cosine of an angle [rad].
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        sin_cos_side_by_side(self)
-    }
-    /// The lesser of two.
-    #[inline(always)]
-    fn lesser(self, b: Self) -> Self {
-        self.if_greater(b, b, self)
-    }
-    /// The size of a number.
-    #[inline(always)]
-    fn size(self) -> Self {
-        self.if_greater(Self::splat(0.0), self, -self)
-    }
-}
-
 /// Eight numbers on which one instruction works (or a few, on lesser machines).
 pub(crate) trait Vector: Number {
     /// A number for each lane.
@@ -67,33 +37,6 @@ pub(crate) trait Vector: Number {
 pub(crate) trait LaneKernel {
     /// Runs it.
     fn run<V: Vector>(self);
-}
-
-impl Number for f64 {
-    #[inline(always)]
-    fn splat(x: f64) -> Self {
-        x
-    }
-    #[inline(always)]
-    fn plus_product(self, a: Self, b: Self) -> Self {
-        self + a * b
-    }
-    #[inline(always)]
-    fn minus_product(self, a: Self, b: Self) -> Self {
-        self - a * b
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.sqrt()
-    }
-    #[inline(always)]
-    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
-        if self > b { yes } else { no }
-    }
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        self.sin_cos()
-    }
 }
 
 /// Operators of a type, each by an expression of two names. Closures would not be compiled for the vector unit.
@@ -156,6 +99,10 @@ impl Number for Plain {
             if self.0[k] > b.0[k] { yes.0[k] } else { no.0[k] }
         }))
     }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        sin_cos_side_by_side(self)
+    }
 }
 
 impl Vector for Plain {
@@ -216,6 +163,10 @@ impl Number for Wide {
     #[inline(always)]
     fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
         Self(unsafe { _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, b.0), no.0, yes.0) })
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        sin_cos_side_by_side(self)
     }
 }
 
@@ -284,6 +235,10 @@ impl Number for Middle {
                 _mm256_blendv_pd(no.0[1], yes.0[1], _mm256_cmp_pd::<_CMP_GT_OQ>(self.0[1], b.0[1])),
             ]
         })
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        sin_cos_side_by_side(self)
     }
 }
 

@@ -7,11 +7,11 @@
 //! Source: docs/theory_many.md, (19) and (20).
 
 use super::chain::Chain;
+use super::closure::UNKNOWNS;
 use super::locating::{linearised, solve};
 use super::modes::{Algebraic, ModeFinder};
-use super::paths::UNKNOWNS;
-use super::starts::Random;
-use super::survey::solutions_with;
+use super::other_input::solutions_with;
+use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
 

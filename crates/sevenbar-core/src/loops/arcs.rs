@@ -1,11 +1,12 @@
 //! Curves that pass change points: each arc between two of them once, and arcs that pass smoothly joined.
 
-use super::all_curves::lies_on;
-use super::chain::{COLUMNS, Chain, Columns, Configuration};
-use super::change_points::{AT_POINT, ChangePoint};
-use super::curve::{Curve, End, Node, length, measure};
+use super::chain::{Chain, Configuration};
+use super::change_points::{self, AT_POINT, ChangePoint};
+use super::curve::{Curve, End, Node, measure};
+use super::dense::{COLUMNS, Columns, length};
+use super::follow::{self, Start, Stop};
+use super::on_curve::lies_on;
 use super::turnings::begun_at;
-use super::walk::{Start, Stop};
 use std::f64::consts::TAU;
 
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
@@ -81,7 +82,7 @@ impl Arcs {
         if self.failed.len() >= MOST_FAILED || self.failed.iter().any(tried) {
             return None;
         }
-        let Some(found) = chain.change_point(pose, wished, stuck) else {
+        let Some(found) = change_points::change_point(chain, pose, wished, stuck) else {
             if stuck {
                 self.failed.push(*pose);
             }
@@ -113,7 +114,7 @@ impl Arcs {
                 break;
             }
             let starts: Vec<Start> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
-            let followed = chain.follow(&starts, &self.stops());
+            let followed = follow::follow(chain, &starts, &self.stops());
             let count = self.points.len();
             for curve in followed.iter().filter(|c| c.end == End::Singular) {
                 for end in curve.ends() {
@@ -237,7 +238,7 @@ impl Arcs {
         let mut end = End::Closed;
         for (n, &(k, entered)) in row.iter().enumerate() {
             let arc = &self.arcs[k];
-            let turned = (entered == 1).then(|| chain.turned_round(&arc.curve, stops));
+            let turned = (entered == 1).then(|| follow::turned_round(chain, &arc.curve, stops));
             let curve = turned.as_ref().unwrap_or(&arc.curve);
             let turns = nodes
                 .last()

@@ -2,25 +2,18 @@
 //!
 //! Source: docs/theory.md, (1) to (5).
 
-use super::spun::Flat;
-use crate::rigid::{Pose, Vec3, dot, norm, scale};
-use crate::vector_math::ROUNDER;
-use crate::vectors::{LANES, Number, Vector};
-
-/// Most one-freedom columns of a chain with one freedom left: rank six and one.
-pub(super) const COLUMNS: usize = 7;
+use super::dense::{COLUMNS, Columns};
+use super::flat::Flat;
+use super::rotations::{
+    Rotation, dot3, product, rotation, rotation_vector, short_way, splatted, transposed, turned,
+};
+use super::screws::{Twist, screw};
+use crate::number::Number;
+use crate::rigid::{Pose, norm};
+use crate::vectors::{LANES, Vector};
 
 /// Most balls in seven columns.
 pub(super) const BALLS: usize = 2;
-
-/// A rotation, row by row.
-pub(super) type Rotation<N = f64> = [[N; 3]; 3];
-
-/// A value for each column.
-pub(super) type Columns<N = f64> = [N; COLUMNS];
-
-/// An angular part and a linear part, or a twist and what it does to the origin.
-pub(super) type Twist<N = f64> = [N; 6];
 
 /// A joint of the chain; a ball has three columns, the others one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,58 +125,6 @@ impl<V: Vector> Configuration<V> {
         }
         out
     }
-}
-
-/// `a x b`
-#[inline(always)]
-pub(super) fn cross<N: Number>(a: &[N], b: &[N]) -> [N; 3] {
-    [
-        (a[1] * b[2]).minus_product(a[2], b[1]),
-        (a[2] * b[0]).minus_product(a[0], b[2]),
-        (a[0] * b[1]).minus_product(a[1], b[0]),
-    ]
-}
-
-/// The screw with this axis through a point, and the advance for each radian.
-#[inline(always)]
-fn screw<N: Number>(axis: &[N; 3], point: &[N; 3], advance: f64) -> Twist<N> {
-    let moment = cross(point, axis);
-    let mut out = [axis[0], axis[1], axis[2], moment[0], moment[1], moment[2]];
-    if advance != 0.0 {
-        for k in 0..3 {
-            out[k + 3] = out[k + 3].plus_product(axis[k], N::splat(advance));
-        }
-    }
-    out
-}
-
-/// `[a, b]`: how the screw `b` changes while its body moves with the twist `a`.
-///
-/// Source: docs/theory.md, (13).
-#[inline(always)]
-pub(super) fn bracket<N: Number>(a: &Twist<N>, b: &Twist<N>) -> Twist<N> {
-    let turn = cross(&a[..3], &b[..3]);
-    let (first, second) = (cross(&a[..3], &b[3..]), cross(&a[3..], &b[..3]));
-    [
-        turn[0],
-        turn[1],
-        turn[2],
-        first[0] + second[0],
-        first[1] + second[1],
-        first[2] + second[2],
-    ]
-}
-
-/// The twist of rates by the screws.
-#[inline(always)]
-pub(super) fn twist_of<N: Number>(screws: &[Twist<N>; COLUMNS], rates: &Columns<N>) -> Twist<N> {
-    let mut sum = [N::splat(0.0); 6];
-    for c in 0..COLUMNS {
-        for k in 0..6 {
-            sum[k] = sum[k].plus_product(screws[c][k], rates[c]);
-        }
-    }
-    sum
 }
 
 impl Chain {
@@ -369,141 +310,4 @@ impl Chain {
         }
         frames
     }
-}
-
-/// An angle moved by whole turns into (-pi, pi].
-#[inline(always)]
-pub(super) fn short_way(angle: f64) -> f64 {
-    let turn = std::f64::consts::TAU;
-    // rounds without a call
-    let turns = (angle / turn + ROUNDER) - ROUNDER;
-    let short = angle - turn * turns;
-    if short <= -std::f64::consts::PI {
-        short + turn
-    } else {
-        short
-    }
-}
-
-/// The images of the axes after a rotation that acts before them.
-#[inline(always)]
-fn turned<N: Number>(axes: &[[N; 3]; 3], by: &Rotation<N>) -> [[N; 3]; 3] {
-    let mut out = [[N::splat(0.0); 3]; 3];
-    for j in 0..3 {
-        for k in 0..3 {
-            out[j][k] = (axes[0][k] * by[0][j])
-                .plus_product(axes[1][k], by[1][j])
-                .plus_product(axes[2][k], by[2][j]);
-        }
-    }
-    out
-}
-
-#[inline(always)]
-fn splatted<N: Number>(r: &Rotation) -> Rotation<N> {
-    let mut out = [[N::splat(0.0); 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            out[i][j] = N::splat(r[i][j]);
-        }
-    }
-    out
-}
-
-#[inline(always)]
-fn dot3<N: Number>(a: &[N], b: &[N]) -> N {
-    (a[0] * b[0]).plus_product(a[1], b[1]).plus_product(a[2], b[2])
-}
-
-#[inline(always)]
-pub(super) fn product<N: Number>(a: &Rotation<N>, b: &Rotation<N>) -> Rotation<N> {
-    let mut out = [[N::splat(0.0); 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
-            out[i][j] = (a[i][0] * b[0][j])
-                .plus_product(a[i][1], b[1][j])
-                .plus_product(a[i][2], b[2][j]);
-        }
-    }
-    out
-}
-
-pub(super) fn transposed(a: &Rotation) -> Rotation {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
-}
-
-/// The turn about a vector by its length, by the unit quaternion.
-#[inline(always)]
-pub(super) fn rotation<N: Number>(v: [N; 3]) -> Rotation<N> {
-    let (one, two, half) = (N::splat(1.0), N::splat(2.0), N::splat(0.5));
-    let angle = dot3(&v, &v).sqrt();
-    let (s, w) = (half * angle).sin_cos();
-    let factor = angle.if_greater(N::splat(1e-8), s / angle, half);
-    let [x, y, z] = [v[0] * factor, v[1] * factor, v[2] * factor];
-    [
-        [
-            one - two * (y * y + z * z),
-            two * (x * y - w * z),
-            two * (x * z + w * y),
-        ],
-        [
-            two * (x * y + w * z),
-            one - two * (x * x + z * z),
-            two * (y * z - w * x),
-        ],
-        [
-            two * (x * z - w * y),
-            two * (y * z + w * x),
-            one - two * (x * x + y * y),
-        ],
-    ]
-}
-
-/// The vector of a rotation, of length up to pi.
-pub(super) fn rotation_vector(r: &Rotation) -> Vec3 {
-    let v = [
-        0.5 * (r[2][1] - r[1][2]),
-        0.5 * (r[0][2] - r[2][0]),
-        0.5 * (r[1][0] - r[0][1]),
-    ];
-    let sine = norm(v);
-    let cosine = 0.5 * (r[0][0] + r[1][1] + r[2][2] - 1.0);
-    if sine > 1e-6 {
-        return scale(v, sine.atan2(cosine) / sine);
-    }
-    if cosine > 0.0 {
-        return v;
-    }
-    // half a turn: the axis is the longest column of r + 1
-    let columns: [Vec3; 3] =
-        std::array::from_fn(|j| std::array::from_fn(|i| r[i][j] + if i == j { 1.0 } else { 0.0 }));
-    let axis = columns.into_iter().fold(
-        [0.0; 3],
-        |best: Vec3, c| {
-            if dot(c, c) > dot(best, best) { c } else { best }
-        },
-    );
-    scale(axis, std::f64::consts::PI / norm(axis))
-}
-
-/// A rotation freed from the rounding of many products.
-#[inline(always)]
-pub(super) fn squared_up<N: Number>(r: &Rotation<N>) -> Rotation<N> {
-    let one = N::splat(1.0);
-    let mut x = [r[0][0], r[1][0], r[2][0]];
-    let mut y = [r[0][1], r[1][1], r[2][1]];
-    let length = one / dot3(&x, &x).sqrt();
-    for x in &mut x {
-        *x = *x * length;
-    }
-    let along = dot3(&x, &y);
-    for k in 0..3 {
-        y[k] = y[k].minus_product(x[k], along);
-    }
-    let length = one / dot3(&y, &y).sqrt();
-    for y in &mut y {
-        *y = *y * length;
-    }
-    let z = cross(&x, &y);
-    [[x[0], y[0], z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]]
 }

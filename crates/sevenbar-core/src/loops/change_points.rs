@@ -8,12 +8,15 @@
 //!
 //! Source: docs/theory.md, (19) to (22).
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Twist, squared_up, twist_of};
-use super::curve::{Curve, Node, dot, length};
-use super::dense::{least_squares, singular_values};
+use super::chain::{Chain, Configuration};
+use super::curve::{Curve, Node};
+use super::dense::{COLUMNS, Columns, dot, least_squares, length, singular_values};
+use super::follow::{Start, Stop};
 use super::polish::{self, AGREE, CLOSED, NO_RANK, wrenches};
-use super::starts::Random;
-use super::walk::{Start, Stop};
+use super::rates;
+use super::rotations::squared_up;
+use super::screws::{Twist, twist_of};
+use crate::random::Random;
 
 /// Singular values below this part of the greatest, and this many times the one that is known to vanish near by, vanish there too.
 const NEARLY_ZERO: f64 = 1e-3;
@@ -162,282 +165,284 @@ impl Place {
     }
 }
 
-impl Chain {
-    /// The screws' first derivatives along rates of the joints.
-    fn carried(&self, screws: &[Twist; COLUMNS], rates: &Columns) -> [Twist; COLUMNS] {
-        let mut series = [*screws, [[0.0; 6]; COLUMNS]];
-        self.carry(&mut series, &[*rates, [0.0; COLUMNS]], 1);
-        series[1]
-    }
+/// The screws' first derivatives along rates of the joints.
+fn carried(chain: &Chain, screws: &[Twist; COLUMNS], rates: &Columns) -> [Twist; COLUMNS] {
+    let mut series = [*screws, [[0.0; 6]; COLUMNS]];
+    rates::carry(chain, &mut series, &[*rates, [0.0; COLUMNS]], 1);
+    series[1]
+}
 
-    /// The place near a pose where the screws have lost rank, with the closure's slope zero in all directions they leave free.
-    fn singular_place(&self, rough: &Configuration) -> Option<Place> {
-        let mut at = *rough;
-        let (values, _) = singular_values(&self.screws(&at));
-        let least = self.columns.checked_sub(2)?;
-        let zero = (NEARLY_ZERO * values[0]).min(AS_SMALL * values[least]);
-        let mut rank = values.iter().filter(|&&v| v > zero).count().min(least);
-        // what else vanishes there is known once it is reached
-        for _ in 0..COLUMNS {
-            at = self.settled_at_rank(&at, rank)?;
-            if length(&self.difference(rough, &at)) > NEAR {
-                return None;
-            }
-            let there = polish::rank(&singular_values(&self.screws(&at)).0, NO_RANK);
-            if there > rank {
-                return None;
-            }
-            if there == rank {
-                return Some(self.place_at(&at, rank));
-            }
-            rank = there;
-        }
-        None
-    }
-
-    /// Newton's method on the closure that screws of a rank see, and on the slope of what they leave.
-    fn settled_at_rank(&self, rough: &Configuration, rank: usize) -> Option<Configuration> {
-        let mut at = *rough;
-        let mut before = f64::INFINITY;
-        for _ in 0..MOST_STEPS {
-            let placed = self.place(&at);
-            let split = Split::new(self, &placed.screws, rank);
-            let count = split.seen.len() + split.left.len() * split.free.len();
-            let mut columns = vec![vec![0.0; count]; self.columns];
-            let mut right = vec![0.0; count];
-            for (r, row) in split.seen.iter().enumerate() {
-                right[r] = -power(row, &placed.error);
-                for c in 0..self.columns {
-                    columns[c][r] = power(row, &placed.screws[c]);
-                }
-            }
-            for c in 0..self.columns {
-                let mut unit = [0.0; COLUMNS];
-                unit[c] = 1.0;
-                let moved = self.carried(&placed.screws, &unit);
-                for (f, free) in split.free.iter().enumerate() {
-                    let bent = twist_of(&moved, free);
-                    for (w, row) in split.left.iter().enumerate() {
-                        columns[c][split.seen.len() + w * split.free.len() + f] = power(row, &bent);
-                    }
-                }
-            }
-            for (f, free) in split.free.iter().enumerate() {
-                let slope = twist_of(&placed.screws, free);
-                for (w, row) in split.left.iter().enumerate() {
-                    right[split.seen.len() + w * split.free.len() + f] = -power(row, &slope);
-                }
-            }
-            let step = least_squares(&columns, &right, NO_SLOPE);
-            let mut by = [0.0; COLUMNS];
-            by[..self.columns].copy_from_slice(&step);
-            let size = length(&by);
-            if !size.is_finite() || size > NEAR {
-                return None;
-            }
-            at = self.moved(&at, &by);
-            for ball in &mut at.balls {
-                *ball = squared_up(ball);
-            }
-            let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
-            before = size;
-            if steady {
-                break;
-            }
-        }
-        (before < UNSTEADY).then_some(at)
-    }
-
-    fn place_at(&self, at: &Configuration, rank: usize) -> Place {
-        let placed = self.place(at);
-        let split = Split::new(self, &placed.screws, rank);
-        let count = split.free.len();
-        // each wrench's form as a vector, by which redundant ones are told apart
-        let forms: Vec<Vec<f64>> = split
-            .left
-            .iter()
-            .map(|row| {
-                let mut form = Vec::with_capacity(count * count);
-                for a in &split.free {
-                    let moved = self.carried(&placed.screws, a);
-                    form.extend(split.free.iter().map(|b| power(row, &twist_of(&moved, b))));
-                }
-                form
-            })
-            .collect();
-        let values: Vec<f64> = split.left.iter().map(|row| power(row, &placed.error)).collect();
-        let (sizes, mixes) = singular_values(&forms);
-        let mut found = Vec::new();
-        let mut open = 0.0;
-        for (size, mix) in sizes.iter().zip(&mixes) {
-            let value: f64 = mix.iter().zip(&values).map(|(m, v)| m * v).sum();
-            if *size > NO_FORM {
-                let form = (0..count * count)
-                    .map(|k| mix.iter().zip(&forms).map(|(m, f)| m * f[k]).sum())
-                    .collect();
-                found.push((value, form));
-            } else {
-                open += value * value;
-            }
-        }
-        Place { at: *at, free: split.free, forms: found, open: f64::sqrt(open) }
-    }
-
-    /// The change point at or near a pose, if there is one, as the wished columns have it; `stuck` where a walk can go no farther.
-    pub fn change_point(&self, rough: &Configuration, wished: &[usize], stuck: bool) -> Option<ChangePoint> {
-        let place = self.singular_place(rough).filter(|p| p.counts(wished, stuck))?;
-        let cut = CUT.max(CUT_TIMES * place.passing());
-        let mut found = ChangePoint { at: place.at, rays: Vec::new(), partner: Vec::new(), cut, finite: 0 };
-        for &radius in RADII.iter().filter(|&&r| r > LEAST_RADIUS * cut) {
-            let (ways, finite) = self.ways_out(&place, radius);
-            found.finite = finite;
-            let rays: Vec<Ray> = ways
-                .iter()
-                .filter_map(|at| self.ray(&place, at, radius))
-                .collect();
-            let straight = rays.len() == ways.len();
-            if straight || rays.len() > found.rays.len() {
-                found.rays = rays;
-            }
-            if straight {
-                break;
-            }
-        }
-        found.partner = partners(&found.rays);
-        let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
-        if hidden < RADII[0] / LEAST_RADIUS {
-            found.cut = found.cut.max(hidden);
-        }
-        Some(found)
-    }
-
-    /// Whether a place on a sphere closes only because it is near: at half the distance far less is left open. On a motion what is left
-    /// is rounding, or what redundant constraints miss each other by, and the same everywhere.
-    fn opens_with_distance(&self, place: &Place, at: &Configuration, radius: f64) -> bool {
-        let open = |at: &Configuration| self.residual(&self.place(at));
-        let inward = self.difference(&place.at, at).map(|x| x / radius);
-        open(at) > ROUNDED
-            && self
-                .on_sphere(place, &inward, 0.5 * radius)
-                .is_some_and(|nearer| open(&nearer) < LEAST_FALL * open(at))
-    }
-
-    /// Where curves cut a sphere about a place, each once, and the most freedoms found on it: surfaces have no ways to tell apart, but
-    /// curves may run into them.
-    fn ways_out(&self, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
-        let mut found: Vec<Configuration> = Vec::new();
-        let mut finite = 0;
-        for (tried, direction) in directions(place).into_iter().enumerate() {
-            if tried == MOST_IN_VAIN && found.is_empty() && finite == 0 {
-                break;
-            }
-            let Some(at) = self.on_sphere(place, &direction, radius) else {
-                continue;
-            };
-            let known = |f: &Configuration| length(&self.difference(f, &at)) < SAME_WAY * radius;
-            if found.iter().any(known) || self.opens_with_distance(place, &at, radius) {
-                continue;
-            }
-            let (values, _) = singular_values(&self.screws(&at));
-            let rank = values
-                .iter()
-                .take(6)
-                .filter(|&&v| v > NO_FREEDOM * radius * values[0])
-                .count();
-            let freedoms = self.columns - rank;
-            finite = finite.max(freedoms);
-            if freedoms == 1 {
-                found.push(at);
-            }
-            // all that is free there is one surface's
-            if freedoms > 1 && freedoms == place.free.len() {
-                break;
-            }
-        }
-        (found, finite)
-    }
-
-    /// The solution of the closure at a distance from a place that Newton's method finds from a direction.
-    fn on_sphere(&self, place: &Place, direction: &Columns, radius: f64) -> Option<Configuration> {
-        let mut at = self.moved(&place.at, &direction.map(|x| x * radius));
-        let mut before = f64::INFINITY;
-        for step in 0..MOST_STEPS {
-            let placed = self.place(&at);
-            let off = self.difference(&place.at, &at);
-            let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
-            let distance = seen.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if !(distance > 0.1 * radius && length(&off) < 3.0 * radius) {
-                return None;
-            }
-            let mut outward = [0.0; COLUMNS];
-            for (x, free) in seen.iter().zip(&place.free) {
-                for c in 0..COLUMNS {
-                    outward[c] += x / distance * free[c];
-                }
-            }
-            let columns: Vec<Vec<f64>> = (0..self.columns)
-                .map(|c| {
-                    let mut column = placed.screws[c].to_vec();
-                    column.push(outward[c]);
-                    column
-                })
-                .collect();
-            let mut right: Vec<f64> = placed.error.iter().map(|e| -e).collect();
-            right.push(radius - distance);
-            let mut by = [0.0; COLUMNS];
-            by[..self.columns].copy_from_slice(&least_squares(&columns, &right, NO_RANK));
-            let size = length(&by);
-            // where curves touch, steps halve at least
-            if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
-                return None;
-            }
-            // no farther than the sphere is large, and so never across it
-            let factor = (0.3 * radius / size).min(1.0);
-            at = self.moved(&at, &by.map(|x| x * factor));
-            for ball in &mut at.balls {
-                *ball = squared_up(ball);
-            }
-            let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
-            before = size;
-            if steady {
-                break;
-            }
-        }
-        let closed = if self.is_redundant() { AGREE } else { CLOSED };
-        (before < STEADY && self.residual(&self.place(&at)) < closed).then_some(at)
-    }
-
-    /// The way out through a place on the sphere; none where its curve does not run straight into the pose.
-    fn ray(&self, place: &Place, at: &Configuration, radius: f64) -> Option<Ray> {
-        let mut outer = *at;
-        let mut seen = [[0.0; COLUMNS]; 3];
-        for (k, seen) in seen.iter_mut().enumerate() {
-            let scale = 1.0 / (radius * 0.5_f64.powi(k as i32));
-            *seen = self.difference(&place.at, &outer).map(|x| x * scale);
-            if k < 2 {
-                outer = self.on_sphere(place, seen, 0.5 / scale)?;
-            }
-        }
-        let apart = |a: &Columns, b: &Columns| length(&std::array::from_fn(|c| a[c] - b[c]));
-        let (first, second) = (apart(&seen[0], &seen[1]), apart(&seen[1], &seen[2]));
-        // asymptotes are left by the square of the distance at which curves pass
-        let passing = 4.0 * place.passing() / radius;
-        if first > MOST_BENT || second > 0.75 * first + STRAIGHT + 2.0 * passing * passing {
+/// The place near a pose where the screws have lost rank, with the closure's slope zero in all directions they leave free.
+fn singular_place(chain: &Chain, rough: &Configuration) -> Option<Place> {
+    let mut at = *rough;
+    let (values, _) = singular_values(&chain.screws(&at));
+    let least = chain.columns.checked_sub(2)?;
+    let zero = (NEARLY_ZERO * values[0]).min(AS_SMALL * values[least]);
+    let mut rank = values.iter().filter(|&&v| v > zero).count().min(least);
+    // what else vanishes there is known once it is reached
+    for _ in 0..COLUMNS {
+        at = settled_at_rank(chain, &at, rank)?;
+        if length(&chain.difference(rough, &at)) > NEAR {
             return None;
         }
-        let (values, vectors) = singular_values(&self.screws(at));
-        let mut direction = [0.0; COLUMNS];
-        direction[..self.columns].copy_from_slice(&vectors[self.columns - 1]);
-        if dot(&direction, &seen[0]) < 0.0 {
-            direction = direction.map(|x| -x);
+        let there = polish::rank(&singular_values(&chain.screws(&at)).0, NO_RANK);
+        if there > rank {
+            return None;
         }
-        // the norm grows as a power of the distance; `outer` is at a quarter of it now
-        let norm = |values: &[f64]| values[self.columns - 2].recip();
-        let (far, near) = (norm(&values), norm(&singular_values(&self.screws(&outer)).0));
-        let power = ((near / far).log2() / 2.0).max(1.0);
-        let hidden = radius * (far / HIDDEN).powf(1.0 / power);
-        Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden })
+        if there == rank {
+            return Some(place_at(chain, &at, rank));
+        }
+        rank = there;
     }
+    None
+}
+
+/// Newton's method on the closure that screws of a rank see, and on the slope of what they leave.
+fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize) -> Option<Configuration> {
+    let mut at = *rough;
+    let mut before = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        let placed = chain.place(&at);
+        let split = Split::new(chain, &placed.screws, rank);
+        let count = split.seen.len() + split.left.len() * split.free.len();
+        let mut columns = vec![vec![0.0; count]; chain.columns];
+        let mut right = vec![0.0; count];
+        for (r, row) in split.seen.iter().enumerate() {
+            right[r] = -power(row, &placed.error);
+            for c in 0..chain.columns {
+                columns[c][r] = power(row, &placed.screws[c]);
+            }
+        }
+        for c in 0..chain.columns {
+            let mut unit = [0.0; COLUMNS];
+            unit[c] = 1.0;
+            let moved = carried(chain, &placed.screws, &unit);
+            for (f, free) in split.free.iter().enumerate() {
+                let bent = twist_of(&moved, free);
+                for (w, row) in split.left.iter().enumerate() {
+                    columns[c][split.seen.len() + w * split.free.len() + f] = power(row, &bent);
+                }
+            }
+        }
+        for (f, free) in split.free.iter().enumerate() {
+            let slope = twist_of(&placed.screws, free);
+            for (w, row) in split.left.iter().enumerate() {
+                right[split.seen.len() + w * split.free.len() + f] = -power(row, &slope);
+            }
+        }
+        let step = least_squares(&columns, &right, NO_SLOPE);
+        let mut by = [0.0; COLUMNS];
+        by[..chain.columns].copy_from_slice(&step);
+        let size = length(&by);
+        if !size.is_finite() || size > NEAR {
+            return None;
+        }
+        at = chain.moved(&at, &by);
+        for ball in &mut at.balls {
+            *ball = squared_up(ball);
+        }
+        let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
+        before = size;
+        if steady {
+            break;
+        }
+    }
+    (before < UNSTEADY).then_some(at)
+}
+
+fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place {
+    let placed = chain.place(at);
+    let split = Split::new(chain, &placed.screws, rank);
+    let count = split.free.len();
+    // each wrench's form as a vector, by which redundant ones are told apart
+    let forms: Vec<Vec<f64>> = split
+        .left
+        .iter()
+        .map(|row| {
+            let mut form = Vec::with_capacity(count * count);
+            for a in &split.free {
+                let moved = carried(chain, &placed.screws, a);
+                form.extend(split.free.iter().map(|b| power(row, &twist_of(&moved, b))));
+            }
+            form
+        })
+        .collect();
+    let values: Vec<f64> = split.left.iter().map(|row| power(row, &placed.error)).collect();
+    let (sizes, mixes) = singular_values(&forms);
+    let mut found = Vec::new();
+    let mut open = 0.0;
+    for (size, mix) in sizes.iter().zip(&mixes) {
+        let value: f64 = mix.iter().zip(&values).map(|(m, v)| m * v).sum();
+        if *size > NO_FORM {
+            let form = (0..count * count)
+                .map(|k| mix.iter().zip(&forms).map(|(m, f)| m * f[k]).sum())
+                .collect();
+            found.push((value, form));
+        } else {
+            open += value * value;
+        }
+    }
+    Place { at: *at, free: split.free, forms: found, open: f64::sqrt(open) }
+}
+
+/// The change point at or near a pose, if there is one, as the wished columns have it; `stuck` where a walk can go no farther.
+pub(super) fn change_point(
+    chain: &Chain,
+    rough: &Configuration,
+    wished: &[usize],
+    stuck: bool,
+) -> Option<ChangePoint> {
+    let place = singular_place(chain, rough).filter(|p| p.counts(wished, stuck))?;
+    let cut = CUT.max(CUT_TIMES * place.passing());
+    let mut found = ChangePoint { at: place.at, rays: Vec::new(), partner: Vec::new(), cut, finite: 0 };
+    for &radius in RADII.iter().filter(|&&r| r > LEAST_RADIUS * cut) {
+        let (ways, finite) = ways_out(chain, &place, radius);
+        found.finite = finite;
+        let rays: Vec<Ray> = ways
+            .iter()
+            .filter_map(|at| ray(chain, &place, at, radius))
+            .collect();
+        let straight = rays.len() == ways.len();
+        if straight || rays.len() > found.rays.len() {
+            found.rays = rays;
+        }
+        if straight {
+            break;
+        }
+    }
+    found.partner = partners(&found.rays);
+    let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
+    if hidden < RADII[0] / LEAST_RADIUS {
+        found.cut = found.cut.max(hidden);
+    }
+    Some(found)
+}
+
+/// Whether a place on a sphere closes only because it is near: at half the distance far less is left open. On a motion what is left
+/// is rounding, or what redundant constraints miss each other by, and the same everywhere.
+fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> bool {
+    let open = |at: &Configuration| chain.residual(&chain.place(at));
+    let inward = chain.difference(&place.at, at).map(|x| x / radius);
+    open(at) > ROUNDED
+        && on_sphere(chain, place, &inward, 0.5 * radius)
+            .is_some_and(|nearer| open(&nearer) < LEAST_FALL * open(at))
+}
+
+/// Where curves cut a sphere about a place, each once, and the most freedoms found on it: surfaces have no ways to tell apart, but
+/// curves may run into them.
+fn ways_out(chain: &Chain, place: &Place, radius: f64) -> (Vec<Configuration>, usize) {
+    let mut found: Vec<Configuration> = Vec::new();
+    let mut finite = 0;
+    for (tried, direction) in directions(place).into_iter().enumerate() {
+        if tried == MOST_IN_VAIN && found.is_empty() && finite == 0 {
+            break;
+        }
+        let Some(at) = on_sphere(chain, place, &direction, radius) else {
+            continue;
+        };
+        let known = |f: &Configuration| length(&chain.difference(f, &at)) < SAME_WAY * radius;
+        if found.iter().any(known) || opens_with_distance(chain, place, &at, radius) {
+            continue;
+        }
+        let (values, _) = singular_values(&chain.screws(&at));
+        let rank = values
+            .iter()
+            .take(6)
+            .filter(|&&v| v > NO_FREEDOM * radius * values[0])
+            .count();
+        let freedoms = chain.columns - rank;
+        finite = finite.max(freedoms);
+        if freedoms == 1 {
+            found.push(at);
+        }
+        // all that is free there is one surface's
+        if freedoms > 1 && freedoms == place.free.len() {
+            break;
+        }
+    }
+    (found, finite)
+}
+
+/// The solution of the closure at a distance from a place that Newton's method finds from a direction.
+fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> Option<Configuration> {
+    let mut at = chain.moved(&place.at, &direction.map(|x| x * radius));
+    let mut before = f64::INFINITY;
+    for step in 0..MOST_STEPS {
+        let placed = chain.place(&at);
+        let off = chain.difference(&place.at, &at);
+        let seen: Vec<f64> = place.free.iter().map(|f| dot(f, &off)).collect();
+        let distance = seen.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if !(distance > 0.1 * radius && length(&off) < 3.0 * radius) {
+            return None;
+        }
+        let mut outward = [0.0; COLUMNS];
+        for (x, free) in seen.iter().zip(&place.free) {
+            for c in 0..COLUMNS {
+                outward[c] += x / distance * free[c];
+            }
+        }
+        let columns: Vec<Vec<f64>> = (0..chain.columns)
+            .map(|c| {
+                let mut column = placed.screws[c].to_vec();
+                column.push(outward[c]);
+                column
+            })
+            .collect();
+        let mut right: Vec<f64> = placed.error.iter().map(|e| -e).collect();
+        right.push(radius - distance);
+        let mut by = [0.0; COLUMNS];
+        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, NO_RANK));
+        let size = length(&by);
+        // where curves touch, steps halve at least
+        if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
+            return None;
+        }
+        // no farther than the sphere is large, and so never across it
+        let factor = (0.3 * radius / size).min(1.0);
+        at = chain.moved(&at, &by.map(|x| x * factor));
+        for ball in &mut at.balls {
+            *ball = squared_up(ball);
+        }
+        let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
+        before = size;
+        if steady {
+            break;
+        }
+    }
+    let closed = if chain.is_redundant() { AGREE } else { CLOSED };
+    (before < STEADY && chain.residual(&chain.place(&at)) < closed).then_some(at)
+}
+
+/// The way out through a place on the sphere; none where its curve does not run straight into the pose.
+fn ray(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> Option<Ray> {
+    let mut outer = *at;
+    let mut seen = [[0.0; COLUMNS]; 3];
+    for (k, seen) in seen.iter_mut().enumerate() {
+        let scale = 1.0 / (radius * 0.5_f64.powi(k as i32));
+        *seen = chain.difference(&place.at, &outer).map(|x| x * scale);
+        if k < 2 {
+            outer = on_sphere(chain, place, seen, 0.5 / scale)?;
+        }
+    }
+    let apart = |a: &Columns, b: &Columns| length(&std::array::from_fn(|c| a[c] - b[c]));
+    let (first, second) = (apart(&seen[0], &seen[1]), apart(&seen[1], &seen[2]));
+    // asymptotes are left by the square of the distance at which curves pass
+    let passing = 4.0 * place.passing() / radius;
+    if first > MOST_BENT || second > 0.75 * first + STRAIGHT + 2.0 * passing * passing {
+        return None;
+    }
+    let (values, vectors) = singular_values(&chain.screws(at));
+    let mut direction = [0.0; COLUMNS];
+    direction[..chain.columns].copy_from_slice(&vectors[chain.columns - 1]);
+    if dot(&direction, &seen[0]) < 0.0 {
+        direction = direction.map(|x| -x);
+    }
+    // the norm grows as a power of the distance; `outer` is at a quarter of it now
+    let norm = |values: &[f64]| values[chain.columns - 2].recip();
+    let (far, near) = (norm(&values), norm(&singular_values(&chain.screws(&outer)).0));
+    let power = ((near / far).log2() / 2.0).max(1.0);
+    let hidden = radius * (far / HIDDEN).powf(1.0 / power);
+    Some(Ray { start: (*at, direction), seen: [seen[0], seen[1]], hidden })
 }
 
 impl Ray {

@@ -1,18 +1,16 @@
 //! A followed curve as rows over an input: passes between dead centres, rows on a grid of inputs, extremes.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Placed, squared_up};
-use super::curve::{Curve, End, Node, bordered_inverse, combined, dot, length};
-use super::dense::Inverse;
-use super::many;
+use super::chain::{Chain, Configuration};
+use super::curve::{self, Curve, End, Node};
+use super::dense::{COLUMNS, combined, dot, length};
+use super::follow;
 use super::polish::AGREE;
-use super::rates::{ORDERS, Rates};
-use super::turnings::{begun_at, insert, turns_at};
+use super::rates::ORDERS;
+use super::row::{self, Row, Solved, UNIT};
+use super::row_lanes::{Near, rows_near};
+use super::turnings::{self, begun_at, insert, turns_at};
 use crate::outcome::RowStatus;
-use crate::vectors::Number;
 use std::f64::consts::TAU;
-
-/// The input at unit speed.
-pub(super) const UNIT: [f64; ORDERS] = [1.0, 0.0, 0.0];
 
 /// A row nearer than this part of a grid step to a dead centre is that dead centre's.
 const SAME_ROW: f64 = 1e-9;
@@ -20,34 +18,16 @@ const SAME_ROW: f64 = 1e-9;
 /// An input of a law nearer than this to a dead centre's is that dead centre's.
 const SAME_LIMIT: f64 = 1e-12;
 
-/// A correction [rad, or parts of the size] after which the next is rounding.
-const SETTLED: f64 = 1e-7;
-
-/// Corrections of a row, and how far they may lead together [rad, or parts of the size].
-const MOST_CORRECTIONS: usize = 8;
-const FARTHEST_CORRECTION: f64 = 0.3;
-
 /// The closure error [rad, or parts of the size] that a row may keep.
 const ROW_CLOSED: f64 = 1e-10;
 
-/// A row of a circuit.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub at: Configuration,
-    pub rates: Rates,
-    pub status: RowStatus,
-    pub pass: usize,
-    pub residual: f64,
-    pub condition: f64,
-}
-
 /// A place near a node of the curve: so far along its tangent.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rough {
+struct Rough {
     node: usize,
     along: f64,
     /// Radius about the place within which the curve is alone.
-    pub tube: f64,
+    tube: f64,
 }
 
 /// A stretch of the curve on which the input only rises or only falls.
@@ -70,92 +50,12 @@ pub(super) struct Passes<'a> {
     pub limits: Vec<Node>,
 }
 
-/// A row's numbers.
-#[derive(Clone, Copy)]
-pub(super) struct Solved<N> {
-    pub at: Configuration<N>,
-    pub rates: Rates<N>,
-    pub residual: N,
-    pub condition: N,
-}
-
-impl Chain {
-    /// The configuration with the input at a value, by Newton from a near one, with its rates.
-    fn solved(
-        &self,
-        input: usize,
-        rough: &Configuration,
-        value: f64,
-        rates: &[f64; ORDERS],
-    ) -> Option<Solved<f64>> {
-        let mut at = *rough;
-        at.values[input] = value;
-        let row = input_row(input);
-        let mut moved = 0.0;
-        for step in 0..MOST_CORRECTIONS {
-            let placed = self.place(&at);
-            let inverse = bordered_inverse(&placed.screws, self.columns, &row);
-            let mut by = inverse.times(&placed.error).map(|x| -x);
-            by[input] = 0.0;
-            let size = length(&by);
-            moved += size;
-            if !size.is_finite() || moved > FARTHEST_CORRECTION {
-                return None;
-            }
-            at = self.moved(&at, &by);
-            // the correction of the next step would be the square of this one
-            if size < SETTLED || step == MOST_CORRECTIONS - 1 {
-                let placed = self.place(&at);
-                let inverse = bordered_inverse(&placed.screws, self.columns, &row);
-                return Some(self.finished(at, &placed, &inverse, (input, rates)));
-            }
-        }
-        None
-    }
-
-    /// The row at a solved configuration, by the inverse there or very near.
-    #[inline(always)]
-    pub fn finished<N: Number>(
-        &self,
-        at: Configuration<N>,
-        placed: &Placed<N>,
-        inverse: &Inverse<N>,
-        (input, given): (usize, &[f64; ORDERS]),
-    ) -> Solved<N> {
-        let one = N::splat(1.0);
-        // the rate's series has half its second derivative
-        let series = [N::splat(given[0]), N::splat(given[1]), N::splat(given[2] / 2.0)];
-        let (rates, _) = self.rates(placed, inverse, &series, Some(input));
-        let mut square = one;
-        for x in placed.screws.as_flattened() {
-            square = square.plus_product(*x, *x);
-        }
-        let mut at = at;
-        for ball in &mut at.balls[..self.ball_count()] {
-            *ball = squared_up(ball);
-        }
-        Solved {
-            at,
-            rates,
-            residual: self.residual(placed),
-            condition: (square * inverse.square(7)).sqrt(),
-        }
-    }
-}
-
-/// The row of the Jacobian that names the input.
-pub(super) fn input_row<N: Number>(input: usize) -> Columns<N> {
-    let mut row = [N::splat(0.0); COLUMNS];
-    row[input] = N::splat(1.0);
-    row
-}
-
 impl<'a> Passes<'a> {
     /// The passes of a curve on which the input does not rest.
     pub fn new(chain: &'a Chain, curve: Curve, input: usize) -> Option<Self> {
         // an input that gains turns rises on the whole, though it may turn back on the way
         let curve = if curve.gained()[input] < 0.0 && curve.goes_round(chain, input) && !curve.crosses() {
-            chain.turned_round(&curve, &[])
+            follow::turned_round(chain, &curve, &[])
         } else {
             curve
         };
@@ -164,14 +64,14 @@ impl<'a> Passes<'a> {
         if passes.passes[0].end > passes.passes[0].start || passes.curve.crosses() {
             return Some(passes);
         }
-        Some(Self::of(chain, chain.turned_round(&passes.curve, &[]), input).unwrap_or(passes))
+        Some(Self::of(chain, follow::turned_round(chain, &passes.curve, &[]), input).unwrap_or(passes))
     }
 
     fn of(chain: &'a Chain, mut curve: Curve, input: usize) -> Option<Self> {
         if curve.nodes.len() < 2 {
             return None;
         }
-        let turnings = curve.turnings(chain, input);
+        let turnings = turnings::turnings(&curve, chain, input);
         // each turning becomes a node; a closed curve then begins at the lowest
         insert(chain, &mut curve, &turnings, input);
         let is_turning = |n: &Node| turns_at(n, input);
@@ -211,13 +111,12 @@ impl<'a> Passes<'a> {
         }
         let rough = self.rough_in(segment, value);
         let node = &self.curve.nodes[rough.node];
-        self.chain
-            .solved(self.input, &self.start(&rough), value, rates)
+        row::solved(self.chain, self.input, &self.start(&rough), value, rates)
             .and_then(|solved| self.accepted(pass, &rough, &solved))
             .or_else(|| {
                 // where the input nearly stands still: along the curve first, then the input
                 let mut s = rough.along;
-                let mut here = self.chain.ahead(node, s)?;
+                let mut here = curve::ahead(self.chain, node, s)?;
                 for _ in 0..20 {
                     let off = value - here.at.values[self.input];
                     let next = s + off / (here.rates[0][self.input] / dot(&here.rates[0], &node.rates[0]));
@@ -225,9 +124,9 @@ impl<'a> Passes<'a> {
                         break;
                     }
                     s = next;
-                    here = self.chain.ahead(node, s)?;
+                    here = curve::ahead(self.chain, node, s)?;
                 }
-                let solved = self.chain.solved(self.input, &here.at, value, rates)?;
+                let solved = row::solved(self.chain, self.input, &here.at, value, rates)?;
                 self.accepted(pass, &rough, &solved)
             })
     }
@@ -237,7 +136,12 @@ impl<'a> Passes<'a> {
         let node = &self.curve.nodes[rough.node];
         let off = self.chain.difference(&node.at, &solved.at);
         let along = dot(&off, &node.rates[0]);
-        let aside = length(&combined(&off, 1.0, &self.chain.predicted(node, along), -1.0));
+        let aside = length(&combined(
+            &off,
+            1.0,
+            &curve::predicted(self.chain, node, along),
+            -1.0,
+        ));
         // the misfit of redundant constraints changes between its nodes
         let closed = if self.chain.is_redundant() {
             2.0 * AGREE
@@ -328,16 +232,16 @@ impl<'a> Passes<'a> {
         let tube = if first || 0.6 * a.step <= b.step {
             n.tube
         } else {
-            self.chain.tube(n, 0.6 * a.step)
+            curve::tube(self.chain, n, 0.6 * a.step)
         };
         Rough { node, along: s, tube }
     }
 
     /// The configuration that a rough place stands for.
-    pub fn start(&self, rough: &Rough) -> Configuration {
+    fn start(&self, rough: &Rough) -> Configuration {
         let node = &self.curve.nodes[rough.node];
         self.chain
-            .moved(&node.at, &self.chain.predicted(node, rough.along))
+            .moved(&node.at, &curve::predicted(self.chain, node, rough.along))
     }
 
     /// The row at a dead centre.
@@ -449,7 +353,7 @@ impl<'a> Passes<'a> {
                 let row = (value >= low && value <= high)
                     .then(|| self.row(n, value, &[q[1], q[2], q[3]]))
                     .flatten();
-                let mut row = row.unwrap_or(missing(n));
+                let mut row = row.unwrap_or(Row::missing(n));
                 if row.status == RowStatus::Ok && !row.condition.is_finite() {
                     row.status = RowStatus::DeadCentre;
                 }
@@ -467,27 +371,19 @@ impl Passes<'_> {
         let value_at = |node: usize| self.curve.nodes[node].at.values[self.input];
         let rising = p.end > p.start;
         let mut segment = p.from;
-        let starts: Vec<(Rough, f64)> = values
+        let starts: Vec<Near> = values
             .map(|value| {
                 while segment + 1 < p.to && (value_at(segment + 1) <= value) == rising {
                     segment += 1;
                 }
-                (self.rough_in(segment, value), value)
+                let rough = self.rough_in(segment, value);
+                Near { at: self.start(&rough), value, tube: rough.tube }
             })
             .collect();
-        many::add_rows(self, pass, &starts, rows);
-    }
-}
-
-pub(super) fn missing(pass: usize) -> Row {
-    let mut at = Configuration::ZERO;
-    at.values = [f64::NAN; COLUMNS];
-    Row {
-        at,
-        rates: [[f64::NAN; COLUMNS]; ORDERS],
-        status: RowStatus::NoSolution,
-        pass,
-        residual: f64::NAN,
-        condition: f64::NAN,
+        let found = rows_near(self.chain, self.input, pass, &starts);
+        rows.extend(starts.iter().zip(found).map(|(near, row)| {
+            row.or_else(|| self.row(pass, near.value, &UNIT))
+                .unwrap_or(Row::missing(pass))
+        }));
     }
 }

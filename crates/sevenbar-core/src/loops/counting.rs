@@ -7,11 +7,12 @@
 //!
 //! Source: docs/theory_many.md, (12) to (16), (20).
 
-use super::around::{Around, Circle, Place};
 use super::chain::Configuration;
+use super::circle::{Circle, InputClosure};
+use super::closure::{Slides, Solution, UNKNOWNS};
+use super::continuation::{CAREFUL, Place};
 use super::locating::{Branching, branch_points};
 use super::modes::{CIRCLE, REAL as REAL_SOLUTION, SAME_MODE, Unknown};
-use super::paths::{CAREFUL, Slides, Solution, UNKNOWNS};
 use super::phases::FACTORS;
 use super::starts::distinct;
 use super::survey::{Infinite, Survey};
@@ -145,7 +146,7 @@ struct Stand {
 
 struct Account<'a> {
     survey: &'a Survey<'a>,
-    closure: &'a Around<'a>,
+    closure: &'a InputClosure<'a>,
     known: Known,
     located: Vec<Branching>,
     open: Vec<Open>,
@@ -154,57 +155,55 @@ struct Account<'a> {
     seed: &'a mut dyn FnMut(&Configuration) -> Known,
 }
 
-impl Survey<'_> {
-    /// The account, from the circle that was followed and what is known. `seed` follows the curve through a pose that was found, and
-    /// gives what is known then.
-    pub fn count(
-        &self,
-        circle: Circle,
-        known: Known,
-        seed: &mut dyn FnMut(&Configuration) -> Known,
-    ) -> Result<Count, Uncounted> {
-        if self.still {
-            return Err(Uncounted::Still);
-        }
-        let closure = self.algebraic.closure(Some(&self.watch));
-        let own = self.algebraic.own();
-        let places = circle.count;
-        let mut account = Account {
-            survey: self,
-            closure: &closure,
-            known,
-            located: Vec::new(),
-            open: Vec::new(),
-            ranges: 0,
-            seed,
-        };
-        let mut followed = Some(circle);
-        let mut count: Option<Count> = None;
-        for &radius in &RADII {
-            let circle = followed
-                .take()
-                .unwrap_or_else(|| self.algebraic.circle(&closure, radius, places, CAREFUL));
-            let Some(poles) = account.balance(&circle, &own) else {
-                continue;
-            };
-            let open = std::mem::take(&mut account.open);
-            let count = count.get_or_insert_with(|| Count { open: open.clone(), ..Count::default() });
-            // a range that balances on one circle is settled
-            let overlaps = |a: &Open| {
-                open.iter()
-                    .any(|b| within(b.from, a.from, a.to) || within(a.from, b.from, b.to))
-            };
-            count.open.retain(overlaps);
-            count.column = self.finder.input;
-            count.dead_centres = account.known.dead_centres.len();
-            count.complex_branch_points = account.located.iter().filter(|b| !b.real).count();
-            count.poles = count.poles.max(poles as usize);
-            if count.open.iter().all(|o| o.to - o.from < WIDE) {
-                break;
-            }
-        }
-        count.ok_or(Uncounted::Lost)
+/// The account, from the circle that was followed and what is known. `seed` follows the curve through a pose that was found, and
+/// gives what is known then.
+pub(super) fn count(
+    survey: &Survey,
+    circle: Circle,
+    known: Known,
+    seed: &mut dyn FnMut(&Configuration) -> Known,
+) -> Result<Count, Uncounted> {
+    if survey.still {
+        return Err(Uncounted::Still);
     }
+    let closure = survey.algebraic.closure(Some(&survey.watch));
+    let own = survey.algebraic.own();
+    let places = circle.count;
+    let mut account = Account {
+        survey: survey,
+        closure: &closure,
+        known,
+        located: Vec::new(),
+        open: Vec::new(),
+        ranges: 0,
+        seed,
+    };
+    let mut followed = Some(circle);
+    let mut count: Option<Count> = None;
+    for &radius in &RADII {
+        let circle = followed
+            .take()
+            .unwrap_or_else(|| survey.algebraic.circle(&closure, radius, places, CAREFUL));
+        let Some(poles) = account.balance(&circle, &own) else {
+            continue;
+        };
+        let open = std::mem::take(&mut account.open);
+        let count = count.get_or_insert_with(|| Count { open: open.clone(), ..Count::default() });
+        // a range that balances on one circle is settled
+        let overlaps = |a: &Open| {
+            open.iter()
+                .any(|b| within(b.from, a.from, a.to) || within(a.from, b.from, b.to))
+        };
+        count.open.retain(overlaps);
+        count.column = survey.finder.input;
+        count.dead_centres = account.known.dead_centres.len();
+        count.complex_branch_points = account.located.iter().filter(|b| !b.real).count();
+        count.poles = count.poles.max(poles as usize);
+        if count.open.iter().all(|o| o.to - o.from < WIDE) {
+            break;
+        }
+    }
+    count.ok_or(Uncounted::Lost)
 }
 
 /// Whether an angle lies in a range, whole turns aside.
@@ -557,8 +556,8 @@ impl Account<'_> {
 mod tests {
     use super::super::chain::{Chain, Joint};
     use super::super::modes::{ModeFinder, random_pose};
-    use super::super::starts::Random;
     use super::*;
+    use crate::random::Random;
     use crate::rigid::Pose;
 
     /// What is counted between the places of the first circle.
@@ -613,9 +612,7 @@ mod tests {
         let survey = Survey::new(&finder).unwrap();
         let circle = finder.around(24, Some(&survey.watch)).1.unwrap();
         let known = Known { dead_centres: known.to_vec(), ..Known::default() };
-        survey
-            .count(circle, known.clone(), &mut |_| known.clone())
-            .unwrap()
+        count(&survey, circle, known.clone(), &mut |_| known.clone()).unwrap()
     }
 
     #[test]

@@ -18,12 +18,12 @@
 //!
 //! Source: docs/theory.md, (7) to (12).
 
-use super::chain::{
-    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Twist, cross, short_way, squared_up, twist_of,
-};
-use super::dense::{Factored, Inverse, ROWS};
-use super::rates::Rates;
-use crate::vectors::Number;
+use super::chain::{Chain, Configuration, Joint};
+use super::dense::{COLUMNS, Columns, Inverse, combined, dot, length};
+use super::rates::{self, Rates};
+use super::rotations::{cross, short_way, squared_up};
+use super::screws::{Twist, bordered_inverse, correction, twist_of};
+use crate::number::Number;
 
 /// Longest step [rad, or parts of the size].
 const LONGEST: f64 = 0.25;
@@ -109,67 +109,6 @@ pub(super) enum End {
 pub(super) struct Curve {
     pub nodes: Vec<Node>,
     pub end: End,
-}
-
-#[inline(always)]
-pub(super) fn dot<N: Number>(a: &Columns<N>, b: &Columns<N>) -> N {
-    let mut sum = N::splat(0.0);
-    for k in 0..COLUMNS {
-        sum = sum.plus_product(a[k], b[k]);
-    }
-    sum
-}
-
-#[inline(always)]
-pub(super) fn combined(a: &Columns, x: f64, b: &Columns, y: f64) -> Columns {
-    std::array::from_fn(|k| a[k] * x + b[k] * y)
-}
-
-#[inline(always)]
-pub(super) fn length<N: Number>(a: &Columns<N>) -> N {
-    dot(a, a).sqrt()
-}
-
-/// The pseudo-inverse of the screws with one more row.
-#[inline(always)]
-pub(super) fn bordered_inverse<N: Number>(
-    screws: &[Twist<N>; COLUMNS],
-    count: usize,
-    row: &Columns<N>,
-) -> Inverse<N> {
-    let mut columns = [[N::splat(0.0); ROWS]; COLUMNS];
-    for c in 0..count {
-        columns[c][..6].copy_from_slice(&screws[c]);
-        columns[c][6] = row[c];
-    }
-    Factored::new(columns, count).inverse()
-}
-
-/// The move `d` with `(A + change) d = -error`, by the inverse of `A` and a few terms of Neumann's series.
-#[inline(always)]
-pub(super) fn correction<N: Number>(
-    inverse: &Inverse<N>,
-    (from, now): (&[Twist<N>; COLUMNS], &Placed<N>),
-    terms: usize,
-) -> (Columns<N>, Columns<N>) {
-    let mut change = now.screws;
-    for c in 0..COLUMNS {
-        for k in 0..6 {
-            change[c][k] = change[c][k] - from[c][k];
-        }
-    }
-    let mut first = inverse.times(&now.error);
-    for x in &mut first {
-        *x = -*x;
-    }
-    let mut d = first;
-    for _ in 0..terms {
-        let seen = inverse.times(&twist_of(&change, &d));
-        for c in 0..COLUMNS {
-            d[c] = first[c] - seen[c];
-        }
-    }
-    (d, first)
 }
 
 impl Curve {
@@ -260,269 +199,277 @@ impl Node {
 /// A correction below this [rad, or parts of the size] leaves less than `stand` takes off.
 const NEARLY_CLOSED: f64 = 1e-6;
 
-impl Chain {
-    /// The move that the rates of a node lead to.
-    #[inline(always)]
-    pub fn predicted<N: Number>(&self, node: &Node<N>, s: N) -> Columns<N> {
-        let (half, third) = (N::splat(0.5), N::splat(1.0 / 3.0));
-        let [u0, u1, u2] = &node.rates;
-        let mut by = [N::splat(0.0); COLUMNS];
-        for c in 0..self.columns {
-            let inner = (u1[c] * half).plus_product(u2[c] * third, s);
-            by[c] = s * u0[c].plus_product(inner, s);
-        }
-        for (joint, &c) in self.joints.iter().zip(&self.first) {
-            if let Joint::Ball(_) = *joint {
-                // Magnus: turns of a changing axis do not simply add
-                let lean = cross(&u1[c..c + 3], &u0[c..c + 3]);
-                let cube = s * s * s * N::splat(1.0 / 12.0);
-                for k in 0..3 {
-                    by[c + k] = by[c + k].plus_product(lean[k], cube);
-                }
+/// The move that the rates of a node lead to.
+#[inline(always)]
+pub(super) fn predicted<N: Number>(chain: &Chain, node: &Node<N>, s: N) -> Columns<N> {
+    let (half, third) = (N::splat(0.5), N::splat(1.0 / 3.0));
+    let [u0, u1, u2] = &node.rates;
+    let mut by = [N::splat(0.0); COLUMNS];
+    for c in 0..chain.columns {
+        let inner = (u1[c] * half).plus_product(u2[c] * third, s);
+        by[c] = s * u0[c].plus_product(inner, s);
+    }
+    for (joint, &c) in chain.joints.iter().zip(&chain.first) {
+        if let Joint::Ball(_) = *joint {
+            // Magnus: turns of a changing axis do not simply add
+            let lean = cross(&u1[c..c + 3], &u0[c..c + 3]);
+            let cube = s * s * s * N::splat(1.0 / 12.0);
+            for k in 0..3 {
+                by[c + k] = by[c + k].plus_product(lean[k], cube);
             }
         }
-        by
     }
+    by
+}
 
-    /// Where the chain stands near a closed configuration, seen along a direction; the node itself is corrected to rounding.
-    #[inline(always)]
-    pub fn stand<N: Number>(&self, rough: &Configuration<N>, before: &Columns<N>) -> Stand<N> {
-        let (zero, one) = (N::splat(0.0), N::splat(1.0));
-        let placed = self.place(rough);
-        let mut inverse = bordered_inverse(&placed.screws, self.columns, before);
-        let scale = one / length(&inverse.0[6]);
-        for x in &mut inverse.0[6] {
-            *x = *x * scale;
+/// Where the chain stands near a closed configuration, seen along a direction; the node itself is corrected to rounding.
+#[inline(always)]
+pub(super) fn stand<N: Number>(chain: &Chain, rough: &Configuration<N>, before: &Columns<N>) -> Stand<N> {
+    let (zero, one) = (N::splat(0.0), N::splat(1.0));
+    let placed = chain.place(rough);
+    let mut inverse = bordered_inverse(&placed.screws, chain.columns, before);
+    let scale = one / length(&inverse.0[6]);
+    for x in &mut inverse.0[6] {
+        *x = *x * scale;
+    }
+    let tangent = inverse.0[6];
+    for column in &mut inverse.0[..6] {
+        let along = dot(column, &tangent);
+        for c in 0..COLUMNS {
+            column[c] = column[c].minus_product(tangent[c], along);
         }
-        let tangent = inverse.0[6];
-        for column in &mut inverse.0[..6] {
-            let along = dot(column, &tangent);
+    }
+    let mut by = inverse.times(&placed.error);
+    for x in &mut by {
+        *x = -*x;
+    }
+    let reached = twist_of(&placed.screws, &by);
+    let mut open = zero;
+    let mut square = zero;
+    for k in 0..6 {
+        let left = placed.error[k] + reached[k];
+        open = open.plus_product(left, left);
+        for screw in &placed.screws {
+            square = square.plus_product(screw[k], screw[k]);
+        }
+    }
+    let (rates, screws) = rates::rates(chain, &placed, &inverse, &[one, zero, zero], None);
+    let mut slopes = [zero; 2];
+    for order in 0..2 {
+        for screw in &screws[order + 1][..chain.columns] {
+            let seen = inverse.times(screw);
+            slopes[order] = slopes[order] + dot(&seen, &seen);
+        }
+        slopes[order] = slopes[order].sqrt();
+    }
+    let far = farthest(chain, rough);
+    let inverse_norm = inverse.square(6).sqrt();
+    let pairs = (chain.columns * (chain.columns - 1)) as f64 / 2.0;
+    let turning = N::splat(pairs.sqrt()) * (one + N::splat(4.0) * far * far).sqrt();
+    let across = inverse_norm * turning.plus_product(N::splat(2.2), square);
+    let mut at = chain.moved(rough, &by);
+    for ball in &mut at.balls[..chain.ball_count()] {
+        *ball = squared_up(ball);
+    }
+    Stand {
+        node: Node {
+            at,
+            rates,
+            step: zero,
+            tube: zero,
+            inverse_norm,
+            slopes,
+            across,
+            far,
+            // not closed at all if turned right round
+            open: placed.closing_cosine.if_greater(zero, open.sqrt(), one),
+        },
+        screws: placed.screws,
+        inverse,
+    }
+}
+
+/// A bound of the distances within the loop, and of how slides move its points: half the way round.
+///
+/// Source: docs/theory.md, (10).
+#[inline(always)]
+fn farthest<N: Number>(chain: &Chain, at: &Configuration<N>) -> N {
+    // a little more where the loop does not quite close
+    let mut around = N::splat(1.02 * chain.around);
+    let mut least = N::splat(0.0);
+    for (joint, &c) in chain.joints.iter().zip(&chain.first) {
+        let advance = match *joint {
+            Joint::Slide => 1.0,
+            Joint::Screw(advance) => advance,
+            _ => continue,
+        };
+        around = around + (at.values[c] * N::splat(advance)).size();
+        least = N::splat(1.0);
+    }
+    let half = around * N::splat(0.5);
+    half.if_greater(least, half, least)
+}
+
+/// `k` of the argument on the curve itself, a step ahead, and `|A+| K5 s^5 / 120`.
+///
+/// Source: docs/theory.md, (8) to (11).
+#[inline(always)]
+fn change<N: Number>(chain: &Chain, node: &Node<N>, s: N) -> (N, N) {
+    let (mut u, mut v, mut w) = (N::splat(0.0), N::splat(0.0), N::splat(0.0));
+    let mut third = N::splat(0.0);
+    for c in 0..chain.columns {
+        // the screw of a column is carried by those before it
+        let z = (u * u * u).plus_product(N::splat(3.0) * u, v) + w;
+        let p =
+            node.far * ((N::splat(8.0) * u * u * u).plus_product(N::splat(12.0) * u, v) + N::splat(2.0) * w);
+        third = third.plus_product(z, z).plus_product(p, p);
+        let [a, b, c] = [
+            node.rates[0][c].size(),
+            node.rates[1][c].size(),
+            node.rates[2][c].size(),
+        ];
+        let slope = b.plus_product(c, s);
+        u = u + a.plus_product(slope, s);
+        v = v + slope.plus_product(c, s);
+        w = w + N::splat(2.0) * c;
+    }
+    let square = s * s;
+    let third = node.inverse_norm * third.sqrt() * s * square * N::splat(1.0 / 6.0);
+    let k = (s * node.slopes[0]).plus_product(square, node.slopes[1]) + third;
+    let fifth = u * u * u * (u * u + N::splat(10.0) * v)
+        + N::splat(15.0) * u * v * v
+        + N::splat(10.0) * w * (u * u + v);
+    let rest = node.inverse_norm * (N::splat(1.0) + node.far * node.far).sqrt() * fifth;
+    (k, rest * square * square * s * N::splat(1.0 / 120.0))
+}
+
+/// `k` of the argument with the radius that a closure error growing by `growth` times the fourth power asks for.
+#[inline(always)]
+fn asked<N: Number>(chain: &Chain, node: &Node<N>, s: N, growth: N) -> N {
+    let (k, rest) = change(chain, node, s);
+    let error = (s * s * s * s * growth).plus_product(N::splat(2.0), rest);
+    k.plus_product(N::splat(2.0) * node.across, error)
+}
+
+/// The length of a step that is likely to be allowed, where the closure error grew like this on the last one.
+#[inline(always)]
+pub(super) fn likely<N: Number>(chain: &Chain, node: &Node<N>, growth: N) -> N {
+    let aim = N::splat(AIMED);
+    let mut s = (aim / node.slopes[0]).lesser(N::splat(LONGEST));
+    for _ in 0..GUESSES {
+        s = s * (aim / asked(chain, node, s, growth)).sqrt();
+    }
+    s.lesser(N::splat(LONGEST))
+}
+
+/// Radius about the predicted places of a step within which the curve is alone; not positive where that is not known.
+pub(super) fn tube(chain: &Chain, node: &Node, step: f64) -> f64 {
+    (ALONE - change(chain, node, step.abs()).0) / node.across
+}
+
+/// The stand a step farther along the curve, and what the argument says of the step.
+#[inline(always)]
+pub(super) fn step<N: Number>(chain: &Chain, from: &Stand<N>, s: N) -> Step<N> {
+    let node = &from.node;
+    let start = chain.moved(&node.at, &predicted(chain, node, s));
+    let placed = chain.place(&start);
+    let (d, first) = correction(
+        &from.inverse,
+        (&from.screws, &placed.screws),
+        &placed.error,
+        NEUMANN,
+    );
+    let rough = chain.moved(&start, &d);
+    let again = chain.place(&rough);
+    let (d, _) = correction(
+        &from.inverse,
+        (&from.screws, &again.screws),
+        &again.error,
+        NEUMANN,
+    );
+    let next = stand(chain, &chain.moved(&rough, &d), &node.rates[0]);
+    let (k, rest) = change(chain, node, s);
+    let error = length(&first);
+    let radius = N::splat(2.0) * error.plus_product(N::splat(2.0), rest);
+    let settled = N::splat(SETTLED) - length(&d);
+    let close = placed.closing_cosine.lesser(settled);
+    Step {
+        next,
+        allowed: (N::splat(CONTRACTING) - k.plus_product(node.across, radius)).lesser(close),
+        tube: (N::splat(ALONE) - k) / node.across,
+        growth: error / (s * s * s * s),
+    }
+}
+
+/// The node a step ahead (or behind), for steps within a certified one.
+pub(super) fn ahead(chain: &Chain, from: &Node, s: f64) -> Option<Node> {
+    let start = chain.moved(&from.at, &predicted(chain, from, s));
+    let mut at = start;
+    for _ in 0..3 {
+        let placed = chain.place(&at);
+        let inverse = bordered_inverse(&placed.screws, chain.columns, &from.rates[0]);
+        let d = inverse.times(&placed.error).map(|x| -x);
+        at = chain.moved(&at, &d);
+        if length(&d) < NEARLY_CLOSED {
+            break;
+        }
+    }
+    let off = length(&chain.difference(&start, &at));
+    let node = stand(chain, &at, &from.rates[0]).node;
+    (off <= tube(chain, from, s) && node.inverse_norm.is_finite()).then_some(node)
+}
+
+/// Whether the turns of a configuration are near enough for [`Chain::passes_through`]: it tells most nodes apart at once.
+pub(super) fn may_pass(chain: &Chain, node: &Node, at: &Configuration) -> bool {
+    chain.joints.iter().zip(&chain.first).all(|(joint, &c)| {
+        *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= REACH * node.step
+    })
+}
+
+/// The turn that two configurations differ by most [rad].
+pub(super) fn farthest_turn(chain: &Chain, a: &Configuration, b: &Configuration) -> f64 {
+    let turns = chain
+        .joints
+        .iter()
+        .zip(&chain.first)
+        .filter(|(j, _)| **j == Joint::Turn);
+    turns.fold(0.0, |most, (_, &c)| {
+        most.max(short_way(b.values[c] - a.values[c]).abs())
+    })
+}
+
+/// The same nodes in the other direction, if the argument holds for each step that way too.
+pub(super) fn reversed(chain: &Chain, curve: &Curve) -> Option<Curve> {
+    let (first, last) = (&curve.nodes[0], curve.nodes.last()?);
+    let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
+    for node in &mut nodes {
+        for order in [0, 2] {
+            node.rates[order] = node.rates[order].map(|x| -x);
+        }
+        if curve.end == End::Closed {
             for c in 0..COLUMNS {
-                column[c] = column[c].minus_product(tangent[c], along);
+                node.at.values[c] -= last.at.values[c] - first.at.values[c];
             }
         }
-        let mut by = inverse.times(&placed.error);
-        for x in &mut by {
-            *x = -*x;
-        }
-        let reached = twist_of(&placed.screws, &by);
-        let mut open = zero;
-        let mut square = zero;
-        for k in 0..6 {
-            let left = placed.error[k] + reached[k];
-            open = open.plus_product(left, left);
-            for screw in &placed.screws {
-                square = square.plus_product(screw[k], screw[k]);
-            }
-        }
-        let (rates, screws) = self.rates(&placed, &inverse, &[one, zero, zero], None);
-        let mut slopes = [zero; 2];
-        for order in 0..2 {
-            for screw in &screws[order + 1][..self.columns] {
-                let seen = inverse.times(screw);
-                slopes[order] = slopes[order] + dot(&seen, &seen);
-            }
-            slopes[order] = slopes[order].sqrt();
-        }
-        let far = self.farthest(rough);
-        let inverse_norm = inverse.square(6).sqrt();
-        let pairs = (self.columns * (self.columns - 1)) as f64 / 2.0;
-        let turning = N::splat(pairs.sqrt()) * (one + N::splat(4.0) * far * far).sqrt();
-        let across = inverse_norm * turning.plus_product(N::splat(2.2), square);
-        let mut at = self.moved(rough, &by);
-        for ball in &mut at.balls[..self.ball_count()] {
-            *ball = squared_up(ball);
-        }
-        Stand {
-            node: Node {
-                at,
-                rates,
-                step: zero,
-                tube: zero,
-                inverse_norm,
-                slopes,
-                across,
-                far,
-                // not closed at all if turned right round
-                open: placed.closing_cosine.if_greater(zero, open.sqrt(), one),
-            },
-            screws: placed.screws,
-            inverse,
-        }
     }
+    measure(chain, &mut nodes);
+    let certain = |pair: &[Node]| passes_through(chain, &pair[0], &pair[1].at).is_some();
+    nodes
+        .windows(2)
+        .all(certain)
+        .then_some(Curve { nodes, end: curve.end })
+}
 
-    /// A bound of the distances within the loop, and of how slides move its points: half the way round.
-    ///
-    /// Source: docs/theory.md, (10).
-    #[inline(always)]
-    fn farthest<N: Number>(&self, at: &Configuration<N>) -> N {
-        // a little more where the loop does not quite close
-        let mut around = N::splat(1.02 * self.around);
-        let mut least = N::splat(0.0);
-        for (joint, &c) in self.joints.iter().zip(&self.first) {
-            let advance = match *joint {
-                Joint::Slide => 1.0,
-                Joint::Screw(advance) => advance,
-                _ => continue,
-            };
-            around = around + (at.values[c] * N::splat(advance)).size();
-            least = N::splat(1.0);
-        }
-        let half = around * N::splat(0.5);
-        half.if_greater(least, half, least)
+/// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.
+pub(super) fn passes_through(chain: &Chain, node: &Node, at: &Configuration) -> Option<f64> {
+    let off = chain.difference(&node.at, at);
+    let along = dot(&off, &node.rates[0]);
+    let slack = 1e-9 * node.step;
+    if along < -slack || along > node.step + slack {
+        return None;
     }
-
-    /// `k` of the argument on the curve itself, a step ahead, and `|A+| K5 s^5 / 120`.
-    ///
-    /// Source: docs/theory.md, (8) to (11).
-    #[inline(always)]
-    fn change<N: Number>(&self, node: &Node<N>, s: N) -> (N, N) {
-        let (mut u, mut v, mut w) = (N::splat(0.0), N::splat(0.0), N::splat(0.0));
-        let mut third = N::splat(0.0);
-        for c in 0..self.columns {
-            // the screw of a column is carried by those before it
-            let z = (u * u * u).plus_product(N::splat(3.0) * u, v) + w;
-            let p = node.far
-                * ((N::splat(8.0) * u * u * u).plus_product(N::splat(12.0) * u, v) + N::splat(2.0) * w);
-            third = third.plus_product(z, z).plus_product(p, p);
-            let [a, b, c] = [
-                node.rates[0][c].size(),
-                node.rates[1][c].size(),
-                node.rates[2][c].size(),
-            ];
-            let slope = b.plus_product(c, s);
-            u = u + a.plus_product(slope, s);
-            v = v + slope.plus_product(c, s);
-            w = w + N::splat(2.0) * c;
-        }
-        let square = s * s;
-        let third = node.inverse_norm * third.sqrt() * s * square * N::splat(1.0 / 6.0);
-        let k = (s * node.slopes[0]).plus_product(square, node.slopes[1]) + third;
-        let fifth = u * u * u * (u * u + N::splat(10.0) * v)
-            + N::splat(15.0) * u * v * v
-            + N::splat(10.0) * w * (u * u + v);
-        let rest = node.inverse_norm * (N::splat(1.0) + node.far * node.far).sqrt() * fifth;
-        (k, rest * square * square * s * N::splat(1.0 / 120.0))
-    }
-
-    /// `k` of the argument with the radius that a closure error growing by `growth` times the fourth power asks for.
-    #[inline(always)]
-    fn asked<N: Number>(&self, node: &Node<N>, s: N, growth: N) -> N {
-        let (k, rest) = self.change(node, s);
-        let error = (s * s * s * s * growth).plus_product(N::splat(2.0), rest);
-        k.plus_product(N::splat(2.0) * node.across, error)
-    }
-
-    /// The length of a step that is likely to be allowed, where the closure error grew like this on the last one.
-    #[inline(always)]
-    pub fn likely<N: Number>(&self, node: &Node<N>, growth: N) -> N {
-        let aim = N::splat(AIMED);
-        let mut s = (aim / node.slopes[0]).lesser(N::splat(LONGEST));
-        for _ in 0..GUESSES {
-            s = s * (aim / self.asked(node, s, growth)).sqrt();
-        }
-        s.lesser(N::splat(LONGEST))
-    }
-
-    /// Radius about the predicted places of a step within which the curve is alone; not positive where that is not known.
-    pub fn tube(&self, node: &Node, step: f64) -> f64 {
-        (ALONE - self.change(node, step.abs()).0) / node.across
-    }
-
-    /// The stand a step farther along the curve, and what the argument says of the step.
-    #[inline(always)]
-    pub fn step<N: Number>(&self, from: &Stand<N>, s: N) -> Step<N> {
-        let node = &from.node;
-        let start = self.moved(&node.at, &self.predicted(node, s));
-        let placed = self.place(&start);
-        let (d, first) = correction(&from.inverse, (&from.screws, &placed), NEUMANN);
-        let rough = self.moved(&start, &d);
-        let again = self.place(&rough);
-        let (d, _) = correction(&from.inverse, (&from.screws, &again), NEUMANN);
-        let next = self.stand(&self.moved(&rough, &d), &node.rates[0]);
-        let (k, rest) = self.change(node, s);
-        let error = length(&first);
-        let radius = N::splat(2.0) * error.plus_product(N::splat(2.0), rest);
-        let settled = N::splat(SETTLED) - length(&d);
-        let close = placed.closing_cosine.lesser(settled);
-        Step {
-            next,
-            allowed: (N::splat(CONTRACTING) - k.plus_product(node.across, radius)).lesser(close),
-            tube: (N::splat(ALONE) - k) / node.across,
-            growth: error / (s * s * s * s),
-        }
-    }
-
-    /// The node a step ahead (or behind), for steps within a certified one.
-    pub fn ahead(&self, from: &Node, s: f64) -> Option<Node> {
-        let start = self.moved(&from.at, &self.predicted(from, s));
-        let mut at = start;
-        for _ in 0..3 {
-            let placed = self.place(&at);
-            let inverse = bordered_inverse(&placed.screws, self.columns, &from.rates[0]);
-            let d = inverse.times(&placed.error).map(|x| -x);
-            at = self.moved(&at, &d);
-            if length(&d) < NEARLY_CLOSED {
-                break;
-            }
-        }
-        let off = length(&self.difference(&start, &at));
-        let node = self.stand(&at, &from.rates[0]).node;
-        (off <= self.tube(from, s) && node.inverse_norm.is_finite()).then_some(node)
-    }
-
-    /// Whether the turns of a configuration are near enough for [`Self::passes_through`]: it tells most nodes apart at once.
-    pub fn may_pass(&self, node: &Node, at: &Configuration) -> bool {
-        self.joints.iter().zip(&self.first).all(|(joint, &c)| {
-            *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= REACH * node.step
-        })
-    }
-
-    /// The turn that two configurations differ by most [rad].
-    pub fn farthest_turn(&self, a: &Configuration, b: &Configuration) -> f64 {
-        let turns = self
-            .joints
-            .iter()
-            .zip(&self.first)
-            .filter(|(j, _)| **j == Joint::Turn);
-        turns.fold(0.0, |most, (_, &c)| {
-            most.max(short_way(b.values[c] - a.values[c]).abs())
-        })
-    }
-
-    /// The same nodes in the other direction, if the argument holds for each step that way too.
-    pub fn reversed(&self, curve: &Curve) -> Option<Curve> {
-        let (first, last) = (&curve.nodes[0], curve.nodes.last()?);
-        let mut nodes: Vec<Node> = curve.nodes.iter().rev().copied().collect();
-        for node in &mut nodes {
-            for order in [0, 2] {
-                node.rates[order] = node.rates[order].map(|x| -x);
-            }
-            if curve.end == End::Closed {
-                for c in 0..COLUMNS {
-                    node.at.values[c] -= last.at.values[c] - first.at.values[c];
-                }
-            }
-        }
-        measure(self, &mut nodes);
-        let certain = |pair: &[Node]| self.passes_through(&pair[0], &pair[1].at).is_some();
-        nodes
-            .windows(2)
-            .all(certain)
-            .then_some(Curve { nodes, end: curve.end })
-    }
-
-    /// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.
-    pub fn passes_through(&self, node: &Node, at: &Configuration) -> Option<f64> {
-        let off = self.difference(&node.at, at);
-        let along = dot(&off, &node.rates[0]);
-        let slack = 1e-9 * node.step;
-        if along < -slack || along > node.step + slack {
-            return None;
-        }
-        let aside = length(&combined(&off, 1.0, &self.predicted(node, along), -1.0));
-        (aside <= node.tube).then_some(along)
-    }
+    let aside = length(&combined(&off, 1.0, &predicted(chain, node, along), -1.0));
+    (aside <= node.tube).then_some(along)
 }
 
 /// Steps between nodes, measured along the tangent of the first of each two.
@@ -531,6 +478,6 @@ pub(super) fn measure(chain: &Chain, nodes: &mut [Node]) {
         let by = chain.difference(&nodes[k - 1].at, &nodes[k].at);
         let step = dot(&by, &nodes[k - 1].rates[0]);
         nodes[k - 1].step = step;
-        nodes[k - 1].tube = chain.tube(&nodes[k - 1], step);
+        nodes[k - 1].tube = tube(chain, &nodes[k - 1], step);
     }
 }

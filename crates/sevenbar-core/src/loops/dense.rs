@@ -1,7 +1,12 @@
 //! Least squares with up to seven rows and columns, and singular values of small matrices.
 
-use super::chain::{COLUMNS, Columns};
-use crate::vectors::Number;
+use crate::number::Number;
+
+/// Most one-freedom columns of a chain with one freedom left: rank six and one.
+pub(super) const COLUMNS: usize = 7;
+
+/// A value for each column.
+pub(super) type Columns<N = f64> = [N; COLUMNS];
 
 /// Rows of the bordered closure: six and one.
 pub(super) const ROWS: usize = 7;
@@ -174,6 +179,25 @@ fn reflect<N: Number>(v: &[N; ROWS], inverse: N, x: &mut [N; ROWS], from: usize)
     for k in from..ROWS {
         x[k] = x[k].minus_product(sum, v[k]);
     }
+}
+
+#[inline(always)]
+pub(super) fn dot<N: Number>(a: &Columns<N>, b: &Columns<N>) -> N {
+    let mut sum = N::splat(0.0);
+    for k in 0..COLUMNS {
+        sum = sum.plus_product(a[k], b[k]);
+    }
+    sum
+}
+
+#[inline(always)]
+pub(super) fn combined(a: &Columns, x: f64, b: &Columns, y: f64) -> Columns {
+    std::array::from_fn(|k| a[k] * x + b[k] * y)
+}
+
+#[inline(always)]
+pub(super) fn length<N: Number>(a: &Columns<N>) -> N {
+    dot(a, a).sqrt()
 }
 
 /// Columns whose cosine is less are square to each other: rounding of their product of seven terms alone makes as much.

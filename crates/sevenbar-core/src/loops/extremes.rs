@@ -6,9 +6,10 @@
 //!
 //! Source: docs/theory_many.md, (11).
 
-use super::chain::Columns;
-use super::circuits::{Passes, Row, UNIT};
-use super::rates::ORDERS;
+use super::circuits::Passes;
+use super::dense::Columns;
+use super::rates::{self, ORDERS};
+use super::row::{Row, UNIT};
 use crate::outcome::RowStatus;
 
 /// The least and the greatest value of a quantity, each with the input there.
@@ -96,7 +97,7 @@ impl Search<'_, '_> {
             self.rate(row, order + 1)
         } else {
             let chain = self.passes.chain;
-            chain.fourth_derivative(&row.at, self.passes.input, self.output)
+            rates::fourth_derivative(chain, &row.at, self.passes.input, self.output)
         }
     }
 

@@ -7,8 +7,8 @@
 //!
 //! Source: docs/theory.md, (6).
 
-use super::paths::{JOINTS, Parameters};
-use super::starts::{Frame, NO_TWIST};
+use super::closure::{JOINTS, Parameters};
+use super::complex_frame::{Frame, NO_TWIST};
 use crate::rigid::Pose;
 use num_complex::Complex64;
 

@@ -2,8 +2,8 @@
 
 use super::chain::Chain;
 use super::dense::singular_values;
-use super::reduce::Kind;
-use super::starts::Random;
+use super::kinds::Kind;
+use crate::random::Random;
 use crate::rigid::Pose;
 
 /// A freedom in which no joint but those of its own links takes part, joints counted from 0.
@@ -102,7 +102,7 @@ fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
             *value = 2.0 * random.uniform() - 1.0;
         }
         for ball in &mut at.balls {
-            *ball = super::modes::ball_rotation(&std::array::from_fn(|_| 3.0 * random.uniform()));
+            *ball = super::rotations::ball_rotation(&std::array::from_fn(|_| 3.0 * random.uniform()));
         }
         let (values, _) = singular_values(&chain.screws(&at));
         values[values.len() - 1] < 1e-9 * values[0]

@@ -5,8 +5,9 @@
 //!
 //! Source: docs/theory_many.md, (15) and (16).
 
-use super::around::{Around, Place, side_by_side};
-use super::paths::{Slides, Solution, UNKNOWNS};
+use super::circle::{InputClosure, side_by_side};
+use super::closure::{Slides, Solution, UNKNOWNS};
+use super::continuation::{Homotopy, Place};
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 use num_complex::Complex64;
 
@@ -47,7 +48,7 @@ pub(super) struct Local {
 
 /// The closure at up to eight solutions.
 struct Linearise<'a> {
-    closure: &'a Around<'a>,
+    closure: &'a InputClosure<'a>,
     at: &'a [(Solution, Complex64)],
     out: &'a mut Vec<Local>,
 }
@@ -56,7 +57,7 @@ impl LaneKernel for Linearise<'_> {
     #[inline(always)]
     fn run<V: Vector>(self) {
         let (x, input) = side_by_side::<V>(self.at);
-        let linear = self.closure.linearise(&x, input);
+        let linear = self.closure.linearise::<V, true>(&x, input);
         let rows = linear.rows.map(|row| row.map(|x| (x.re.store(), x.im.store())));
         for k in 0..self.at.len() {
             let get = |r: usize, c: usize| Complex64::new(rows[r][c].0[k], rows[r][c].1[k]);
@@ -69,7 +70,7 @@ impl LaneKernel for Linearise<'_> {
     }
 }
 
-pub(super) fn linearised(closure: &Around, at: &[(Solution, Complex64)]) -> Vec<Local> {
+pub(super) fn linearised(closure: &InputClosure, at: &[(Solution, Complex64)]) -> Vec<Local> {
     let mut out = Vec::with_capacity(at.len());
     for block in at.chunks(LANES) {
         dispatch(Linearise { closure, at: block, out: &mut out });
@@ -79,7 +80,7 @@ pub(super) fn linearised(closure: &Around, at: &[(Solution, Complex64)]) -> Vec<
 
 /// How many of the solutions, each with its input's `e^(i tau)`, could move with the input at rest.
 pub(super) fn still<'a>(
-    closure: &Around,
+    closure: &InputClosure,
     at: &'a [(Solution, Complex64)],
 ) -> impl Iterator<Item = bool> + 'a {
     let local = linearised(closure, at);
@@ -114,7 +115,7 @@ fn foretold(slides: &Slides, place: &Place, local: &Local, tau: Complex64) -> Op
 
 /// The branch points to which Newton's method leads from places at `tau` whose own branch point is foretold to be wanted.
 pub(super) fn branch_points(
-    closure: &Around,
+    closure: &InputClosure,
     slides: &Slides,
     from: &[(&Place, Complex64)],
     wanted: impl Fn(Complex64) -> bool,
@@ -134,7 +135,12 @@ pub(super) fn branch_points(
         .collect()
 }
 
-fn newton(closure: &Around, slides: &Slides, mut at: Solution, mut tau: Complex64) -> Option<Branching> {
+fn newton(
+    closure: &InputClosure,
+    slides: &Slides,
+    mut at: Solution,
+    mut tau: Complex64,
+) -> Option<Branching> {
     let zero = closure.zero();
     let general: Six = std::array::from_fn(|k| Complex64::from_polar(1.0, 1.0 + 2.3 * k as f64));
     let (mut right, mut left) = (general, general);

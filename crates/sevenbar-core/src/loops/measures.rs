@@ -1,9 +1,9 @@
 //! What the motion of a loop comes to in numbers, without its rows: for many loops at once.
 
-use super::Loop;
+use super::description::Loop;
 use super::extremes::Ends;
 use super::modes::Completeness;
-use super::motion::{Circuit, Motion};
+use super::motion::{self, Circuit, Motion};
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
 
 /// Whether there is a motion to be measured.
@@ -64,68 +64,70 @@ pub struct CircuitMeasures {
     pub condition: f64,
 }
 
-impl Loop {
-    /// What the motion over a column comes to, with so many rows a turn.
-    pub fn measures(&self, input: usize, output: usize, samples: usize) -> Measures {
-        let driven = |driven| Measures {
-            driven,
-            rank: None,
-            finite: None,
-            completeness: Completeness::Searched,
-            still: 0,
-            input_rests: false,
-            modes: None,
-            circuits: Vec::new(),
-        };
-        if !self.can_be_driven() {
-            return driven(Driven::ManyFreedoms);
-        }
-        match self.motion(input, output, samples, 1.0, None) {
-            Some(motion) => self.measured(&motion),
-            None => driven(Driven::NoInput),
-        }
+/// What the motion over a column comes to, with so many rows a turn.
+pub fn measures(linkage: &Loop, input: usize, output: usize, samples: usize) -> Measures {
+    let driven = |driven| Measures {
+        driven,
+        rank: None,
+        finite: None,
+        completeness: Completeness::Searched,
+        still: 0,
+        input_rests: false,
+        modes: None,
+        circuits: Vec::new(),
+    };
+    if !linkage.can_be_driven() {
+        return driven(Driven::ManyFreedoms);
     }
-
-    fn measured(&self, motion: &Motion) -> Measures {
-        let finite = motion.found.as_ref().map(|f| f.finite);
-        let many = motion.circuits.is_empty() && finite.is_some_and(|f| f > 1);
-        Measures {
-            driven: if many { Driven::ManyFreedoms } else { Driven::Yes },
-            rank: motion.found.as_ref().map(|f| f.rank),
-            finite,
-            completeness: motion.completeness,
-            still: motion.still,
-            input_rests: motion.input_rests,
-            modes: motion.modes_at_zero,
-            circuits: motion.circuits.iter().map(|c| self.circuit_measures(c)).collect(),
-        }
+    match motion::motion(linkage, input, output, samples, 1.0, None) {
+        Some(motion) => measured(linkage, &motion),
+        None => driven(Driven::NoInput),
     }
+}
 
-    fn circuit_measures(&self, circuit: &Circuit) -> CircuitMeasures {
-        let rows = &circuit.rows.rows;
-        let ok = || rows.iter().filter(|r| r.status == RowStatus::Ok);
-        CircuitMeasures {
-            closed: circuit.closed,
-            singular: circuit.singular,
-            turns: circuit.turns,
-            input: circuit.input.unwrap_or([f64::NAN; 2]),
-            output: circuit.output.unwrap_or([f64::NAN; 2]),
-            rates: circuit.extremes.map(flat),
-            output_dead_centres: if circuit.output.is_some() {
-                lowest_and_highest(&circuit.dead_centres)
-            } else {
-                [f64::NAN; 4]
-            },
-            input_dead_centres: circuit
-                .dead_centres
-                .iter()
-                .filter(|d| d.kind == DeadCentreKind::Input)
-                .map(|d| [d.input, d.output])
-                .collect(),
-            // the greatest number, of which one that is none is not one
-            residual: rows.iter().map(|r| r.residual).fold(f64::NAN, f64::max) * self.size(),
-            condition: ok().map(|r| r.condition).fold(f64::NAN, f64::max),
-        }
+fn measured(linkage: &Loop, motion: &Motion) -> Measures {
+    let finite = motion.found.as_ref().map(|f| f.finite);
+    let many = motion.circuits.is_empty() && finite.is_some_and(|f| f > 1);
+    Measures {
+        driven: if many { Driven::ManyFreedoms } else { Driven::Yes },
+        rank: motion.found.as_ref().map(|f| f.rank),
+        finite,
+        completeness: motion.completeness,
+        still: motion.still,
+        input_rests: motion.input_rests,
+        modes: motion.modes_at_zero,
+        circuits: motion
+            .circuits
+            .iter()
+            .map(|c| circuit_measures(linkage, c))
+            .collect(),
+    }
+}
+
+fn circuit_measures(linkage: &Loop, circuit: &Circuit) -> CircuitMeasures {
+    let rows = &circuit.rows.rows;
+    let ok = || rows.iter().filter(|r| r.status == RowStatus::Ok);
+    CircuitMeasures {
+        closed: circuit.closed,
+        singular: circuit.singular,
+        turns: circuit.turns,
+        input: circuit.input.unwrap_or([f64::NAN; 2]),
+        output: circuit.output.unwrap_or([f64::NAN; 2]),
+        rates: circuit.extremes.map(flat),
+        output_dead_centres: if circuit.output.is_some() {
+            lowest_and_highest(&circuit.dead_centres)
+        } else {
+            [f64::NAN; 4]
+        },
+        input_dead_centres: circuit
+            .dead_centres
+            .iter()
+            .filter(|d| d.kind == DeadCentreKind::Input)
+            .map(|d| [d.input, d.output])
+            .collect(),
+        // the greatest number, of which one that is none is not one
+        residual: rows.iter().map(|r| r.residual).fold(f64::NAN, f64::max) * linkage.size(),
+        condition: ok().map(|r| r.condition).fold(f64::NAN, f64::max),
     }
 }
 

@@ -7,11 +7,12 @@
 //!
 //! Source: docs/theory_many.md, (12).
 
-use super::around::{Around, side_by_side};
 use super::chain::{Chain, Configuration};
-use super::curve::Curve;
+use super::circle::{InputClosure, side_by_side};
+use super::closure::Solution;
+use super::continuation::Homotopy;
+use super::curve::{self, Curve};
 use super::modes::Unknown;
-use super::paths::Solution;
 use super::survey::Survey;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 use num_complex::Complex64;
@@ -21,7 +22,7 @@ const HALVINGS: usize = 50;
 
 /// The determinant of the passive screws at real solutions.
 struct Determinants<'a> {
-    closure: &'a Around<'a>,
+    closure: &'a InputClosure<'a>,
     at: &'a [(Solution, Complex64)],
     out: &'a mut Vec<f64>,
 }
@@ -31,76 +32,74 @@ impl LaneKernel for Determinants<'_> {
     fn run<V: Vector>(self) {
         for block in self.at.chunks(LANES) {
             let (x, input) = side_by_side::<V>(block);
-            let (.., determinant) = self.closure.linearise(&x, input).solve();
+            let (.., determinant) = self.closure.linearise::<V, true>(&x, input).solve();
             self.out.extend_from_slice(&determinant.re.store()[..block.len()]);
         }
     }
 }
 
-impl Survey<'_> {
-    /// The inputs at which a curve meets others of the filled-up closure [rad]; none where no joints were added, or balls turn.
-    pub fn meetings(&self, chain: &Chain, curve: &Curve) -> Vec<f64> {
-        let unknowns = &self.finder.unknowns;
-        let added = unknowns.iter().any(|u| matches!(u, Unknown::Added));
-        if !added || unknowns.iter().any(|u| matches!(u, Unknown::BallTurn(..))) {
-            return Vec::new();
-        }
-        let column = self.finder.input;
-        let closure = self.algebraic.closure(None);
-        let determinants = |places: &[Configuration]| {
-            let at: Vec<(Solution, Complex64)> = places
-                .iter()
-                .map(|at| {
-                    (
-                        self.solution(at),
-                        closure.zero() * Complex64::cis(at.values[column]),
-                    )
-                })
-                .collect();
-            let mut out = Vec::with_capacity(at.len());
-            dispatch(Determinants { closure: &closure, at: &at, out: &mut out });
-            out
-        };
-        let nodes = &curve.nodes;
-        let places: Vec<Configuration> = nodes.iter().map(|n| n.at).collect();
-        // without the sign changes of dead centres
-        let signs: Vec<f64> = determinants(&places)
+/// The inputs at which a curve meets others of the filled-up closure [rad]; none where no joints were added, or balls turn.
+pub(super) fn meetings(survey: &Survey, chain: &Chain, curve: &Curve) -> Vec<f64> {
+    let unknowns = &survey.finder.unknowns;
+    let added = unknowns.iter().any(|u| matches!(u, Unknown::Added));
+    if !added || unknowns.iter().any(|u| matches!(u, Unknown::BallTurn(..))) {
+        return Vec::new();
+    }
+    let column = survey.finder.input;
+    let closure = survey.algebraic.closure(None);
+    let determinants = |places: &[Configuration]| {
+        let at: Vec<(Solution, Complex64)> = places
             .iter()
-            .zip(nodes)
-            .map(|(d, n)| d.signum() * n.rates[0][column].signum())
+            .map(|at| {
+                (
+                    solution(survey, at),
+                    closure.zero() * Complex64::cis(at.values[column]),
+                )
+            })
             .collect();
-        let mut found = Vec::new();
-        for (k, node) in nodes.iter().enumerate().take(nodes.len() - 1) {
-            if signs[k] * signs[k + 1] >= 0.0 || node.is_crossing() || nodes[k + 1].is_crossing() {
-                continue;
-            }
-            let (mut low, mut high) = (0.0, node.step);
-            let mut at = node.at.values[column];
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                let Some(here) = chain.ahead(node, middle) else {
-                    break;
-                };
-                at = here.at.values[column];
-                let sign = determinants(&[here.at])[0].signum() * here.rates[0][column].signum();
-                if sign * signs[k] > 0.0 {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
-            found.push(at);
+        let mut out = Vec::with_capacity(at.len());
+        dispatch(Determinants { closure: &closure, at: &at, out: &mut out });
+        out
+    };
+    let nodes = &curve.nodes;
+    let places: Vec<Configuration> = nodes.iter().map(|n| n.at).collect();
+    // without the sign changes of dead centres
+    let signs: Vec<f64> = determinants(&places)
+        .iter()
+        .zip(nodes)
+        .map(|(d, n)| d.signum() * n.rates[0][column].signum())
+        .collect();
+    let mut found = Vec::new();
+    for (k, node) in nodes.iter().enumerate().take(nodes.len() - 1) {
+        if signs[k] * signs[k + 1] >= 0.0 || node.is_crossing() || nodes[k + 1].is_crossing() {
+            continue;
         }
-        found
+        let (mut low, mut high) = (0.0, node.step);
+        let mut at = node.at.values[column];
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let Some(here) = curve::ahead(chain, node, middle) else {
+                break;
+            };
+            at = here.at.values[column];
+            let sign = determinants(&[here.at])[0].signum() * here.rates[0][column].signum();
+            if sign * signs[k] > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        found.push(at);
     }
+    found
+}
 
-    /// A configuration as the closure has it, added joints at zero.
-    fn solution(&self, at: &Configuration) -> Solution {
-        let zeros = &self.algebraic.zeros;
-        std::array::from_fn(|i| match self.finder.unknowns[i] {
-            Unknown::Column(c) if self.finder.slides[i] => at.values[c].into(),
-            Unknown::Column(c) => zeros[i] * Complex64::cis(at.values[c]),
-            _ => zeros[i],
-        })
-    }
+/// A configuration as the closure has it, added joints at zero.
+fn solution(survey: &Survey, at: &Configuration) -> Solution {
+    let zeros = &survey.algebraic.zeros;
+    std::array::from_fn(|i| match survey.finder.unknowns[i] {
+        Unknown::Column(c) if survey.finder.slides[i] => at.values[c].into(),
+        Unknown::Column(c) => zeros[i] * Complex64::cis(at.values[c]),
+        _ => zeros[i],
+    })
 }

@@ -5,15 +5,18 @@
 //! any real input only the input moves. Chains with fewer than six passive freedoms close although they have too few; joints
 //! about axes in general position are added, and the solutions kept in which these stay at zero.
 
-use super::around::{Around, Circle};
-use super::chain::{BALLS, Chain, Configuration, Joint, Rotation, product, short_way, squared_up};
+use super::chain::{BALLS, Chain, Configuration, Joint};
+use super::circle::{Circle, InputClosure};
+use super::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
+use super::continuation::{BRISK, CAREFUL, Pace};
 use super::geometry::Form;
-use super::paths::{BRISK, CAREFUL, JOINTS, Pace, Parameters, Slides, Solution, UNKNOWNS, follow};
 use super::phases::Watch;
 use super::poles::{poles, untold_three};
 use super::polish::{self, Settled, polish};
-use super::reduce::Z_TO_X;
-use super::starts::{Class, Random, distinct, general_count};
+use super::rotations::{Rotation, Z_TO_X, ball_rotation, rotation, short_way, squared_up};
+use super::starts::{Class, distinct, general_count};
+use super::straight::carried;
+use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::cell::OnceCell;
@@ -248,7 +251,7 @@ impl<'a> ModeFinder<'a> {
         // straight there: where as many arrive as there can be, none is missing
         let (to, shift) = closure.parameters(self.input_at(value));
         let start = closure.class.start(0);
-        let found = follow(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
+        let found = carried(&self.slides, &start.parameters, &to, &start.solutions, BRISK);
         let ends = distinct(&self.slides, found.into_iter().flatten(), SAME_MODE);
         if ends.len() == closure.class.count() {
             self.polished(&self.real_ones(&ends, &shift, value, REAL))
@@ -274,15 +277,15 @@ impl<'a> ModeFinder<'a> {
         let mut random = Random(0xde70);
         for attempt in 0..3 {
             let found = match attempt {
-                0 => follow(&self.slides, &from, &to, &generic.solutions, BRISK),
+                0 => carried(&self.slides, &from, &to, &generic.solutions, BRISK),
                 // two paths that end near each other may have become one
-                1 => follow(&self.slides, &from, &to, &generic.solutions, CAREFUL),
+                1 => carried(&self.slides, &from, &to, &generic.solutions, CAREFUL),
                 // another way round whatever the straight way came too near to
                 _ => {
                     let (aside, _) = closure.parameters(self.generic_input(&mut random));
-                    let first = follow(&self.slides, &from, &aside, &generic.solutions, CAREFUL);
+                    let first = carried(&self.slides, &from, &aside, &generic.solutions, CAREFUL);
                     let first: Vec<Solution> = first.into_iter().flatten().collect();
-                    follow(&self.slides, &aside, &to, &first, CAREFUL)
+                    carried(&self.slides, &aside, &to, &first, CAREFUL)
                 }
             };
             ends = distinct(
@@ -493,8 +496,8 @@ impl<'a> Algebraic<'a> {
     }
 
     /// The closure with everything but the input fixed.
-    pub fn closure(&self, watch: Option<&Watch>) -> Around<'a> {
-        Around::new(&self.finder.slides, &self.parameters, watch.cloned())
+    pub fn closure(&self, watch: Option<&Watch>) -> InputClosure<'a> {
+        InputClosure::new(&self.finder.slides, &self.parameters, watch.cloned())
     }
 
     /// `e^(i tau)` of the inputs at which solutions run to infinity, if the geometry is general.
@@ -509,7 +512,7 @@ impl<'a> Algebraic<'a> {
     }
 
     /// All solutions followed round a circle and down to the real values beneath.
-    pub fn circle(&self, closure: &Around, radius: f64, count: usize, pace: Pace) -> Circle {
+    pub fn circle(&self, closure: &InputClosure, radius: f64, count: usize, pace: Pace) -> Circle {
         closure.circle(
             self.generic.input.turn,
             &self.generic.solutions,
@@ -564,17 +567,9 @@ impl Closure {
 pub(super) fn random_pose(random: &mut Random) -> Pose {
     let v = std::array::from_fn(|_| 2.0 * random.uniform() - 1.0);
     Pose {
-        rotation: squared_up(&super::chain::rotation(crate::rigid::scale(v, 2.0))),
+        rotation: squared_up(&rotation(crate::rigid::scale(v, 2.0))),
         translation: std::array::from_fn(|_| 1.2 * random.uniform() - 0.6),
     }
-}
-
-/// `Rz(t1) Ry(t2) Rx(t3)`
-pub(super) fn ball_rotation(t: &[f64; 3]) -> [[f64; 3]; 3] {
-    let about = |axis: usize, angle: f64| {
-        super::chain::rotation(std::array::from_fn(|k| if k == axis { angle } else { 0.0 }))
-    };
-    product(&product(&about(2, t[0]), &about(1, t[1])), &about(0, t[2]))
 }
 
 pub(super) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool {

@@ -1,16 +1,20 @@
 //! The whole motion of a loop: every circuit found, over any input and output.
 
-use super::Loop;
-use super::all_curves::{Curves, Found, curves};
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint, short_way};
-use super::circuits::{Passes, Row};
+use super::chain::{Chain, Configuration, Joint};
+use super::circuits::Passes;
 use super::counting::{Count, Uncounted};
 use super::curve::{Curve, End, Node};
+use super::dense::{COLUMNS, Columns};
+use super::description::Loop;
 use super::extremes::{Ends, output_extremes};
 use super::modes::Completeness;
 use super::polish::{Settled, polish};
 use super::rates::ORDERS;
-use super::rows::Rows;
+use super::rotations::short_way;
+use super::row::Row;
+use super::rows::{self, Rows};
+use super::search::{Curves, Found, curves};
+use super::turnings;
 use crate::outcome::{DeadCentre, DeadCentreKind, RowStatus};
 use std::f64::consts::TAU;
 
@@ -93,279 +97,276 @@ pub enum Through {
     InputRests(Vec<usize>),
 }
 
-impl Loop {
-    /// Every circuit over the inputs of one column, on a grid of `samples` a turn or at the inputs of a law.
-    ///
-    /// `None` where one of the columns is no joint of one freedom that moves.
-    pub fn motion(
-        &self,
-        input: usize,
-        output: usize,
-        samples: usize,
-        speed: f64,
-        law: Option<&[[f64; 4]]>,
-    ) -> Option<Motion> {
-        let Some(chain) = &self.reduced.chain else {
-            return Some(Motion {
-                found: None,
-                completeness: Completeness::Searched,
-                count: Err(Uncounted::Searched),
-                seed_columns: Vec::new(),
-                seeds: 0,
-                still: 0,
-                misfits: Vec::new(),
-                modes_at_zero: None,
-                circuits: Vec::new(),
-                change_points: Vec::new(),
-                input_rests: false,
-                moving: Vec::new(),
-            });
-        };
-        let (a, b) = (self.chain_column(input)?, self.chain_column(output)?);
-        let mut curves = curves(chain, &[a, b], false);
-        let followed = std::mem::take(&mut curves.curves);
-        let input_rests = followed.iter().any(|c| c.rests(a));
-        let moving = if input_rests {
-            self.moving(&followed)
-        } else {
-            Vec::new()
-        };
-        let passes: Vec<Passes> = followed
-            .into_iter()
-            .filter(|c| !c.rests(a))
-            .filter_map(|c| Passes::new(chain, c, a))
-            .collect();
-        let (origin, step) = grid(chain, &passes, a, samples);
-        // a pose so far out that the loop hardly closes leaves nothing to tell
-        let (passes, circuits): (Vec<&Passes>, Vec<Circuit>) = passes
-            .iter()
-            .map(|p| {
-                (
-                    p,
-                    self.circuit(p, (input, output), (a, b), (origin, step), speed, law),
-                )
-            })
-            .filter(|(_, c)| !c.rows.is_empty())
-            .unzip();
-        let change_points = curves
-            .change_points
-            .iter()
-            .map(|point| ChangePoint {
-                values: self.joint_values(&point.at),
-                circuits: (0..passes.len())
-                    .filter(|&k| point.is_on(chain, &passes[k].curve))
-                    .collect(),
-                ways: point.rays.len(),
-                freedoms: point.finite,
-            })
-            .collect();
-        let outer = |inner: usize| (0..self.columns).find(|&c| self.chain_column(c) == Some(inner));
-        let mut seed_columns: Vec<usize> = curves.seed_columns.iter().filter_map(|&c| outer(c)).collect();
-        seed_columns.sort_unstable();
-        let count = curves.count.and_then(|mut count| {
-            count.column = outer(count.column).ok_or(Uncounted::Searched)?;
-            Ok(count)
+/// Every circuit over the inputs of one column, on a grid of `samples` a turn or at the inputs of a law.
+///
+/// `None` where one of the columns is no joint of one freedom that moves.
+pub fn motion(
+    linkage: &Loop,
+    input: usize,
+    output: usize,
+    samples: usize,
+    speed: f64,
+    law: Option<&[[f64; 4]]>,
+) -> Option<Motion> {
+    let Some(chain) = &linkage.reduced.chain else {
+        return Some(Motion {
+            found: None,
+            completeness: Completeness::Searched,
+            count: Err(Uncounted::Searched),
+            seed_columns: Vec::new(),
+            seeds: 0,
+            still: 0,
+            misfits: Vec::new(),
+            modes_at_zero: None,
+            circuits: Vec::new(),
+            change_points: Vec::new(),
+            input_rests: false,
+            moving: Vec::new(),
         });
-        Some(Motion {
-            found: curves.found,
-            completeness: curves.completeness,
-            count,
-            seed_columns,
-            seeds: curves.seeds,
-            still: curves.still,
-            misfits: curves.misfits,
-            modes_at_zero: curves.modes_at_zero,
-            circuits,
-            change_points,
-            input_rests,
-            moving,
-        })
-    }
-
-    /// The one circuit through a pose, given by its joint values and closed by Newton's method with the input held.
-    ///
-    /// `None` where one of the columns is no joint of one freedom that moves.
-    pub fn circuit_through(
-        &self,
-        values: &[f64],
-        input: usize,
-        output: usize,
-        samples: usize,
-        speed: f64,
-        law: Option<&[[f64; 4]]>,
-    ) -> Option<Through> {
-        let chain = self.reduced.chain.as_ref()?;
-        let (a, b) = (self.chain_column(input)?, self.chain_column(output)?);
-        let rough = self.configuration(values);
-        let Some(Settled { at: pose, .. }) = polish(chain, a, &rough, PUT_RIGHT).filter(Settled::agrees)
-        else {
-            return Some(Through::Apart(chain.residual(&chain.place(&rough))));
-        };
-        let mut curves = Curves::new(&[a, b]);
-        curves.take(chain, &[pose], a);
-        curves.finish(chain);
-        let Some(curve) = curves.curves.pop() else {
-            return Some(Through::Still);
-        };
-        if curve.rests(a) {
-            return Some(Through::InputRests(self.moving(&[curve])));
-        }
-        let Some(passes) = Passes::new(chain, curve, a) else {
-            return Some(Through::Still);
-        };
-        let grid = grid(chain, std::slice::from_ref(&passes), a, samples);
-        let circuit = self.circuit(&passes, (input, output), (a, b), grid, speed, law);
-        Some(Through::Circuit(Box::new(circuit)))
-    }
-
-    /// The columns that move along some of the curves.
-    fn moving(&self, curves: &[Curve]) -> Vec<usize> {
-        let moves = |c: usize| curves.iter().any(|curve| !curve.rests(c));
-        (0..self.columns)
-            .filter(|&column| self.chain_column(column).is_some_and(moves))
-            .collect()
-    }
-
-    /// How freely the loop moves, from the first poses found over the values of a column.
-    pub fn mobility(&self, column: usize) -> Option<Found> {
-        let chain = self.reduced.chain.as_ref()?;
-        curves(chain, &[self.chain_column(column)?], true).found
-    }
-
-    fn circuit(
-        &self,
-        passes: &Passes,
-        columns: (usize, usize),
-        inner: (usize, usize),
-        grid: (f64, f64),
-        speed: f64,
-        law: Option<&[[f64; 4]]>,
-    ) -> Circuit {
-        let chain = self.reduced.chain.as_ref().unwrap_or_else(|| unreachable!());
-        let (a, b) = inner;
-        let (first, last) = (
-            &passes.curve.nodes[0],
-            &passes.curve.nodes[passes.curve.nodes.len() - 1],
-        );
-        let gained = passes.curve.gained();
-        let closed = passes.curve.end == End::Closed;
-        let turning = |c: usize| passes.curve.goes_round(chain, c);
-        // never stopped by a dead centre
-        let driven_round = turning(a) && !passes.turns_back();
-        let mut rows = passes.rows(grid.0, grid.1);
-        if !closed {
-            // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
-            let lost = |r: &Row| r.status == RowStatus::NoSolution;
-            rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
-            rows.drain(..rows.iter().take_while(|r| lost(r)).count());
-        }
-        if driven_round {
-            begin_at_zero(chain, &mut rows, a, &gained, grid.1);
-        }
-        let crosses = passes.curve.crosses();
-        let extremes = if driven_round && !crosses && law.is_none() {
-            output_extremes(passes, &rows, b, &gained, grid.1)
-        } else {
-            [None; ORDERS]
-        };
-        // whole turns that bring the first row into (-pi, pi]
-        let mut shift = [0.0; COLUMNS];
-        if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
-            for (c, s) in shift.iter_mut().enumerate() {
-                if chain.is_turn(c) {
-                    *s = -TAU * ((row.at.values[c] - short_way(row.at.values[c])) / TAU).round();
-                }
-            }
-        }
-        let scale = |column: usize| 1.0 / self.inward(column);
-        let outward = |c: usize, column: usize, v: f64| (v + shift[c]) * scale(column);
-        let place = |n: &Configuration| {
+    };
+    let (a, b) = (linkage.chain_column(input)?, linkage.chain_column(output)?);
+    let mut curves = curves(chain, &[a, b], false);
+    let followed = std::mem::take(&mut curves.curves);
+    let input_rests = followed.iter().any(|c| c.rests(a));
+    let moving = if input_rests {
+        moving(linkage, &followed)
+    } else {
+        Vec::new()
+    };
+    let passes: Vec<Passes> = followed
+        .into_iter()
+        .filter(|c| !c.rests(a))
+        .filter_map(|c| Passes::new(chain, c, a))
+        .collect();
+    let (origin, step) = grid(chain, &passes, a, samples);
+    // a pose so far out that the loop hardly closes leaves nothing to tell
+    let (passes, circuits): (Vec<&Passes>, Vec<Circuit>) = passes
+        .iter()
+        .map(|p| {
             (
-                outward(a, columns.0, n.values[a]),
-                outward(b, columns.1, n.values[b]),
+                p,
+                circuit(linkage, p, (input, output), (a, b), (origin, step), speed, law),
             )
-        };
-        let mut dead_centres: Vec<DeadCentre> = Vec::new();
-        for (n, limit) in passes.limits.iter().enumerate() {
-            if closed && n + 1 == passes.limits.len() && n > 0 {
-                break;
+        })
+        .filter(|(_, c)| !c.rows.is_empty())
+        .unzip();
+    let change_points = curves
+        .change_points
+        .iter()
+        .map(|point| ChangePoint {
+            values: rows::joint_values(linkage, &point.at),
+            circuits: (0..passes.len())
+                .filter(|&k| point.is_on(chain, &passes[k].curve))
+                .collect(),
+            ways: point.rays.len(),
+            freedoms: point.finite,
+        })
+        .collect();
+    let outer = |inner: usize| (0..linkage.columns).find(|&c| linkage.chain_column(c) == Some(inner));
+    let mut seed_columns: Vec<usize> = curves.seed_columns.iter().filter_map(|&c| outer(c)).collect();
+    seed_columns.sort_unstable();
+    let count = curves.count.and_then(|mut count| {
+        count.column = outer(count.column).ok_or(Uncounted::Searched)?;
+        Ok(count)
+    });
+    Some(Motion {
+        found: curves.found,
+        completeness: curves.completeness,
+        count,
+        seed_columns,
+        seeds: curves.seeds,
+        still: curves.still,
+        misfits: curves.misfits,
+        modes_at_zero: curves.modes_at_zero,
+        circuits,
+        change_points,
+        input_rests,
+        moving,
+    })
+}
+
+/// The one circuit through a pose, given by its joint values and closed by Newton's method with the input held.
+///
+/// `None` where one of the columns is no joint of one freedom that moves.
+pub fn circuit_through(
+    linkage: &Loop,
+    values: &[f64],
+    input: usize,
+    output: usize,
+    samples: usize,
+    speed: f64,
+    law: Option<&[[f64; 4]]>,
+) -> Option<Through> {
+    let chain = linkage.reduced.chain.as_ref()?;
+    let (a, b) = (linkage.chain_column(input)?, linkage.chain_column(output)?);
+    let rough = rows::configuration(linkage, values);
+    let Some(Settled { at: pose, .. }) = polish(chain, a, &rough, PUT_RIGHT).filter(Settled::agrees) else {
+        return Some(Through::Apart(chain.residual(&chain.place(&rough))));
+    };
+    let mut curves = Curves::new(&[a, b]);
+    curves.take(chain, &[pose], a);
+    curves.finish(chain);
+    let Some(curve) = curves.curves.pop() else {
+        return Some(Through::Still);
+    };
+    if curve.rests(a) {
+        return Some(Through::InputRests(moving(linkage, &[curve])));
+    }
+    let Some(passes) = Passes::new(chain, curve, a) else {
+        return Some(Through::Still);
+    };
+    let grid = grid(chain, std::slice::from_ref(&passes), a, samples);
+    let circuit = circuit(linkage, &passes, (input, output), (a, b), grid, speed, law);
+    Some(Through::Circuit(Box::new(circuit)))
+}
+
+/// The columns that move along some of the curves.
+fn moving(linkage: &Loop, curves: &[Curve]) -> Vec<usize> {
+    let moves = |c: usize| curves.iter().any(|curve| !curve.rests(c));
+    (0..linkage.columns)
+        .filter(|&column| linkage.chain_column(column).is_some_and(moves))
+        .collect()
+}
+
+/// How freely the loop moves, from the first poses found over the values of a column.
+pub fn mobility(linkage: &Loop, column: usize) -> Option<Found> {
+    let chain = linkage.reduced.chain.as_ref()?;
+    curves(chain, &[linkage.chain_column(column)?], true).found
+}
+
+fn circuit(
+    linkage: &Loop,
+    passes: &Passes,
+    columns: (usize, usize),
+    inner: (usize, usize),
+    grid: (f64, f64),
+    speed: f64,
+    law: Option<&[[f64; 4]]>,
+) -> Circuit {
+    let chain = linkage.reduced.chain.as_ref().unwrap_or_else(|| unreachable!());
+    let (a, b) = inner;
+    let (first, last) = (
+        &passes.curve.nodes[0],
+        &passes.curve.nodes[passes.curve.nodes.len() - 1],
+    );
+    let gained = passes.curve.gained();
+    let closed = passes.curve.end == End::Closed;
+    let turning = |c: usize| passes.curve.goes_round(chain, c);
+    // never stopped by a dead centre
+    let driven_round = turning(a) && !passes.turns_back();
+    let mut rows = passes.rows(grid.0, grid.1);
+    if !closed {
+        // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
+        let lost = |r: &Row| r.status == RowStatus::NoSolution;
+        rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
+        rows.drain(..rows.iter().take_while(|r| lost(r)).count());
+    }
+    if driven_round {
+        begin_at_zero(chain, &mut rows, a, &gained, grid.1);
+    }
+    let crosses = passes.curve.crosses();
+    let extremes = if driven_round && !crosses && law.is_none() {
+        output_extremes(passes, &rows, b, &gained, grid.1)
+    } else {
+        [None; ORDERS]
+    };
+    // whole turns that bring the first row into (-pi, pi]
+    let mut shift = [0.0; COLUMNS];
+    if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
+        for (c, s) in shift.iter_mut().enumerate() {
+            if chain.is_turn(c) {
+                *s = -TAU * ((row.at.values[c] - short_way(row.at.values[c])) / TAU).round();
             }
-            let (input, output) = place(&limit.at);
-            dead_centres.push(DeadCentre {
-                kind: DeadCentreKind::Input,
-                input,
-                output,
-                branch: n.min(passes.passes.len() - 1),
-                condition: limit.inverse_norm,
-            });
         }
-        let turnings = passes.curve.turnings(chain, b);
-        for t in &turnings {
-            let (input, output) = place(&t.node.at);
-            let branch = passes.passes.iter().position(|p| t.segment < p.to).unwrap_or(0);
-            dead_centres.push(DeadCentre {
-                kind: DeadCentreKind::Output,
-                input,
-                output,
-                branch,
-                condition: t.node.inverse_norm,
-            });
+    }
+    let scale = |column: usize| 1.0 / linkage.inward(column);
+    let outward = |c: usize, column: usize, v: f64| (v + shift[c]) * scale(column);
+    let place = |n: &Configuration| {
+        (
+            outward(a, columns.0, n.values[a]),
+            outward(b, columns.1, n.values[b]),
+        )
+    };
+    let mut dead_centres: Vec<DeadCentre> = Vec::new();
+    for (n, limit) in passes.limits.iter().enumerate() {
+        if closed && n + 1 == passes.limits.len() && n > 0 {
+            break;
         }
-        let range = |c: usize, column: usize, nodes: &mut dyn Iterator<Item = &Node>| {
-            nodes
-                .map(|n| outward(c, column, n.at.values[c]))
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |m, v| {
-                    [m[0].min(v), m[1].max(v)]
-                })
-        };
-        let ends = [first, last];
-        // a closed circuit has its extremes where it turns back, an open one perhaps at its ends
-        let open_ends = if closed && !turnings.is_empty() {
-            &ends[..0]
-        } else {
-            &ends[..]
-        };
-        let input_range = (!turning(a)).then(|| range(a, columns.0, &mut passes.limits.iter().chain(ends)));
-        let output_range = (!turning(b)).then(|| {
-            let turned = turnings.iter().map(|t| &t.node);
-            range(b, columns.1, &mut turned.chain(open_ends.iter().copied()))
+        let (input, output) = place(&limit.at);
+        dead_centres.push(DeadCentre {
+            kind: DeadCentreKind::Input,
+            input,
+            output,
+            branch: n.min(passes.passes.len() - 1),
+            condition: limit.inverse_norm,
         });
-        if let Some(law) = law {
-            let inner_law: Vec<[f64; 4]> = law
-                .iter()
-                .map(|q| q.map(|x| x * self.inward(columns.0)))
-                .collect();
-            rows = passes.law_rows(&inner_law, chain.is_turn(a), shift[a]);
+    }
+    let turnings = turnings::turnings(&passes.curve, chain, b);
+    for t in &turnings {
+        let (input, output) = place(&t.node.at);
+        let branch = passes.passes.iter().position(|p| t.segment < p.to).unwrap_or(0);
+        dead_centres.push(DeadCentre {
+            kind: DeadCentreKind::Output,
+            input,
+            output,
+            branch,
+            condition: t.node.inverse_norm,
+        });
+    }
+    let range = |c: usize, column: usize, nodes: &mut dyn Iterator<Item = &Node>| {
+        nodes
+            .map(|n| outward(c, column, n.at.values[c]))
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |m, v| {
+                [m[0].min(v), m[1].max(v)]
+            })
+    };
+    let ends = [first, last];
+    // a closed circuit has its extremes where it turns back, an open one perhaps at its ends
+    let open_ends = if closed && !turnings.is_empty() {
+        &ends[..0]
+    } else {
+        &ends[..]
+    };
+    let input_range = (!turning(a)).then(|| range(a, columns.0, &mut passes.limits.iter().chain(ends)));
+    let output_range = (!turning(b)).then(|| {
+        let turned = turnings.iter().map(|t| &t.node);
+        range(b, columns.1, &mut turned.chain(open_ends.iter().copied()))
+    });
+    if let Some(law) = law {
+        let inner_law: Vec<[f64; 4]> = law
+            .iter()
+            .map(|q| q.map(|x| x * linkage.inward(columns.0)))
+            .collect();
+        rows = passes.law_rows(&inner_law, chain.is_turn(a), shift[a]);
+    }
+    let mut offsets = vec![0.0; linkage.columns];
+    for (column, offset) in offsets.iter_mut().enumerate() {
+        if let Some(c) = linkage.chain_column(column) {
+            *offset = shift[c];
         }
-        let mut offsets = vec![0.0; self.columns];
-        for (column, offset) in offsets.iter_mut().enumerate() {
-            if let Some(c) = self.chain_column(column) {
-                *offset = shift[c];
-            }
-        }
-        Circuit {
-            rows: Rows {
-                rows,
-                offsets,
-                speed: if law.is_some() {
-                    1.0
-                } else {
-                    speed * self.inward(columns.0)
-                },
-            },
-            closed,
-            singular: passes.curve.end == End::Singular || crosses,
-            turns: if turning(a) {
-                (gained[a] / TAU).abs().round() as usize
+    }
+    Circuit {
+        rows: Rows {
+            rows,
+            offsets,
+            speed: if law.is_some() {
+                1.0
             } else {
-                0
+                speed * linkage.inward(columns.0)
             },
-            input: input_range,
-            output: output_range,
-            dead_centres,
-            extremes: extremes
-                .map(|e| e.map(|ends| ends.map(|[value, at]| [value * scale(columns.1), at + shift[a]]))),
-        }
+        },
+        closed,
+        singular: passes.curve.end == End::Singular || crosses,
+        turns: if turning(a) {
+            (gained[a] / TAU).abs().round() as usize
+        } else {
+            0
+        },
+        input: input_range,
+        output: output_range,
+        dead_centres,
+        extremes: extremes
+            .map(|e| e.map(|ends| ends.map(|[value, at]| [value * scale(columns.1), at + shift[a]]))),
     }
 }
 

@@ -4,8 +4,8 @@
 //!
 //! Source: docs/theory_many.md, (12) and (14).
 
+use super::closure::{Slides, UNKNOWNS};
 use super::lanes::Lanes;
-use super::paths::{Slides, UNKNOWNS};
 use crate::vectors::{Reals, Vector};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -6,7 +6,7 @@
 //!
 //! Source: docs/theory_many.md, (17) and (18).
 
-use super::paths::{JOINTS, Parameters, Slides, UNKNOWNS};
+use super::closure::{JOINTS, Parameters, Slides, UNKNOWNS};
 use num_complex::Complex64;
 use std::ops::{Add, Mul};
 
@@ -186,12 +186,13 @@ fn common_zeros(f: &Bilinear, g: &Bilinear) -> Option<[(Complex64, Complex64); 2
 
 #[cfg(test)]
 mod tests {
-    use super::super::starts::Random;
+    use super::super::starts::general_parameters;
     use super::*;
+    use crate::random::Random;
 
     #[test]
     fn a_general_loop_has_eighty_poles_the_sixteen_between_two_near_joints_in_pairs() {
-        let parameters = Random(7).parameters();
+        let parameters = general_parameters(&mut Random(7));
         let found = poles(&parameters).unwrap();
         assert_eq!(found.len(), 80);
         let twins = |a: &Complex64| found.iter().filter(|b| (a / *b - 1.0).norm() < 1e-9).count();

@@ -5,8 +5,9 @@
 //! Such a pose counts as closed while its misfit is below [`AGREE`], and so does a node of a circuit. What joints could close must
 //! be closed to rounding, in every loop.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, squared_up};
-use super::dense::{Factored, ROWS, least_squares, singular_values};
+use super::chain::{Chain, Configuration};
+use super::dense::{COLUMNS, Columns, Factored, ROWS, least_squares, singular_values};
+use super::rotations::squared_up;
 
 /// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
 pub(super) const CLOSED: f64 = 1e-11;

@@ -6,16 +6,13 @@
 //!
 //! Source: docs/theory.md, (13) to (16).
 
-use super::chain::{
-    COLUMNS, Chain, Columns, Configuration, Joint, Placed, Rotation, Twist, bracket, transposed, twist_of,
-};
-use super::circuits::input_row;
-use super::curve::bordered_inverse;
-use super::dense::{Inverse, ROWS};
-use super::reduce::Z_TO_X;
+use super::chain::{Chain, Configuration, Joint, Placed};
+use super::dense::{COLUMNS, Columns, Inverse, ROWS};
+use super::rotations::{Rotation, Z_TO_X, transposed};
+use super::screws::{Twist, bordered_inverse, bracket, input_row, twist_of};
+use crate::number::Number;
 use crate::rigid::{Pose, Vec3};
 use crate::taylor::Taylor;
-use crate::vectors::Number;
 
 /// Orders of the rates: velocity, acceleration, jerk.
 pub(super) const ORDERS: usize = 3;
@@ -29,160 +26,163 @@ pub(super) type Rates<N = f64> = [Columns<N>; ORDERS];
 /// Power series of the joints' screws, of so many terms.
 pub(super) type Screws<N, const TERMS: usize = ORDERS> = [[Twist<N>; COLUMNS]; TERMS];
 
-impl Chain {
-    /// The screws' coefficients of an order, from those of lower ones and the rates.
-    ///
-    /// Source: docs/theory.md, (13) and (14).
-    #[inline(always)]
-    pub fn carry<N: Number, const TERMS: usize>(
-        &self,
-        screws: &mut Screws<N, TERMS>,
-        rates: &[Columns<N>; TERMS],
-        order: usize,
-    ) {
-        let zero = N::splat(0.0);
-        // of the link before each joint
-        let mut twists = [[zero; 6]; TERMS];
-        let inverse = N::splat(1.0 / order as f64);
-        for (joint, &first) in self.joints.iter().zip(&self.first) {
-            let width = joint.columns();
-            for c in first..first + width {
-                let mut sum = bracket(&twists[0], &screws[order - 1][c]);
-                for a in 1..order {
-                    let part = bracket(&twists[a], &screws[order - 1 - a][c]);
-                    for k in 0..6 {
-                        sum[k] = sum[k] + part[k];
-                    }
-                }
+/// The screws' coefficients of an order, from those of lower ones and the rates.
+///
+/// Source: docs/theory.md, (13) and (14).
+#[inline(always)]
+pub(super) fn carry<N: Number, const TERMS: usize>(
+    chain: &Chain,
+    screws: &mut Screws<N, TERMS>,
+    rates: &[Columns<N>; TERMS],
+    order: usize,
+) {
+    let zero = N::splat(0.0);
+    // of the link before each joint
+    let mut twists = [[zero; 6]; TERMS];
+    let inverse = N::splat(1.0 / order as f64);
+    for (joint, &first) in chain.joints.iter().zip(&chain.first) {
+        let width = joint.columns();
+        for c in first..first + width {
+            let mut sum = bracket(&twists[0], &screws[order - 1][c]);
+            for a in 1..order {
+                let part = bracket(&twists[a], &screws[order - 1 - a][c]);
                 for k in 0..6 {
-                    screws[order][c][k] = sum[k] * inverse;
+                    sum[k] = sum[k] + part[k];
                 }
             }
-            for c in first..first + width {
-                for a in 0..order {
-                    for b in 0..=a {
-                        for k in 0..6 {
-                            twists[a][k] = twists[a][k].plus_product(screws[b][c][k], rates[a - b][c]);
-                        }
-                    }
-                }
+            for k in 0..6 {
+                screws[order][c][k] = sum[k] * inverse;
             }
         }
-    }
-
-    /// The joint rates, order by order, and the series of the screws, by the inverse of the screws with one more row, on which
-    /// the rates are `given`. Where that row holds one column, the inverse may be that of a place very near.
-    ///
-    /// Source: docs/theory.md, (15).
-    #[inline(always)]
-    pub fn rates<N: Number, const TERMS: usize>(
-        &self,
-        placed: &Placed<N>,
-        inverse: &Inverse<N>,
-        given: &[N; TERMS],
-        held: Option<usize>,
-    ) -> ([Columns<N>; TERMS], Screws<N, TERMS>) {
-        let zero = N::splat(0.0);
-        let mut rates = [[zero; COLUMNS]; TERMS];
-        let mut screws = [[[zero; 6]; COLUMNS]; TERMS];
-        screws[0] = placed.screws;
-        for order in 0..TERMS {
-            let mut right = [zero; ROWS];
-            if order > 0 {
-                self.carry(&mut screws, &rates, order);
-                for a in 1..=order {
-                    for c in 0..self.columns {
-                        for k in 0..6 {
-                            right[k] = right[k].minus_product(screws[a][c][k], rates[order - a][c]);
-                        }
-                    }
-                }
-            }
-            right[6] = given[order];
-            let mut solved = inverse.times(&right);
-            if let Some(column) = held {
-                for _ in 0..REFINEMENTS {
-                    solved[column] = given[order];
-                    let mut left = twist_of(&placed.screws, &solved);
-                    for k in 0..6 {
-                        left[k] = right[k] - left[k];
-                    }
-                    let more = inverse.times(&left);
-                    for c in 0..COLUMNS {
-                        solved[c] = solved[c] + more[c];
-                    }
-                }
-                solved[column] = given[order];
-            }
-            rates[order] = solved;
-        }
-        (rates, screws)
-    }
-
-    /// The fourth derivative of a column at a closed configuration, by the input, which has unit speed.
-    pub fn fourth_derivative(&self, at: &Configuration, input: usize, column: usize) -> f64 {
-        let placed = self.place(at);
-        let inverse = bordered_inverse(&placed.screws, self.columns, &input_row(input));
-        let (rates, _) = self.rates(&placed, &inverse, &[1.0, 0.0, 0.0, 0.0], Some(input));
-        6.0 * rates[ORDERS][column]
-    }
-
-    /// The series of the twist of the link after a joint, in the frame of the first joint: `V0 + V1 t + V2 t^2`.
-    pub fn link_twist(&self, placed: &Placed, rates: &Rates, joint: usize) -> [Twist; ORDERS] {
-        let mut screws: Screws<f64> = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
-        for order in 1..ORDERS {
-            self.carry(&mut screws, rates, order);
-        }
-        let end = self.first.get(joint + 1).copied().unwrap_or(self.columns);
-        let mut twists = [[0.0; 6]; ORDERS];
-        for c in 0..end {
-            for a in 0..ORDERS {
+        for c in first..first + width {
+            for a in 0..order {
                 for b in 0..=a {
                     for k in 0..6 {
-                        twists[a][k] += screws[b][c][k] * rates[a - b][c];
+                        twists[a][k] = twists[a][k].plus_product(screws[b][c][k], rates[a - b][c]);
                     }
                 }
             }
         }
-        twists
     }
+}
 
-    /// A joint's turn and slide from the frame before it to that after, as a series.
-    pub fn joint_series(&self, joint: usize, at: &Configuration, rates: &Rates) -> [[Taylor<4>; 3]; 3] {
-        let first = self.first[joint];
-        if let Joint::Ball(b) = self.joints[joint] {
-            let spin = std::array::from_fn(|order| std::array::from_fn(|k| rates[order][first + k]));
-            return rotation_series(&at.balls[b], &spin);
+/// The joint rates, order by order, and the series of the screws, by the inverse of the screws with one more row, on which
+/// the rates are `given`. Where that row holds one column, the inverse may be that of a place very near.
+///
+/// Source: docs/theory.md, (15).
+#[inline(always)]
+pub(super) fn rates<N: Number, const TERMS: usize>(
+    chain: &Chain,
+    placed: &Placed<N>,
+    inverse: &Inverse<N>,
+    given: &[N; TERMS],
+    held: Option<usize>,
+) -> ([Columns<N>; TERMS], Screws<N, TERMS>) {
+    let zero = N::splat(0.0);
+    let mut rates = [[zero; COLUMNS]; TERMS];
+    let mut screws = [[[zero; 6]; COLUMNS]; TERMS];
+    screws[0] = placed.screws;
+    for order in 0..TERMS {
+        let mut right = [zero; ROWS];
+        if order > 0 {
+            carry(chain, &mut screws, &rates, order);
+            for a in 1..=order {
+                for c in 0..chain.columns {
+                    for k in 0..6 {
+                        right[k] = right[k].minus_product(screws[a][c][k], rates[order - a][c]);
+                    }
+                }
+            }
         }
-        let (s, c) = self.value_series(joint, at, rates).sin_cos();
-        let (zero, one) = (Taylor::constant(0.0), Taylor::constant(1.0));
-        [[c, -s, zero], [s, c, zero], [zero, zero, one]]
+        right[6] = given[order];
+        let mut solved = inverse.times(&right);
+        if let Some(column) = held {
+            for _ in 0..REFINEMENTS {
+                solved[column] = given[order];
+                let mut left = twist_of(&placed.screws, &solved);
+                for k in 0..6 {
+                    left[k] = right[k] - left[k];
+                }
+                let more = inverse.times(&left);
+                for c in 0..COLUMNS {
+                    solved[c] = solved[c] + more[c];
+                }
+            }
+            solved[column] = given[order];
+        }
+        rates[order] = solved;
     }
+    (rates, screws)
+}
 
-    /// The value of a joint that is no ball.
-    pub fn value_series(&self, joint: usize, at: &Configuration, rates: &Rates) -> Taylor<4> {
-        let first = self.first[joint];
-        Taylor([
-            at.values[first],
-            rates[0][first],
-            rates[1][first] / 2.0,
-            rates[2][first] / 3.0,
-        ])
-    }
+/// The fourth derivative of a column at a closed configuration, by the input, which has unit speed.
+pub(super) fn fourth_derivative(chain: &Chain, at: &Configuration, input: usize, column: usize) -> f64 {
+    let placed = chain.place(at);
+    let inverse = bordered_inverse(&placed.screws, chain.columns, &input_row(input));
+    let (rates, _) = rates(chain, &placed, &inverse, &[1.0, 0.0, 0.0, 0.0], Some(input));
+    6.0 * rates[ORDERS][column]
+}
 
-    /// The rotation by the two turns of a ball that holds a spin, the first of which is this joint, in their frame.
-    pub fn universal_series(
-        &self,
-        joint: usize,
-        frame: &Rotation,
-        at: &Configuration,
-        rates: &Rates,
-    ) -> [[Taylor<4>; 3]; 3] {
-        let a = self.joint_series(joint, at, rates);
-        let b = self.joint_series(joint + 1, at, rates);
-        let b = turned_series(&Z_TO_X, &b, &transposed(&Z_TO_X));
-        turned_series(frame, &product_series(&a, &b), &transposed(frame))
+/// The series of the twist of the link after a joint, in the frame of the first joint: `V0 + V1 t + V2 t^2`.
+pub(super) fn link_twist(chain: &Chain, placed: &Placed, rates: &Rates, joint: usize) -> [Twist; ORDERS] {
+    let mut screws: Screws<f64> = [placed.screws, [[0.0; 6]; COLUMNS], [[0.0; 6]; COLUMNS]];
+    for order in 1..ORDERS {
+        carry(chain, &mut screws, rates, order);
     }
+    let end = chain.first.get(joint + 1).copied().unwrap_or(chain.columns);
+    let mut twists = [[0.0; 6]; ORDERS];
+    for c in 0..end {
+        for a in 0..ORDERS {
+            for b in 0..=a {
+                for k in 0..6 {
+                    twists[a][k] += screws[b][c][k] * rates[a - b][c];
+                }
+            }
+        }
+    }
+    twists
+}
+
+/// A joint's turn and slide from the frame before it to that after, as a series.
+pub(super) fn joint_series(
+    chain: &Chain,
+    joint: usize,
+    at: &Configuration,
+    rates: &Rates,
+) -> [[Taylor<4>; 3]; 3] {
+    let first = chain.first[joint];
+    if let Joint::Ball(b) = chain.joints[joint] {
+        let spin = std::array::from_fn(|order| std::array::from_fn(|k| rates[order][first + k]));
+        return rotation_series(&at.balls[b], &spin);
+    }
+    let (s, c) = value_series(chain, joint, at, rates).sin_cos();
+    let (zero, one) = (Taylor::constant(0.0), Taylor::constant(1.0));
+    [[c, -s, zero], [s, c, zero], [zero, zero, one]]
+}
+
+/// The value of a joint that is no ball.
+pub(super) fn value_series(chain: &Chain, joint: usize, at: &Configuration, rates: &Rates) -> Taylor<4> {
+    let first = chain.first[joint];
+    Taylor([
+        at.values[first],
+        rates[0][first],
+        rates[1][first] / 2.0,
+        rates[2][first] / 3.0,
+    ])
+}
+
+/// The rotation by the two turns of a ball that holds a spin, the first of which is this joint, in their frame.
+pub(super) fn universal_series(
+    chain: &Chain,
+    joint: usize,
+    frame: &Rotation,
+    at: &Configuration,
+    rates: &Rates,
+) -> [[Taylor<4>; 3]; 3] {
+    let a = joint_series(chain, joint, at, rates);
+    let b = joint_series(chain, joint + 1, at, rates);
+    let b = turned_series(&Z_TO_X, &b, &transposed(&Z_TO_X));
+    turned_series(frame, &product_series(&a, &b), &transposed(frame))
 }
 
 /// A rotation with the series of its angular velocity, by `B' = w x B`.

@@ -1,40 +1,13 @@
 //! From the joints of a description to the chain that is followed: idle freedoms held, balls made one joint.
 
-use super::chain::{BALLS, COLUMNS, Chain, Half, Joint, Rotation, transposed};
+use super::chain::{BALLS, Chain, Half, Joint};
+use super::dense::COLUMNS;
 use super::idle::{Idle, idle_freedoms};
+use super::kinds::Kind;
+use super::rotations::{Rotation, Z_TO_X, transposed};
 use super::spin_axis::{Way, spin_axis};
 use super::spun::{Spun, away_from_line};
 use crate::rigid::{Pose, Vec3, add, cross, dot, most_perpendicular_axis, norm, scale, sub, unit};
-
-/// A joint of the description; C and U are two of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
-    /// R
-    Turn,
-    /// P
-    Slide,
-    /// H, with its advance for a radian [length].
-    Screw(f64),
-    /// S
-    Ball,
-}
-
-impl Kind {
-    /// How many columns of joint values it has.
-    pub fn columns(self) -> usize {
-        self.joint(0).columns()
-    }
-
-    /// The chain's joint; a ball is the one of this number.
-    pub(super) fn joint(self, ball: usize) -> Joint {
-        match self {
-            Self::Turn => Joint::Turn,
-            Self::Slide => Joint::Slide,
-            Self::Screw(advance) => Joint::Screw(advance),
-            Self::Ball => Joint::Ball(ball),
-        }
-    }
-}
 
 /// Where the values of a joint of the description come from.
 #[derive(Clone, Copy, Debug)]
@@ -95,9 +68,6 @@ pub(super) struct Reduced {
     pub base: Pose,
     pub spun: Option<SpunLinks>,
 }
-
-/// Takes z to x, and x to minus z.
-pub(super) const Z_TO_X: Rotation = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
 
 /// The frame of the two turns that stand for a ball whose link's spin is held: z along the axis before, x across it and the
 /// line to the next ball.

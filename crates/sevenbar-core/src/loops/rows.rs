@@ -1,11 +1,13 @@
 //! Rows of a circuit as the description's joints and links have them.
 
-use super::Loop;
-use super::chain::{BALLS, COLUMNS, Chain, Configuration, Joint, Rotation, product, short_way, transposed};
-use super::circuits::Row;
-use super::modes::ball_rotation;
-use super::rates::{ORDERS, Rates, point_rates, product_series};
-use super::reduce::{Carrier, Kind, Source, SpunLinks, Z_TO_X};
+use super::chain::{BALLS, Chain, Configuration, Joint};
+use super::dense::COLUMNS;
+use super::description::Loop;
+use super::kinds::Kind;
+use super::rates::{self, ORDERS, Rates, point_rates, product_series};
+use super::reduce::{Carrier, Source, SpunLinks};
+use super::rotations::{Rotation, Z_TO_X, ball_rotation, product, short_way, transposed};
+use super::row::Row;
 use super::spun::first_terms;
 use crate::outcome::RowStatus;
 use crate::rigid::{Pose, Vec3, Vec3Taylor, scale, turns_zyx};
@@ -123,275 +125,286 @@ impl Rows {
     }
 }
 
-impl Loop {
-    /// Joint values of a configuration; angles as they come, a ball's turns NaN where they are undefined.
-    pub(super) fn joint_values(&self, at: &Configuration) -> Vec<f64> {
-        let still = [[0.0; COLUMNS]; ORDERS];
-        self.joint_rates(at, &still)
-            .iter()
-            .enumerate()
-            .map(|(c, q)| {
-                if self.is_slide(c) {
-                    q[0]
-                } else {
-                    self.wrapped(c, q[0])
-                }
-            })
-            .collect()
-    }
-
-    /// The configuration with these joint values; the idle spin of links is left out.
-    pub(super) fn configuration(&self, values: &[f64]) -> Configuration {
-        let mut out = Configuration::ZERO;
-        let mut left_out = [Pose::STILL.rotation; BALLS];
-        let Some(chain) = &self.reduced.chain else {
-            return out;
-        };
-        for (part, &first) in self.reduced.parts.iter().zip(&self.first) {
-            let turns = || ball_rotation(&[values[first], values[first + 1], values[first + 2]]);
-            match (part.source, part.kind) {
-                (Source::Held, _) => {}
-                (Source::Joint(joint), Kind::Ball) => {
-                    if let Joint::Ball(b) = chain.joints[joint] {
-                        out.balls[b] = turns();
-                    }
-                }
-                (Source::Joint(joint), _) => {
-                    out.values[chain.first[joint]] = values[first] * self.inward(first);
-                }
-                (Source::Universal(joint, frame), _) => {
-                    let spun = configure_universal(chain, joint, &frame, &turns(), &mut out);
-                    // what is left out of the spin goes to the other ball, which is the next joint of the chain
-                    let next = (joint + 2) % chain.joints.len();
-                    let way = product(&product(&frame, &Z_TO_X), &chain.links[joint + 1].rotation);
-                    if let Joint::Ball(b) = chain.joints[next] {
-                        left_out[b] = product(&product(&transposed(&way), &spun), &way);
-                    }
-                }
-                // both below, for they need the joint between them
-                (Source::BeforeSpun(..) | Source::AfterSpun(_), _) => {}
+/// Joint values of a configuration; angles as they come, a ball's turns NaN where they are undefined.
+pub(super) fn joint_values(linkage: &Loop, at: &Configuration) -> Vec<f64> {
+    let still = [[0.0; COLUMNS]; ORDERS];
+    joint_rates(linkage, at, &still)
+        .iter()
+        .enumerate()
+        .map(|(c, q)| {
+            if linkage.is_slide(c) {
+                q[0]
+            } else {
+                wrapped(linkage, c, q[0])
             }
-        }
-        for (ball, spun) in out.balls.iter_mut().zip(&left_out) {
-            *ball = product(spun, ball);
-        }
-        if let Some(links) = &self.reduced.spun {
-            self.configure_spun(links, values, &mut out);
-        }
-        out
-    }
+        })
+        .collect()
+}
 
-    /// The turns of the balls of links that spin together.
-    fn configure_spun(&self, links: &SpunLinks, values: &[f64], out: &mut Configuration) {
-        let Some(chain) = &self.reduced.chain else {
-            return;
-        };
-        let turns = |first: usize| ball_rotation(&[values[first], values[first + 1], values[first + 2]]);
-        let value = Taylor::<1>::constant(out.values[chain.first[links.joint]]);
-        let mut spun = Pose::STILL.rotation;
-        for (part, &first) in self.reduced.parts.iter().zip(&self.first) {
-            match part.source {
-                Source::BeforeSpun(joint, frame) => {
-                    let back = transposed(&frame);
-                    let [own, flat] = links.spun.directions(value.value());
-                    // the line in the frame of the two turns, z the first axis and x the second, before and after these
-                    let flat = Pose::turning(back).turn(flat);
-                    let to = Pose::turning(product(&back, &turns(first))).turn(own);
-                    let second = to[2].atan2(-to[0].hypot(to[1])) - flat[2].atan2(flat[1]);
-                    out.values[chain.first[joint]] = to[0].atan2(-to[1]);
-                    out.values[chain.first[joint + 1]] = short_way(second);
-                    let still = [[0.0; super::chain::COLUMNS]; ORDERS];
-                    let two = chain.universal_series(joint, &frame, out, &still);
-                    let held = product(&first_terms(&two), &first_terms(&links.spun.lie(value)));
-                    // what is left out of the spin
-                    spun = product(&transposed(&held), &turns(first));
-                }
-                Source::AfterSpun(joint) => {
-                    if let Joint::Ball(b) = chain.joints[joint] {
-                        let before = first_terms(&links.spun.through(value));
-                        let own = product(&product(&transposed(&before), &spun), &before);
-                        let lie = transposed(&first_terms(&links.spun.lie_beyond(value)));
-                        out.balls[b] = product(&lie, &product(&own, &turns(first)));
-                    }
-                }
-                _ => {}
-            }
-        }
-    }
-
-    fn wrapped(&self, column: usize, angle: f64) -> f64 {
-        let joint = self.joint_of(column);
-        if matches!(self.reduced.parts[joint].kind, Kind::Screw(_)) {
-            angle
-        } else {
-            short_way(angle)
-        }
-    }
-
-    /// Value and three derivatives of each column of the description, lengths in its unit.
-    fn joint_rates(&self, at: &Configuration, rates: &Rates) -> Vec<[f64; 4]> {
-        let mut out = vec![[0.0; 4]; self.columns];
-        self.write_joint_rates(at, rates, &mut out);
-        out
-    }
-
-    fn write_joint_rates(&self, at: &Configuration, rates: &Rates, out: &mut [[f64; 4]]) {
-        let Some(chain) = &self.reduced.chain else {
-            return;
-        };
-        for (part, &first) in self.reduced.parts.iter().zip(&self.first) {
-            match (part.source, part.kind) {
-                (Source::Held, _) => {}
-                (Source::Joint(joint), Kind::Ball) => {
-                    let series = chain.joint_series(joint, at, rates);
-                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
-                }
-                (Source::Joint(joint), kind) => {
-                    let c = chain.first[joint];
-                    let factor = if kind == Kind::Slide { self.size } else { 1.0 };
-                    out[first] = [
-                        at.values[c] * factor,
-                        rates[0][c] * factor,
-                        rates[1][c] * factor,
-                        2.0 * rates[2][c] * factor,
-                    ];
-                }
-                (Source::Universal(joint, frame), _) => {
-                    let series = chain.universal_series(joint, &frame, at, rates);
-                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
-                }
-                (Source::BeforeSpun(joint, frame), _) => {
-                    let Some(links) = &self.reduced.spun else { continue };
-                    let lie = links.spun.lie(chain.value_series(links.joint, at, rates));
-                    let series = product_series(&chain.universal_series(joint, &frame, at, rates), &lie);
-                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
-                }
-                (Source::AfterSpun(joint), _) => {
-                    let Some(links) = &self.reduced.spun else { continue };
-                    let lie = links.spun.lie_beyond(chain.value_series(links.joint, at, rates));
-                    let series = product_series(&lie, &chain.joint_series(joint, at, rates));
-                    write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
+/// The configuration with these joint values; the idle spin of links is left out.
+pub(super) fn configuration(linkage: &Loop, values: &[f64]) -> Configuration {
+    let mut out = Configuration::ZERO;
+    let mut left_out = [Pose::STILL.rotation; BALLS];
+    let Some(chain) = &linkage.reduced.chain else {
+        return out;
+    };
+    for (part, &first) in linkage.reduced.parts.iter().zip(&linkage.first) {
+        let turns = || ball_rotation(&[values[first], values[first + 1], values[first + 2]]);
+        match (part.source, part.kind) {
+            (Source::Held, _) => {}
+            (Source::Joint(joint), Kind::Ball) => {
+                if let Joint::Ball(b) = chain.joints[joint] {
+                    out.balls[b] = turns();
                 }
             }
-        }
-    }
-
-    /// Values and three derivatives of every column, order by order: `4 x rows x columns`; angles unwrapped along the rows.
-    pub fn joint_table(&self, rows: &Rows) -> Vec<f64> {
-        let (count, columns) = (rows.len(), self.columns);
-        let mut out = vec![f64::NAN; 4 * count * columns];
-        let mut before: Vec<Option<f64>> = vec![None; columns];
-        let ball_turn: Vec<bool> = (0..columns).map(|c| self.is_ball_turn(c)).collect();
-        let mut table = vec![[0.0; 4]; columns];
-        for (n, row) in rows.rows.iter().enumerate() {
-            if row.status == RowStatus::NoSolution {
-                continue;
+            (Source::Joint(joint), _) => {
+                out.values[chain.first[joint]] = values[first] * linkage.inward(first);
             }
-            self.write_joint_rates(&row.at, &rows.rates(row), &mut table);
-            for (c, q) in table.iter().enumerate() {
-                for (order, value) in q.iter().enumerate() {
-                    out[(order * count + n) * columns + c] = *value;
-                }
-                let mut value = q[0] + rows.offsets[c];
-                if ball_turn[c] && value.is_finite() {
-                    if let Some(b) = before[c] {
-                        value = b + short_way(value - b);
-                    }
-                    before[c] = Some(value);
-                }
-                out[n * columns + c] = value;
-            }
-        }
-        out
-    }
-
-    fn is_ball_turn(&self, column: usize) -> bool {
-        let joint = self.joint_of(column);
-        self.reduced.parts[joint].kind == Kind::Ball
-    }
-
-    /// Position, velocity, acceleration and jerk of a point, `4 x rows x 3`, in the report frame.
-    ///
-    /// `link` counts from 0 the joint before it; `at` is in the frame after that joint. Rows without a pose are NaN; at dead
-    /// centres only the position is given.
-    pub fn point(&self, rows: &Rows, link: usize, at: Vec3) -> Vec<f64> {
-        let count = rows.len();
-        let mut out = vec![f64::NAN; 12 * count];
-        for (n, row) in rows.rows.iter().enumerate() {
-            let Some(moved) = self.carried_point(rows, row, link, scale(at, 1.0 / self.size)) else {
-                continue;
-            };
-            let placed = super::rates::in_report_frame(&self.reduced.base, moved[0], moved);
-            for (order, value) in placed.iter().enumerate() {
-                for k in 0..3 {
-                    out[(order * count + n) * 3 + k] = value[k] * self.size;
+            (Source::Universal(joint, frame), _) => {
+                let spun = configure_universal(chain, joint, &frame, &turns(), &mut out);
+                // what is left out of the spin goes to the other ball, which is the next joint of the chain
+                let next = (joint + 2) % chain.joints.len();
+                let way = product(&product(&frame, &Z_TO_X), &chain.links[joint + 1].rotation);
+                if let Joint::Ball(b) = chain.joints[next] {
+                    left_out[b] = product(&product(&transposed(&way), &spun), &way);
                 }
             }
+            // both below, for they need the joint between them
+            (Source::BeforeSpun(..) | Source::AfterSpun(_), _) => {}
         }
-        out
     }
+    for (ball, spun) in out.balls.iter_mut().zip(&left_out) {
+        *ball = product(spun, ball);
+    }
+    if let Some(links) = &linkage.reduced.spun {
+        configure_spun(linkage, links, values, &mut out);
+    }
+    out
+}
 
-    /// A point of a link in the chain's frame, with three derivatives.
-    fn carried_point(&self, rows: &Rows, row: &Row, link: usize, at: Vec3) -> Option<[Vec3; 4]> {
-        let chain = self.reduced.chain.as_ref()?;
-        if row.status == RowStatus::NoSolution {
-            return None;
+/// The turns of the balls of links that spin together.
+fn configure_spun(linkage: &Loop, links: &SpunLinks, values: &[f64], out: &mut Configuration) {
+    let Some(chain) = &linkage.reduced.chain else {
+        return;
+    };
+    let turns = |first: usize| ball_rotation(&[values[first], values[first + 1], values[first + 2]]);
+    let value = Taylor::<1>::constant(out.values[chain.first[links.joint]]);
+    let mut spun = Pose::STILL.rotation;
+    for (part, &first) in linkage.reduced.parts.iter().zip(&linkage.first) {
+        match part.source {
+            Source::BeforeSpun(joint, frame) => {
+                let back = transposed(&frame);
+                let [own, flat] = links.spun.directions(value.value());
+                // the line in the frame of the two turns, z the first axis and x the second, before and after these
+                let flat = Pose::turning(back).turn(flat);
+                let to = Pose::turning(product(&back, &turns(first))).turn(own);
+                let second = to[2].atan2(-to[0].hypot(to[1])) - flat[2].atan2(flat[1]);
+                out.values[chain.first[joint]] = to[0].atan2(-to[1]);
+                out.values[chain.first[joint + 1]] = short_way(second);
+                let still = [[0.0; super::dense::COLUMNS]; ORDERS];
+                let two = rates::universal_series(chain, joint, &frame, out, &still);
+                let held = product(&first_terms(&two), &first_terms(&links.spun.lie(value)));
+                // what is left out of the spin
+                spun = product(&transposed(&held), &turns(first));
+            }
+            Source::AfterSpun(joint) => {
+                if let Joint::Ball(b) = chain.joints[joint] {
+                    let before = first_terms(&links.spun.through(value));
+                    let own = product(&product(&transposed(&before), &spun), &before);
+                    let lie = transposed(&first_terms(&links.spun.lie_beyond(value)));
+                    out.balls[b] = product(&lie, &product(&own, &turns(first)));
+                }
+            }
+            _ => {}
         }
-        let rates = rows.rates(row);
-        let carried = |joint: usize, pose: &Pose, at: Vec3| {
-            let frame = chain.frames(&row.at)[joint];
-            let twist = chain.link_twist(&chain.place(&row.at), &rates, joint);
-            point_rates(frame.carry(pose.carry(at)), &twist)
-        };
-        match self.reduced.parts[link].link {
-            Carrier::Ground(pose) => {
-                let fixed = self.reduced.base.inverse().carry(pose.carry(at));
-                Some([fixed, [0.0; 3], [0.0; 3], [0.0; 3]])
+    }
+}
+
+fn wrapped(linkage: &Loop, column: usize, angle: f64) -> f64 {
+    let joint = linkage.joint_of(column);
+    if matches!(linkage.reduced.parts[joint].kind, Kind::Screw(_)) {
+        angle
+    } else {
+        short_way(angle)
+    }
+}
+
+/// Value and three derivatives of each column of the description, lengths in its unit.
+fn joint_rates(linkage: &Loop, at: &Configuration, rates: &Rates) -> Vec<[f64; 4]> {
+    let mut out = vec![[0.0; 4]; linkage.columns];
+    write_joint_rates(linkage, at, rates, &mut out);
+    out
+}
+
+fn write_joint_rates(linkage: &Loop, at: &Configuration, rates: &Rates, out: &mut [[f64; 4]]) {
+    let Some(chain) = &linkage.reduced.chain else {
+        return;
+    };
+    for (part, &first) in linkage.reduced.parts.iter().zip(&linkage.first) {
+        match (part.source, part.kind) {
+            (Source::Held, _) => {}
+            (Source::Joint(joint), Kind::Ball) => {
+                let series = rates::joint_series(chain, joint, at, rates);
+                write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
             }
-            Carrier::Joint(joint, pose) => Some(carried(joint, &pose, at)),
-            Carrier::Spun(pose) => {
-                let links = self.reduced.spun.as_ref()?;
-                Some(links.moved(chain, row, &rates, pose.carry(at).map(Taylor::constant), carried))
+            (Source::Joint(joint), kind) => {
+                let c = chain.first[joint];
+                let factor = if kind == Kind::Slide { linkage.size } else { 1.0 };
+                out[first] = [
+                    at.values[c] * factor,
+                    rates[0][c] * factor,
+                    rates[1][c] * factor,
+                    2.0 * rates[2][c] * factor,
+                ];
             }
-            Carrier::SpunBeyond(pose) => {
-                let links = self.reduced.spun.as_ref()?;
-                let value = chain.value_series(links.joint, &row.at, &rates);
-                let place = links.spun.beyond(value, pose.carry(at));
-                Some(links.moved(chain, row, &rates, place, carried))
+            (Source::Universal(joint, frame), _) => {
+                let series = rates::universal_series(chain, joint, &frame, at, rates);
+                write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
+            }
+            (Source::BeforeSpun(joint, frame), _) => {
+                let Some(links) = &linkage.reduced.spun else {
+                    continue;
+                };
+                let lie = links.spun.lie(rates::value_series(chain, links.joint, at, rates));
+                let series = product_series(&rates::universal_series(chain, joint, &frame, at, rates), &lie);
+                write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
+            }
+            (Source::AfterSpun(joint), _) => {
+                let Some(links) = &linkage.reduced.spun else {
+                    continue;
+                };
+                let lie = links
+                    .spun
+                    .lie_beyond(rates::value_series(chain, links.joint, at, rates));
+                let series = product_series(&lie, &rates::joint_series(chain, joint, at, rates));
+                write_turns(&mut out[first..first + 3], turns_zyx(|i, j| series[i][j]));
             }
         }
     }
 }
 
-impl SpunLinks {
-    /// A point that moves against the first of the links, carried on by the chain.
-    fn moved(
-        &self,
-        chain: &Chain,
-        row: &Row,
-        rates: &Rates,
-        place: Vec3Taylor<4>,
-        carried: impl Fn(usize, &Pose, Vec3) -> [Vec3; 4],
-    ) -> [Vec3; 4] {
-        let (joint, pose) = &self.carrier;
-        let lie = self.spun.lie(chain.value_series(self.joint, &row.at, rates));
-        // the chain's frame as three points that it carries, and the point in that frame
-        let origin = carried(*joint, pose, [0.0; 3]);
-        let series = |v: &[Vec3; 4], i: usize| Taylor::<4>::from_derivatives(&v.map(|order| order[i]));
-        let mut out: Vec3Taylor<4> = std::array::from_fn(|i| series(&origin, i));
-        for k in 0..3 {
-            let own = lie[k][0] * place[0] + lie[k][1] * place[1] + lie[k][2] * place[2];
-            let axis = carried(
-                *joint,
-                pose,
-                std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }),
-            );
-            for i in 0..3 {
-                out[i] = out[i] + own * (series(&axis, i) - series(&origin, i));
+/// Values and three derivatives of every column, order by order: `4 x rows x columns`; angles unwrapped along the rows.
+pub fn joint_table(linkage: &Loop, rows: &Rows) -> Vec<f64> {
+    let (count, columns) = (rows.len(), linkage.columns);
+    let mut out = vec![f64::NAN; 4 * count * columns];
+    let mut before: Vec<Option<f64>> = vec![None; columns];
+    let ball_turn: Vec<bool> = (0..columns).map(|c| is_ball_turn(linkage, c)).collect();
+    let mut table = vec![[0.0; 4]; columns];
+    for (n, row) in rows.rows.iter().enumerate() {
+        if row.status == RowStatus::NoSolution {
+            continue;
+        }
+        write_joint_rates(linkage, &row.at, &rows.rates(row), &mut table);
+        for (c, q) in table.iter().enumerate() {
+            for (order, value) in q.iter().enumerate() {
+                out[(order * count + n) * columns + c] = *value;
+            }
+            let mut value = q[0] + rows.offsets[c];
+            if ball_turn[c] && value.is_finite() {
+                if let Some(b) = before[c] {
+                    value = b + short_way(value - b);
+                }
+                before[c] = Some(value);
+            }
+            out[n * columns + c] = value;
+        }
+    }
+    out
+}
+
+fn is_ball_turn(linkage: &Loop, column: usize) -> bool {
+    let joint = linkage.joint_of(column);
+    linkage.reduced.parts[joint].kind == Kind::Ball
+}
+
+/// Position, velocity, acceleration and jerk of a point, `4 x rows x 3`, in the report frame.
+///
+/// `link` counts from 0 the joint before it; `at` is in the frame after that joint. Rows without a pose are NaN; at dead
+/// centres only the position is given.
+pub fn point(linkage: &Loop, rows: &Rows, link: usize, at: Vec3) -> Vec<f64> {
+    let count = rows.len();
+    let mut out = vec![f64::NAN; 12 * count];
+    for (n, row) in rows.rows.iter().enumerate() {
+        let Some(moved) = carried_point(linkage, rows, row, link, scale(at, 1.0 / linkage.size)) else {
+            continue;
+        };
+        let placed = super::rates::in_report_frame(&linkage.reduced.base, moved[0], moved);
+        for (order, value) in placed.iter().enumerate() {
+            for k in 0..3 {
+                out[(order * count + n) * 3 + k] = value[k] * linkage.size;
             }
         }
-        std::array::from_fn(|order| out.map(|x| x.derivative(order)))
     }
+    out
+}
+
+/// A point of a link in the chain's frame, with three derivatives.
+fn carried_point(linkage: &Loop, rows: &Rows, row: &Row, link: usize, at: Vec3) -> Option<[Vec3; 4]> {
+    let chain = linkage.reduced.chain.as_ref()?;
+    if row.status == RowStatus::NoSolution {
+        return None;
+    }
+    let rates = rows.rates(row);
+    let carried = |joint: usize, pose: &Pose, at: Vec3| {
+        let frame = chain.frames(&row.at)[joint];
+        let twist = rates::link_twist(chain, &chain.place(&row.at), &rates, joint);
+        point_rates(frame.carry(pose.carry(at)), &twist)
+    };
+    match linkage.reduced.parts[link].link {
+        Carrier::Ground(pose) => {
+            let fixed = linkage.reduced.base.inverse().carry(pose.carry(at));
+            Some([fixed, [0.0; 3], [0.0; 3], [0.0; 3]])
+        }
+        Carrier::Joint(joint, pose) => Some(carried(joint, &pose, at)),
+        Carrier::Spun(pose) => {
+            let links = linkage.reduced.spun.as_ref()?;
+            Some(moved(
+                links,
+                chain,
+                row,
+                &rates,
+                pose.carry(at).map(Taylor::constant),
+                carried,
+            ))
+        }
+        Carrier::SpunBeyond(pose) => {
+            let links = linkage.reduced.spun.as_ref()?;
+            let value = rates::value_series(chain, links.joint, &row.at, &rates);
+            let place = links.spun.beyond(value, pose.carry(at));
+            Some(moved(links, chain, row, &rates, place, carried))
+        }
+    }
+}
+
+/// A point that moves against the first of the links, carried on by the chain.
+fn moved(
+    links: &SpunLinks,
+    chain: &Chain,
+    row: &Row,
+    rates: &Rates,
+    place: Vec3Taylor<4>,
+    carried: impl Fn(usize, &Pose, Vec3) -> [Vec3; 4],
+) -> [Vec3; 4] {
+    let (joint, pose) = &links.carrier;
+    let lie = links
+        .spun
+        .lie(rates::value_series(chain, links.joint, &row.at, rates));
+    // the chain's frame as three points that it carries, and the point in that frame
+    let origin = carried(*joint, pose, [0.0; 3]);
+    let series = |v: &[Vec3; 4], i: usize| Taylor::<4>::from_derivatives(&v.map(|order| order[i]));
+    let mut out: Vec3Taylor<4> = std::array::from_fn(|i| series(&origin, i));
+    for k in 0..3 {
+        let own = lie[k][0] * place[0] + lie[k][1] * place[1] + lie[k][2] * place[2];
+        let axis = carried(
+            *joint,
+            pose,
+            std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 }),
+        );
+        for i in 0..3 {
+            out[i] = out[i] + own * (series(&axis, i) - series(&origin, i));
+        }
+    }
+    std::array::from_fn(|order| out.map(|x| x.derivative(order)))
 }
 
 fn write_turns(out: &mut [[f64; 4]], turns: Option<[Taylor<4>; 3]>) {
@@ -427,6 +440,6 @@ fn configure_universal(
     out.values[chain.first[joint]] = to[0].atan2(-to[1]);
     out.values[chain.first[joint + 1]] = short_way(to[2].atan2(-to[0].hypot(to[1])) - line);
     let still = [[0.0; COLUMNS]; ORDERS];
-    let held = first_terms(&chain.universal_series(joint, frame, out, &still));
+    let held = first_terms(&rates::universal_series(chain, joint, frame, out, &still));
     product(&transposed(&held), turns)
 }

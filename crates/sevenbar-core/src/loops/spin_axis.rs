@@ -5,7 +5,7 @@
 //! line are curves on the sphere. Where they come near the axis of the joint before, as the rod of an in-line slider-crank comes to
 //! lie along the slide, that axis would make singular poses that the loop has not.
 
-use super::reduce::Kind;
+use super::kinds::Kind;
 use crate::rigid::{Pose, Vec3, add, cross, dot, norm, scale, sub, unit};
 
 /// The least sine of the angle between the line and the axis before at which that axis holds the spin: three degrees.

@@ -7,9 +7,10 @@
 //!
 //! Source: the law of cosines.
 
-use super::chain::{Rotation, product, transposed};
+use super::flat::Flat;
+use super::kinds::Kind;
 use super::rates::{product_series, turned_series};
-use super::reduce::Kind;
+use super::rotations::{Rotation, product, transposed};
 use crate::rigid::{
     Pose, Vec3, Vec3Taylor, cross, cross_taylor, dot, dot_taylor, most_perpendicular_axis, norm, scale,
     scale_taylor, sub, unit,
@@ -24,39 +25,6 @@ const STRAIGHT: f64 = 1e-8;
 
 /// Places of a joint, two turns of it, at which its balls' line is looked at.
 const LOOKS: usize = 720;
-
-/// The balls' line in the plane across the second turn, as the joint between them has it.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Flat {
-    /// Two arms: the first ball's, as it lies, and the second's at the joint's zero. The line is their difference.
-    Arms([f64; 2], [f64; 2]),
-    /// Where a slide begins, and where to it leads.
-    Path([f64; 2], [f64; 2]),
-}
-
-impl Flat {
-    /// The line along its direction at zero, and across.
-    fn line<const N: usize>(&self, value: Taylor<N>) -> [Taylor<N>; 2] {
-        match *self {
-            Self::Arms(near, far) => {
-                let (s, c) = value.sin_cos();
-                [
-                    c.scale(far[0]) - s.scale(far[1]) - Taylor::constant(near[0]),
-                    s.scale(far[0]) + c.scale(far[1]) - Taylor::constant(near[1]),
-                ]
-            }
-            Self::Path(start, way) => {
-                std::array::from_fn(|k| Taylor::constant(start[k]) + value.scale(way[k]))
-            }
-        }
-    }
-
-    /// The angle of the line.
-    pub fn angle(&self, value: f64) -> f64 {
-        let [x, y] = self.line(Taylor::<1>::constant(value));
-        y.value().atan2(x.value())
-    }
-}
 
 /// Links between two balls with one joint among them, in the frame of the first ball.
 #[derive(Clone, Debug)]

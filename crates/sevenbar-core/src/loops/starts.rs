@@ -5,9 +5,12 @@
 //! carried round loops in the space of the parameters, the solutions are exchanged until all have been seen. The numbers
 //! come from a fixed seed, so every machine has the same starts.
 
+use super::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
+use super::complex_frame::Frame;
+use super::continuation::BRISK;
 use super::geometry::Pattern;
-use super::paths::{BRISK, JOINTS, Parameters, Slides, Solution, UNKNOWNS, follow};
-use crate::rigid::Pose;
+use super::straight::carried;
+use crate::random::Random;
 use num_complex::Complex64;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
@@ -84,7 +87,7 @@ impl Class {
             match &self.pattern {
                 None if n == 0 => by_monodromy(slides, &mut random),
                 Some(pattern) if n == 0 => {
-                    let parameters = pattern.imposed_on(random.parameters());
+                    let parameters = pattern.imposed_on(general_parameters(&mut random));
                     let solutions = Self::of(slides, None).solutions(&parameters);
                     Start { parameters, solutions }
                 }
@@ -98,9 +101,9 @@ impl Class {
         let first = self.start(0);
         let mut best: Option<Start> = None;
         for _ in 0..TRIES {
-            let parameters = random.parameters();
+            let parameters = general_parameters(random);
             let parameters = self.pattern.map_or(parameters, |p| p.imposed_on(parameters));
-            let ends = follow(
+            let ends = carried(
                 &self.slides,
                 &first.parameters,
                 &parameters,
@@ -125,7 +128,7 @@ impl Class {
         let mut idle = 0;
         for n in 0..STARTS {
             let start = self.start(n);
-            let ends = follow(&self.slides, &start.parameters, target, &start.solutions, BRISK);
+            let ends = carried(&self.slides, &start.parameters, target, &start.solutions, BRISK);
             let before = solutions.len();
             solutions = distinct(
                 &self.slides,
@@ -145,19 +148,19 @@ impl Class {
 fn by_monodromy(slides: &Slides, random: &mut Random) -> Start {
     let want = general_count(slides);
     loop {
-        let (parameters, solution) = random.closed(slides);
+        let (parameters, solution) = closed(random, slides);
         let mut known = vec![solution];
         for _ in 0..60 {
-            let (a, b) = (random.parameters(), random.parameters());
-            let there = follow(slides, &parameters, &a, &known, BRISK);
-            let across = follow(
+            let (a, b) = (general_parameters(random), general_parameters(random));
+            let there = carried(slides, &parameters, &a, &known, BRISK);
+            let across = carried(
                 slides,
                 &a,
                 &b,
                 &there.into_iter().flatten().collect::<Vec<_>>(),
                 BRISK,
             );
-            let back = follow(
+            let back = carried(
                 slides,
                 &b,
                 &parameters,
@@ -207,165 +210,51 @@ fn same(slides: &Slides, a: &Solution, b: &Solution, apart: f64) -> bool {
     })
 }
 
-/// Numbers that look random and are the same everywhere (Steele, Lea and Flood's SplitMix64).
-pub(super) struct Random(pub u64);
-
-impl Random {
-    pub fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 * 2.0_f64.powi(-53)
+/// General parameters of a closure.
+pub(super) fn general_parameters(random: &mut Random) -> Parameters {
+    Parameters {
+        twists: std::array::from_fn(|_| random.phase()),
+        shifts: std::array::from_fn(|_| std::array::from_fn(|_| random.number())),
+        turns: std::array::from_fn(|_| random.phase()),
+        slide: random.number(),
     }
+}
 
-    /// A complex number of about unit size.
-    pub fn phase(&mut self) -> Complex64 {
-        Complex64::from_polar(0.7 + 0.7 * self.uniform(), std::f64::consts::TAU * self.uniform())
-    }
-
-    fn number(&mut self) -> Complex64 {
-        Complex64::from_polar(0.2 + 0.6 * self.uniform(), std::f64::consts::TAU * self.uniform())
-    }
-
-    pub fn parameters(&mut self) -> Parameters {
-        Parameters {
-            twists: std::array::from_fn(|_| self.phase()),
-            shifts: std::array::from_fn(|_| std::array::from_fn(|_| self.number())),
-            turns: std::array::from_fn(|_| self.phase()),
-            slide: self.number(),
-        }
-    }
-
-    /// Parameters with one solution: the last transform is what closes the chain.
-    fn closed(&mut self, slides: &Slides) -> (Parameters, Solution) {
-        let mut parameters = self.parameters();
-        let mut solution: Solution =
-            std::array::from_fn(|i| if slides[i] { self.number() } else { self.phase() });
-        let mut frame = Frame::IDENTITY;
-        for i in 0..UNKNOWNS {
-            let (turn, slide) = if slides[i] {
-                (parameters.turns[i], solution[i])
-            } else {
-                (solution[i], Complex64::ZERO)
-            };
-            let [x, y, z] = parameters.shifts[i];
-            frame = frame
-                .turned_z(turn)
-                .shifted([Complex64::ZERO, Complex64::ZERO, slide])
-                .shifted([x, y, z])
-                .turned_x(parameters.twists[i]);
-        }
-        let normal = frame.inverse().normal_form();
-        let last = JOINTS - 1;
-        parameters.twists[last] = normal.twist;
-        let [x, y, z] = normal.shift;
-        parameters.shifts[last] = [x, y, z - parameters.slide];
-        parameters.turns[last] = normal.before;
-        // what is left over turns the first joint
-        if slides[0] {
-            parameters.turns[0] *= normal.after;
+/// Parameters with one solution: the last transform is what closes the chain.
+fn closed(random: &mut Random, slides: &Slides) -> (Parameters, Solution) {
+    let mut parameters = general_parameters(random);
+    let mut solution: Solution = std::array::from_fn(|i| {
+        if slides[i] {
+            random.number()
         } else {
-            solution[0] *= normal.after;
+            random.phase()
         }
-        (parameters, solution)
-    }
-}
-
-/// A rigid motion with complex entries: the images of the axes, and of the origin.
-#[derive(Clone, Copy)]
-pub(super) struct Frame {
-    axes: [[Complex64; 3]; 3],
-    origin: [Complex64; 3],
-}
-
-/// `Rz(before) T(shift) Rx(twist) Rz(after)`, each angle `t` as `e^(i t)`.
-pub(super) struct NormalForm {
-    pub before: Complex64,
-    pub shift: [Complex64; 3],
-    pub twist: Complex64,
-    pub after: Complex64,
-}
-
-/// Below this sine of its twist a transform counts as a turn about z; the rest is rounding.
-pub(super) const NO_TWIST: f64 = 1e-13;
-
-fn cosine_sine(z: Complex64) -> (Complex64, Complex64) {
-    let inverse = z.inv();
-    ((z + inverse) * 0.5, (z - inverse) * Complex64::new(0.0, -0.5))
-}
-
-impl Frame {
-    pub const IDENTITY: Self = {
-        let (o, l) = (Complex64::ZERO, Complex64::ONE);
-        Self { axes: [[l, o, o], [o, l, o], [o, o, l]], origin: [o, o, o] }
-    };
-
-    fn turned(mut self, i: usize, j: usize, z: Complex64) -> Self {
-        let (c, s) = cosine_sine(z);
-        for k in 0..3 {
-            let (x, y) = (self.axes[i][k], self.axes[j][k]);
-            self.axes[i][k] = x * c + y * s;
-            self.axes[j][k] = y * c - x * s;
-        }
-        self
-    }
-
-    pub fn from_pose(pose: &Pose) -> Self {
-        Self {
-            axes: std::array::from_fn(|j| pose.column(j).map(Complex64::from)),
-            origin: pose.translation.map(Complex64::from),
-        }
-    }
-
-    fn turned_z(self, z: Complex64) -> Self {
-        self.turned(0, 1, z)
-    }
-
-    fn turned_x(self, z: Complex64) -> Self {
-        self.turned(1, 2, z)
-    }
-
-    fn shifted(mut self, by: [Complex64; 3]) -> Self {
-        for k in 0..3 {
-            for (j, step) in by.iter().enumerate() {
-                self.origin[k] += self.axes[j][k] * step;
-            }
-        }
-        self
-    }
-
-    fn inverse(&self) -> Self {
-        let axes = std::array::from_fn(|j| std::array::from_fn(|k| self.axes[k][j]));
-        let origin = std::array::from_fn(|j| {
-            -(0..3)
-                .map(|k| self.axes[j][k] * self.origin[k])
-                .sum::<Complex64>()
-        });
-        Self { axes, origin }
-    }
-
-    /// The Euler angles z, x, z of the turn, and the shift as seen after the first.
-    pub fn normal_form(&self) -> NormalForm {
-        let i = Complex64::I;
-        let [ex, ey, ez] = self.axes;
-        // the third column is (sin before, -cos before, 0) sin twist + cos twist z
-        let square = ez[0] * ez[0] + ez[1] * ez[1];
-        let sine = square.sqrt();
-        let before = if sine.norm() < NO_TWIST {
-            Complex64::ONE
+    });
+    let mut frame = Frame::IDENTITY;
+    for i in 0..UNKNOWNS {
+        let (turn, slide) = if slides[i] {
+            (parameters.turns[i], solution[i])
         } else {
-            (-ez[1] + i * ez[0]) / sine
+            (solution[i], Complex64::ZERO)
         };
-        let (c, s) = cosine_sine(before);
-        let across = |v: [Complex64; 3]| (v[0] * c + v[1] * s, v[1] * c - v[0] * s);
-        let (px, py) = across(self.origin);
-        let after = across(ex).0 - i * across(ey).0;
-        NormalForm {
-            before,
-            shift: [px, py, self.origin[2]],
-            twist: ez[2] - i * across(ez).1,
-            after,
-        }
+        let [x, y, z] = parameters.shifts[i];
+        frame = frame
+            .turned_z(turn)
+            .shifted([Complex64::ZERO, Complex64::ZERO, slide])
+            .shifted([x, y, z])
+            .turned_x(parameters.twists[i]);
     }
+    let normal = frame.inverse().normal_form();
+    let last = JOINTS - 1;
+    parameters.twists[last] = normal.twist;
+    let [x, y, z] = normal.shift;
+    parameters.shifts[last] = [x, y, z - parameters.slide];
+    parameters.turns[last] = normal.before;
+    // what is left over turns the first joint
+    if slides[0] {
+        parameters.turns[0] *= normal.after;
+    } else {
+        solution[0] *= normal.after;
+    }
+    (parameters, solution)
 }

@@ -3,12 +3,12 @@
 //! Source: docs/theory_many.md, (14) and (17).
 
 use super::afar::{Afar, afar};
-use super::chain::{Chain, Joint};
+use super::closure::{Solution, UNKNOWNS};
 use super::locating::still;
 use super::modes::{Algebraic, ModeFinder, Unknown};
-use super::paths::{Solution, UNKNOWNS};
+use super::other_input::{solutions_with, turned_out};
 use super::phases::Watch;
-use super::starts::Random;
+use crate::random::Random;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -145,64 +145,4 @@ impl<'a> Survey<'a> {
         let within_one = pairs.filter(|w| (w[0] / spacing).floor() == (w[1] / spacing).floor());
         within_one.map(|w| 0.5 * (w[0] + w[1])).collect()
     }
-}
-
-/// The chain with the input first, balls as three turns, and no added joints.
-fn turned_out(finder: &ModeFinder) -> Chain {
-    let mut joints = vec![Joint::Turn];
-    let mut links = vec![finder.transforms[0]];
-    for (i, unknown) in finder.unknowns.iter().enumerate() {
-        let after = finder.transforms[i + 1];
-        if matches!(unknown, Unknown::Added) {
-            let last = links.len() - 1;
-            links[last] = links[last].then(&after);
-        } else {
-            joints.push(if finder.slides[i] {
-                Joint::Slide
-            } else {
-                Joint::Turn
-            });
-            links.push(after);
-        }
-    }
-    Chain::new(joints, links)
-}
-
-/// The solutions with one unknown at a complex value, as the finder has them, and `e^(i tau)` of its input there.
-pub(super) fn solutions_with(
-    chain: &Chain,
-    finder: &ModeFinder,
-    zeros: &[Complex64; UNKNOWNS],
-    (unknown, value): (usize, Complex64),
-) -> Vec<(Solution, Complex64)> {
-    let other = ModeFinder::new(chain, unknown + 1);
-    let Some((solutions, shift)) = other.solutions_at(value) else {
-        return Vec::new();
-    };
-    let mut out = Vec::with_capacity(solutions.len());
-    'solutions: for solution in solutions {
-        let mut values = [Complex64::ONE; 1 + UNKNOWNS];
-        values[unknown + 1] = value;
-        for (i, kind) in other.unknowns.iter().enumerate() {
-            let z = if other.slides[i] {
-                solution[i]
-            } else {
-                solution[i] / shift[i]
-            };
-            match *kind {
-                Unknown::Column(c) => values[c] = z,
-                _ if (z - 1.0).norm() > 1e-6 => continue 'solutions,
-                _ => {}
-            }
-        }
-        let x = std::array::from_fn(|i| {
-            if finder.slides[i] {
-                values[i + 1]
-            } else {
-                values[i + 1] * zeros[i]
-            }
-        });
-        out.push((x, values[0]));
-    }
-    out
 }

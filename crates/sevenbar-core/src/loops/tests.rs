@@ -1,11 +1,14 @@
 //! The numerical work on loops with known answers.
 
-use super::chain::{Chain, Columns, Configuration, Joint, rotation, squared_up};
+use super::chain::{Chain, Configuration, Joint};
 use super::circuits::Passes;
-use super::curve::{Curve, End};
-use super::dense::singular_values;
+use super::curve::{self, Curve, End};
+use super::dense::{Columns, singular_values};
+use super::follow;
+use super::join;
 use super::modes::{ModeFinder, random_pose, same};
-use super::starts::Random;
+use super::rotations::{rotation, squared_up};
+use crate::random::Random;
 use crate::rigid::Pose;
 
 /// The direction in which a closed configuration can move.
@@ -115,9 +118,7 @@ fn a_planar_four_bar_that_leans_has_its_modes_while_it_agrees_and_tells_its_misf
 fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
     let chain = seven_r();
     for mode in ModeFinder::new(&chain, 0).at(0.3).modes {
-        let curve = chain
-            .follow(&[(mode, direction(&chain, &mode))], &[])
-            .swap_remove(0);
+        let curve = follow::follow(&chain, &[(mode, direction(&chain, &mode))], &[]).swap_remove(0);
         assert_eq!(curve.end, End::Closed);
         let gained = curve.nodes[curve.nodes.len() - 1].at.values[0] - mode.values[0];
         assert!((gained.abs() - std::f64::consts::TAU).abs() < 1e-12);
@@ -128,9 +129,7 @@ fn each_circuit_of_the_paper_s_loop_closes_after_one_turn() {
 fn rows_side_by_side_are_the_rows_solved_singly() {
     let chain = seven_r();
     for mode in ModeFinder::new(&chain, 0).at(0.3).modes {
-        let curve = chain
-            .follow(&[(mode, direction(&chain, &mode))], &[])
-            .swap_remove(0);
+        let curve = follow::follow(&chain, &[(mode, direction(&chain, &mode))], &[]).swap_remove(0);
         let passes = Passes::new(&chain, curve, 0).unwrap();
         for row in passes.rows(0.0, 0.01) {
             let single = passes.row(0, row.at.values[0], &[1.0, 0.0, 0.0]).unwrap();
@@ -232,7 +231,7 @@ fn a_loop_beside_a_special_one_has_the_solutions_of_a_general_one() {
 /// Whether a closed configuration is a place of a curve.
 fn passes(chain: &Chain, curve: &Curve, at: &Configuration) -> bool {
     let mut nodes = curve.nodes.iter();
-    nodes.any(|n| chain.passes_through(n, at).is_some())
+    nodes.any(|n| curve::passes_through(chain, n, at).is_some())
 }
 
 #[test]
@@ -244,11 +243,9 @@ fn curves_joined_from_pieces_are_those_followed_whole_in_either_direction() {
     for chain in &chains {
         let finder = ModeFinder::new(chain, 0);
         let modes: Vec<Configuration> = (0..6).flat_map(|k| finder.at(f64::from(k)).modes).collect();
-        let joined = chain.closed_curves(&modes);
+        let joined = join::closed_curves(chain, &modes);
         for mode in &modes {
-            let whole = chain
-                .follow(&[(*mode, direction(chain, mode))], &[])
-                .swap_remove(0);
+            let whole = follow::follow(&chain, &[(*mode, direction(chain, mode))], &[]).swap_remove(0);
             let through: Vec<&Curve> = joined.iter().filter(|c| passes(chain, c, mode)).collect();
             if whole.end != End::Closed {
                 assert!(through.is_empty());
@@ -258,7 +255,7 @@ fn curves_joined_from_pieces_are_those_followed_whole_in_either_direction() {
             compared += 1;
             let gained =
                 |c: &Curve, k: usize| c.nodes[c.nodes.len() - 1].at.values[k] - c.nodes[0].at.values[k];
-            let other = chain.reversed(through[0]).unwrap();
+            let other = curve::reversed(chain, through[0]).unwrap();
             let sign = if (0..7).all(|k| (gained(&whole, k) - gained(through[0], k)).abs() < 1e-9) {
                 1.0
             } else {

@@ -1,7 +1,8 @@
 //! Where a column changes direction along a followed curve, and the curve with these places among its nodes.
 
-use super::chain::{COLUMNS, Chain};
-use super::curve::{Curve, End, Node, dot, length, measure};
+use super::chain::Chain;
+use super::curve::{self, Curve, End, Node, measure};
+use super::dense::{COLUMNS, dot, length};
 
 /// A rate of a column below this part of the curve's is zero.
 const AT_REST: f64 = 1e-13;
@@ -34,199 +35,197 @@ pub(super) struct Turning {
     pub node: Node,
 }
 
-impl Curve {
-    /// Where a column changes direction, in order.
-    pub fn turnings(&self, chain: &Chain, column: usize) -> Vec<Turning> {
-        if self.rests(column) {
-            return Vec::new();
-        }
-        let mut found = self.turnings_by(chain, column, 0.0);
-        // a column that comes back turned once more: at a change point beside which it nearly rests
-        if self.end == End::Closed && !found.len().is_multiple_of(2) {
-            let more = self.turnings_by(chain, column, STILL);
-            if more.len().is_multiple_of(2) {
-                found = more;
-            }
-        }
-        self.forget_unmoved(&mut found, column);
-        found
+/// Where a column changes direction, in order.
+pub(super) fn turnings(curve: &Curve, chain: &Chain, column: usize) -> Vec<Turning> {
+    if curve.rests(column) {
+        return Vec::new();
     }
+    let mut found = turnings_by(curve, chain, column, 0.0);
+    // a column that comes back turned once more: at a change point beside which it nearly rests
+    if curve.end == End::Closed && !found.len().is_multiple_of(2) {
+        let more = turnings_by(curve, chain, column, STILL);
+        if more.len().is_multiple_of(2) {
+            found = more;
+        }
+    }
+    forget_unmoved(curve, &mut found, column);
+    found
+}
 
-    /// Forgets places in a row, two by two, between which a column does not move: rates that are rounding have no sign.
-    fn forget_unmoved(&self, found: &mut Vec<Turning>, column: usize) {
-        let gained = match self.end {
-            End::Closed => self.gained()[column],
-            _ => f64::INFINITY,
+/// Forgets places in a row, two by two, between which a column does not move: rates that are rounding have no sign.
+fn forget_unmoved(curve: &Curve, found: &mut Vec<Turning>, column: usize) {
+    let gained = match curve.end {
+        End::Closed => curve.gained()[column],
+        _ => f64::INFINITY,
+    };
+    while found.len() > 1 {
+        let count = found.len();
+        let moved = |k: usize| {
+            let [one, next] = [k, (k + 1) % count].map(|k| found[k].node.at.values[column]);
+            (next - one + if k + 1 < count { 0.0 } else { gained }).abs()
         };
-        while found.len() > 1 {
-            let count = found.len();
-            let moved = |k: usize| {
-                let [one, next] = [k, (k + 1) % count].map(|k| found[k].node.at.values[column]);
-                (next - one + if k + 1 < count { 0.0 } else { gained }).abs()
-            };
-            let Some(least) = (0..count).min_by(|&a, &b| moved(a).total_cmp(&moved(b))) else {
-                break;
-            };
-            if moved(least) > UNMOVED {
-                break;
-            }
-            let next = (least + 1) % count;
-            found.remove(least.max(next));
-            found.remove(least.min(next));
+        let Some(least) = (0..count).min_by(|&a, &b| moved(a).total_cmp(&moved(b))) else {
+            break;
+        };
+        if moved(least) > UNMOVED {
+            break;
         }
+        let next = (least + 1) % count;
+        found.remove(least.max(next));
+        found.remove(least.min(next));
     }
+}
 
-    /// The same, where a column turns back at a change point as its rates beside have it, the first of them that is not `still`.
-    fn turnings_by(&self, chain: &Chain, column: usize, still: f64) -> Vec<Turning> {
-        let mut found = Vec::new();
-        let mut marks: Vec<(f64, f64)> = Vec::new();
-        let rounded =
-            |n: &Node| n.inverse_norm > NEAR && n.rates[0][column].abs() <= ROUNDED * n.inverse_norm.powi(2);
-        // the last rate before nodes at which rounding hides it, and the node of these where it is least
-        let mut blurred: Option<(f64, usize)> = self.blurred_start(column, &rounded);
-        for (segment, pair) in self.nodes.windows(2).enumerate() {
-            let (a, b) = (&pair[0], &pair[1]);
-            if a.is_crossing() || b.is_crossing() {
-                if a.is_crossing() && self.turns_back_over(segment, column, still) {
-                    found.push(Turning { segment, node: *a });
-                }
-                blurred = None;
-                continue;
-            }
-            match (rounded(a), rounded(b)) {
-                (false, false) => {}
-                (false, true) => {
-                    blurred = Some((a.rates[0][column], segment + 1));
-                    continue;
-                }
-                (true, true) => {
-                    if let Some((_, least)) = &mut blurred
-                        && b.rates[0][column].abs() < self.nodes[*least].rates[0][column].abs()
-                    {
-                        *least = segment + 1;
-                    }
-                    continue;
-                }
-                (true, false) => {
-                    if let Some((before, least)) = blurred.take()
-                        && before * b.rates[0][column] < 0.0
-                    {
-                        found.push(self.turning_beside(chain, column, least));
-                    }
-                    continue;
-                }
-            }
-            // a rate that is zero to the last digit at a node, as where another column turns back there, has no sign beside it
-            if turns_at(a, column) && a.rates[1][column] != 0.0 {
+/// The same, where a column turns back at a change point as its rates beside have it, the first of them that is not `still`.
+fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<Turning> {
+    let mut found = Vec::new();
+    let mut marks: Vec<(f64, f64)> = Vec::new();
+    let rounded =
+        |n: &Node| n.inverse_norm > NEAR && n.rates[0][column].abs() <= ROUNDED * n.inverse_norm.powi(2);
+    // the last rate before nodes at which rounding hides it, and the node of these where it is least
+    let mut blurred: Option<(f64, usize)> = blurred_start(curve, column, &rounded);
+    for (segment, pair) in curve.nodes.windows(2).enumerate() {
+        let (a, b) = (&pair[0], &pair[1]);
+        if a.is_crossing() || b.is_crossing() {
+            if a.is_crossing() && turns_back_over(curve, segment, column, still) {
                 found.push(Turning { segment, node: *a });
             }
-            // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
-            marks.clear();
-            for look in 0..=LOOKS {
-                let s = a.step * look as f64 / LOOKS as f64;
-                // at the nodes their own rates, so that two steps see one sign of a rate that is zero but for rounding
-                let rate = match look {
-                    0 => a.rates[0][column],
-                    LOOKS => b.rates[0][column],
-                    _ if 2 * look < LOOKS => a.rate(column, s),
-                    _ => b.rate(column, s - a.step),
-                };
-                match marks.last_mut() {
-                    Some(last) if last.1 * rate >= 0.0 => {
-                        if rate.abs() > last.1.abs() {
-                            *last = (s, rate);
-                        }
-                    }
-                    _ => marks.push((s, rate)),
-                }
-            }
-            if marks.len() < 2 {
+            blurred = None;
+            continue;
+        }
+        match (rounded(a), rounded(b)) {
+            (false, false) => {}
+            (false, true) => {
+                blurred = Some((a.rates[0][column], segment + 1));
                 continue;
             }
-            // both ends are known, and the places between are looked at
-            let count = marks.len();
-            for (k, mark) in marks.iter_mut().enumerate() {
-                *mark = if k == 0 {
-                    (0.0, a.rates[0][column])
-                } else if k + 1 == count {
-                    (a.step, b.rates[0][column])
-                } else {
-                    let rate = chain.ahead(a, mark.0).map_or(mark.1, |n| n.rates[0][column]);
-                    (mark.0, rate)
-                };
-            }
-            for ends in marks.windows(2) {
-                if ends[0].1 * ends[1].1 < 0.0
-                    && let Some(node) = turning_between(chain, a, column, ends[0], ends[1])
+            (true, true) => {
+                if let Some((_, least)) = &mut blurred
+                    && b.rates[0][column].abs() < curve.nodes[*least].rates[0][column].abs()
                 {
-                    found.push(Turning { segment, node });
+                    *least = segment + 1;
                 }
+                continue;
             }
-        }
-        found.sort_by_key(|t| t.segment);
-        found
-    }
-
-    /// Of a closed curve that begins among nodes whose rates rounding hides: the rate before these, and the node where it is least.
-    fn blurred_start(&self, column: usize, rounded: &dyn Fn(&Node) -> bool) -> Option<(f64, usize)> {
-        if self.end != End::Closed || !rounded(&self.nodes[0]) {
-            return None;
-        }
-        let rate = |k: usize| self.nodes[k].rates[0][column];
-        let mut least = 0;
-        for k in (1..self.nodes.len() - 1).rev() {
-            if !rounded(&self.nodes[k]) {
-                return Some((rate(k), least));
-            }
-            if rate(k).abs() < rate(least).abs() {
-                least = k;
-            }
-        }
-        None
-    }
-
-    /// Where a column turns back beside a node at which its rate is rounding: there, or in a step next to it where its sign changes.
-    fn turning_beside(&self, chain: &Chain, column: usize, least: usize) -> Turning {
-        let rate = |k: usize| self.nodes[k].rates[0][column];
-        // a closed curve's last step leads to its first node
-        let before = least.checked_sub(1).unwrap_or(self.nodes.len() - 2);
-        [before, least]
-            .into_iter()
-            .filter(|&k| k + 1 < self.nodes.len() && rate(k) * rate(k + 1) < 0.0)
-            .find_map(|segment| {
-                let a = &self.nodes[segment];
-                let ends = ((0.0, rate(segment)), (a.step, rate(segment + 1)));
-                let node = turning_between(chain, a, column, ends.0, ends.1)?;
-                Some(Turning { segment, node })
-            })
-            .unwrap_or(Turning { segment: least, node: self.nodes[least] })
-    }
-
-    /// Whether a column turns back at the node of a change point, as its rates at a distance have it, the first that is not `still`.
-    fn turns_back_over(&self, node: usize, column: usize, still: f64) -> bool {
-        let last = self.nodes.len() - 1;
-        let beside = |ahead: bool| {
-            let mut gone = 0.0;
-            let mut k = node;
-            loop {
-                let ends = if ahead { k == last } else { k == 0 };
-                k = match (ends, ahead) {
-                    (true, _) if self.end != End::Closed => return 0.0,
-                    (true, true) => 1,
-                    (true, false) => last - 1,
-                    (false, true) => k + 1,
-                    (false, false) => k - 1,
-                };
-                gone += self.nodes[if ahead { k.max(1) - 1 } else { k }].step;
-                let rate = self.nodes[k].rates[0][column];
-                if (gone > BESIDE && rate.abs() > still) || k == node {
-                    return rate;
+            (true, false) => {
+                if let Some((before, least)) = blurred.take()
+                    && before * b.rates[0][column] < 0.0
+                {
+                    found.push(turning_beside(curve, chain, column, least));
                 }
+                continue;
             }
-        };
-        let (before, after) = (beside(false), beside(true));
-        before * after < 0.0 && before.abs().min(after.abs()) > STILL
+        }
+        // a rate that is zero to the last digit at a node, as where another column turns back there, has no sign beside it
+        if turns_at(a, column) && a.rates[1][column] != 0.0 {
+            found.push(Turning { segment, node: *a });
+        }
+        // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
+        marks.clear();
+        for look in 0..=LOOKS {
+            let s = a.step * look as f64 / LOOKS as f64;
+            // at the nodes their own rates, so that two steps see one sign of a rate that is zero but for rounding
+            let rate = match look {
+                0 => a.rates[0][column],
+                LOOKS => b.rates[0][column],
+                _ if 2 * look < LOOKS => a.rate(column, s),
+                _ => b.rate(column, s - a.step),
+            };
+            match marks.last_mut() {
+                Some(last) if last.1 * rate >= 0.0 => {
+                    if rate.abs() > last.1.abs() {
+                        *last = (s, rate);
+                    }
+                }
+                _ => marks.push((s, rate)),
+            }
+        }
+        if marks.len() < 2 {
+            continue;
+        }
+        // both ends are known, and the places between are looked at
+        let count = marks.len();
+        for (k, mark) in marks.iter_mut().enumerate() {
+            *mark = if k == 0 {
+                (0.0, a.rates[0][column])
+            } else if k + 1 == count {
+                (a.step, b.rates[0][column])
+            } else {
+                let rate = curve::ahead(chain, a, mark.0).map_or(mark.1, |n| n.rates[0][column]);
+                (mark.0, rate)
+            };
+        }
+        for ends in marks.windows(2) {
+            if ends[0].1 * ends[1].1 < 0.0
+                && let Some(node) = turning_between(chain, a, column, ends[0], ends[1])
+            {
+                found.push(Turning { segment, node });
+            }
+        }
     }
+    found.sort_by_key(|t| t.segment);
+    found
+}
+
+/// Of a closed curve that begins among nodes whose rates rounding hides: the rate before these, and the node where it is least.
+fn blurred_start(curve: &Curve, column: usize, rounded: &dyn Fn(&Node) -> bool) -> Option<(f64, usize)> {
+    if curve.end != End::Closed || !rounded(&curve.nodes[0]) {
+        return None;
+    }
+    let rate = |k: usize| curve.nodes[k].rates[0][column];
+    let mut least = 0;
+    for k in (1..curve.nodes.len() - 1).rev() {
+        if !rounded(&curve.nodes[k]) {
+            return Some((rate(k), least));
+        }
+        if rate(k).abs() < rate(least).abs() {
+            least = k;
+        }
+    }
+    None
+}
+
+/// Where a column turns back beside a node at which its rate is rounding: there, or in a step next to it where its sign changes.
+fn turning_beside(curve: &Curve, chain: &Chain, column: usize, least: usize) -> Turning {
+    let rate = |k: usize| curve.nodes[k].rates[0][column];
+    // a closed curve's last step leads to its first node
+    let before = least.checked_sub(1).unwrap_or(curve.nodes.len() - 2);
+    [before, least]
+        .into_iter()
+        .filter(|&k| k + 1 < curve.nodes.len() && rate(k) * rate(k + 1) < 0.0)
+        .find_map(|segment| {
+            let a = &curve.nodes[segment];
+            let ends = ((0.0, rate(segment)), (a.step, rate(segment + 1)));
+            let node = turning_between(chain, a, column, ends.0, ends.1)?;
+            Some(Turning { segment, node })
+        })
+        .unwrap_or(Turning { segment: least, node: curve.nodes[least] })
+}
+
+/// Whether a column turns back at the node of a change point, as its rates at a distance have it, the first that is not `still`.
+fn turns_back_over(curve: &Curve, node: usize, column: usize, still: f64) -> bool {
+    let last = curve.nodes.len() - 1;
+    let beside = |ahead: bool| {
+        let mut gone = 0.0;
+        let mut k = node;
+        loop {
+            let ends = if ahead { k == last } else { k == 0 };
+            k = match (ends, ahead) {
+                (true, _) if curve.end != End::Closed => return 0.0,
+                (true, true) => 1,
+                (true, false) => last - 1,
+                (false, true) => k + 1,
+                (false, false) => k - 1,
+            };
+            gone += curve.nodes[if ahead { k.max(1) - 1 } else { k }].step;
+            let rate = curve.nodes[k].rates[0][column];
+            if (gone > BESIDE && rate.abs() > still) || k == node {
+                return rate;
+            }
+        }
+    };
+    let (before, after) = (beside(false), beside(true));
+    before * after < 0.0 && before.abs().min(after.abs()) > STILL
 }
 
 /// The place in a step where a column's rate is zero, between two where its sign differs.
@@ -240,7 +239,7 @@ fn turning_between(
     let mut best: Option<Node> = None;
     let mut s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
     for _ in 0..60 {
-        let node = chain.ahead(a, s)?;
+        let node = curve::ahead(chain, a, s)?;
         let rate = node.rates[0][column];
         if best
             .as_ref()

@@ -2,9 +2,9 @@
 
 use super::domain::{Extent, turn_between};
 use super::frames::JOINT_COLUMNS;
-use super::motion::{Circuit, branch_at};
+use super::linkage::{Input, Rssr};
+use super::motion::{Circuit, Motion, MotionType, branch_at};
 use super::pair::Pair;
-use super::{Input, Motion, MotionType, Rssr};
 use crate::outcome::{DeadCentreKind, RowStatus};
 use crate::taylor::Taylor;
 use std::f64::consts::TAU;

@@ -1,7 +1,8 @@
 //! Motion type and limits of many square-axis RSSRs: in vector code where the answer stands clear, else one by one.
 
 use super::lines::{ARCS, BLOCK, Dimensions, EMPTY, FULL, Lane, Lines};
-use super::{Input, MotionType, Rssr};
+use super::linkage::{Input, Rssr};
+use super::motion::MotionType;
 use crate::error::Error;
 use crate::simd::{Kernel, dispatch};
 use std::sync::Mutex;

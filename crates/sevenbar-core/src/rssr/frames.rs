@@ -3,7 +3,7 @@
 //! The coupler may spin freely about the line of its balls. It is held by one rule: the direction of the coupler that
 //! is nearest to the crank's axis with every joint at zero stays nearest to it.
 
-use super::{Input, Rssr};
+use super::linkage::{Input, Rssr};
 use crate::error::Error;
 use crate::rigid::{
     Pose, Vec3, Vec3Taylor, cross, cross_taylor, dot, dot_taylor, most_perpendicular_axis, norm, scale,

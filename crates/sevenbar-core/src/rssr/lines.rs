@@ -14,7 +14,7 @@
 //!
 //! Source: docs/theory_many.md, (1) to (6).
 
-use super::Input;
+use super::linkage::Input;
 use crate::simd::multiply_add;
 use crate::vector_math::atan2;
 use std::f64::consts::TAU;

@@ -3,8 +3,8 @@
 use super::classify::{INVALID, MOST_LIMITS, columns_of_one_length, linkage, padded};
 use super::domain::Extent;
 use super::extremes::Extreme;
-use super::motion::Circuit;
-use super::{Input, Motion};
+use super::linkage::Input;
+use super::motion::{Circuit, Motion};
 use crate::error::Error;
 use crate::outcome::DeadCentreKind;
 use crate::sweep::in_order;

@@ -2,8 +2,8 @@
 
 use super::domain::{Domain, Extent, turn_between};
 use super::extremes::{Extreme, rate_extremes, transmission_extremes};
+use super::linkage::{Input, Rssr};
 use super::pair::Pair;
-use super::{Input, Rssr};
 use crate::outcome::{DeadCentre, DeadCentreKind};
 use crate::trigonometric::within_turn;
 use std::f64::consts::TAU;

@@ -2,7 +2,7 @@
 //!
 //! Source: docs/rssr.md, (3) to (5) and (9).
 
-use super::{Circle, Input};
+use super::linkage::{Circle, Input, Rssr};
 use crate::rigid::{dot, scale, sub};
 use crate::trigonometric::{TrigLinear, TrigQuadratic};
 use crate::twofold::Twofold;
@@ -52,6 +52,16 @@ impl Reach {
     pub fn is_dead_centre(&self) -> bool {
         // an undefined condition counts as one
         self.condition.is_nan() || self.condition >= DEAD_CENTRE_CONDITION
+    }
+}
+
+impl Rssr {
+    /// The closure seen from the input.
+    pub fn pair(&self, input: Input) -> Pair {
+        match input {
+            Input::Crank => Pair::new(&self.crank, &self.rocker, self.coupler, input),
+            Input::Rocker => Pair::new(&self.rocker, &self.crank, self.coupler, input),
+        }
     }
 }
 

@@ -45,7 +45,7 @@ impl Pair {
     }
 
     /// Sine and cosine of the follower's angle, without the angle.
-    pub(super) fn direction(&self, reach: &super::Reach, slope: f64, branch: usize) -> (f64, f64) {
+    pub(super) fn direction(&self, reach: &super::pair::Reach, slope: f64, branch: usize) -> (f64, f64) {
         let signed = self.branch_sign(branch) * slope;
         let [x, y, _] = reach.ball;
         let scale = 1.0 / (self.radius * reach.height * reach.height);

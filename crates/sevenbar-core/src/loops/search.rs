@@ -1,16 +1,20 @@
 //! Every curve of a chain: those through all its modes at many values of some joints.
 
 use super::arcs::{Arcs, contains, narrow_places};
-use super::around::Circle;
-use super::chain::{COLUMNS, Chain, Configuration, Joint};
+use super::chain::{Chain, Configuration, Joint};
 use super::change_points::ChangePoint;
-use super::counting::{Count, Known, Uncounted};
-use super::curve::{Curve, End, Node, REACH, dot, length};
-use super::dense::singular_values;
+use super::circle::Circle;
+use super::counting::{self, Count, Known, Uncounted};
+use super::curve::{Curve, End, Node};
+use super::dense::{COLUMNS, dot, length, singular_values};
+use super::follow::{self, Start};
+use super::join;
+use super::meetings;
 use super::modes::{Completeness, ModeFinder, REAL};
+use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
 use super::polish::{CLOSED, NO_RANK, rank, unyielding};
 use super::survey::Survey;
-use super::walk::Start;
+use super::turnings;
 use std::f64::consts::TAU;
 
 /// Values of a joint at which the modes are found, all of which must lie on the circuits.
@@ -246,8 +250,8 @@ impl Curves {
     ) -> Result<Count, Uncounted> {
         let known = self.known(chain, survey, column);
         let mut far: Vec<f64> = Vec::new();
-        survey.count(circle, known, &mut |pose| {
-            if chain.is_far(pose) {
+        counting::count(survey, circle, known, &mut |pose| {
+            if follow::is_far(chain, pose) {
                 // a curve is not followed so far, but may turn back there
                 far.push(pose.values[column]);
             } else {
@@ -291,12 +295,12 @@ impl Curves {
         let mut known = Known { singular: singular.collect(), ..Known::default() };
         let joined = self.arcs.joined(chain, self.wished[0]);
         for curve in self.curves.iter().chain(&joined) {
-            let turnings = curve.turnings(chain, column);
+            let turnings = turnings::turnings(curve, chain, column);
             let smooth = turnings.iter().filter(|t| !t.node.is_crossing());
             known
                 .dead_centres
                 .extend(smooth.map(|t| t.node.at.values[column]));
-            known.meetings.extend(survey.meetings(chain, curve));
+            known.meetings.extend(meetings::meetings(survey, chain, curve));
         }
         known
     }
@@ -328,7 +332,7 @@ impl Curves {
                     places.extend(finder.polished(&self.unforeseen(chain, modes)).modes);
                 }
             }
-            self.ahead.extend(chain.closed_curves(&places));
+            self.ahead.extend(join::closed_curves(chain, &places));
         }
     }
 
@@ -347,7 +351,7 @@ impl Curves {
     fn taken_ahead(&mut self, chain: &Chain, which: usize, backwards: bool) -> Curve {
         let curve = self.ahead.swap_remove(which);
         if backwards {
-            chain.turned_round(&curve, &[])
+            follow::turned_round(chain, &curve, &[])
         } else {
             curve
         }
@@ -429,7 +433,7 @@ impl Curves {
             if self.holds(chain, mode) || curves.iter().flatten().any(known) {
                 continue;
             }
-            if chain.is_far(mode) {
+            if follow::is_far(chain, mode) {
                 self.still += 1;
                 continue;
             }
@@ -482,7 +486,7 @@ impl Curves {
             .filter(|(_, c)| c.is_none())
             .map(|(s, _)| *s)
             .collect();
-        let mut followed = chain.follow(&left, &self.arcs.stops()).into_iter();
+        let mut followed = follow::follow(chain, &left, &self.arcs.stops()).into_iter();
         let mut fresh: Vec<Curve> = Vec::new();
         for (curve, start) in curves.into_iter().zip(&starts) {
             let Some(curve) = curve.or_else(|| followed.next()) else {
@@ -554,58 +558,4 @@ fn wrenches(columns: &[Vec<f64>], rank: usize) -> Vec<[f64; 6]> {
         // the power of force f and moment m on (w, v) is m w + f v
         .map(|v| [v[3], v[4], v[5], v[0], v[1], v[2]])
         .collect()
-}
-
-fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
-    curves.iter().any(|c| lies_on(chain, c, mode))
-}
-
-/// Whether a mode is a place of a curve.
-pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
-    place_on(chain, curve, mode).is_some()
-}
-
-/// Those modes that lie on none of the curves.
-fn not_on_any(chain: &Chain, curves: &[Curve], mut modes: Vec<Configuration>) -> Vec<Configuration> {
-    for curve in curves {
-        if modes.is_empty() {
-            break;
-        }
-        // in a row, for the nodes are far apart in memory
-        let reaches: Vec<f64> = reaches(curve).collect();
-        modes.retain(|mode| place_within(chain, curve, reaches.iter().copied(), mode).is_none());
-    }
-    modes
-}
-
-/// The node of a curve from which a step leads over a mode.
-pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
-    place_within(chain, curve, reaches(curve), mode)
-}
-
-/// The most by which each step of a curve changes a turn.
-fn reaches(curve: &Curve) -> impl Iterator<Item = f64> {
-    curve.nodes.iter().map(|node| REACH * node.step)
-}
-
-fn place_within<'a>(
-    chain: &Chain,
-    curve: &'a Curve,
-    reaches: impl Iterator<Item = f64>,
-    mode: &Configuration,
-) -> Option<&'a Node> {
-    // no nearer to the mode than this, in the turn that is farthest off
-    let mut least = 0.0;
-    for (k, reach) in reaches.enumerate() {
-        if least <= reach {
-            let node = &curve.nodes[k];
-            least = chain.farthest_turn(&node.at, mode);
-            if least <= reach && chain.passes_through(node, mode).is_some() {
-                return Some(node);
-            }
-        }
-        // a step changes no turn by more than its reach
-        least -= reach;
-    }
-    None
 }

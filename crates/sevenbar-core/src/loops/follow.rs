@@ -1,7 +1,8 @@
 //! Curves walked eight side by side in vector lanes, each until it comes back or cannot go on.
 
-use super::chain::{COLUMNS, Chain, Columns, Configuration, Joint};
-use super::curve::{Curve, End, Node, Stand, dot, length};
+use super::chain::{Chain, Configuration, Joint};
+use super::curve::{self, Curve, End, Node, Stand};
+use super::dense::{COLUMNS, Columns, dot, length};
 use super::polish::AGREE;
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};
@@ -31,84 +32,87 @@ pub(super) struct Stop {
     pub radius: f64,
 }
 
-impl Chain {
-    /// Follows the motions through closed configurations until they come back; those that do not, from end to end.
-    pub fn follow(&self, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
-        let mut curves = self.walk(starts, stops);
-        let open: Vec<usize> = (0..curves.len())
-            .filter(|&k| !matches!(curves[k].end, End::Closed | End::Open))
-            .collect();
-        // once more from the end it ran into; a long curve is held once only
-        let ends: Vec<Start> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
-        for &k in &open {
-            curves[k].nodes = Vec::new();
+/// Follows the motions through closed configurations until they come back; those that do not, from end to end.
+pub(super) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
+    let mut curves = walk(chain, starts, stops);
+    let open: Vec<usize> = (0..curves.len())
+        .filter(|&k| !matches!(curves[k].end, End::Closed | End::Open))
+        .collect();
+    // once more from the end it ran into; a long curve is held once only
+    let ends: Vec<Start> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
+    for &k in &open {
+        curves[k].nodes = Vec::new();
+    }
+    for (k, curve) in open.into_iter().zip(walk(chain, &ends, stops)) {
+        curves[k] = curve;
+    }
+    curves
+}
+
+/// Whether a slide or screw is farther out than curves are followed.
+pub(super) fn is_far(chain: &Chain, at: &Configuration) -> bool {
+    let far = |(joint, &c): (&Joint, &usize)| {
+        !matches!(joint, Joint::Turn | Joint::Ball(_)) && at.values[c].abs() > FARTHEST
+    };
+    chain.joints.iter().zip(&chain.first).any(far)
+}
+
+/// The curve walked the other way: its own nodes where each step is certain that way too.
+pub(super) fn turned_round(chain: &Chain, curve: &Curve, stops: &[Stop]) -> Curve {
+    curve::reversed(chain, curve)
+        .unwrap_or_else(|| walk(chain, &[back_from_end(curve)], stops).swap_remove(0))
+}
+
+fn walk(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
+    walk_until(chain, starts, stops, false).0
+}
+
+/// Each motion until it comes to the next of the starts, its own or another, and which that is.
+pub(super) fn pieces(chain: &Chain, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
+    walk_until(chain, starts, &[], true)
+}
+
+fn walk_until(
+    chain: &Chain,
+    starts: &[Start],
+    stops: &[Stop],
+    any: bool,
+) -> (Vec<Curve>, Vec<Option<usize>>) {
+    let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
+    let mut reached = vec![None; starts.len()];
+    let walk = Walk {
+        chain: chain,
+        starts,
+        stops,
+        any,
+        curves: &mut curves,
+        reached: &mut reached,
+    };
+    match starts.len() {
+        0 => {}
+        // one curve has nothing beside it, and vector code would be slower
+        1 => simd::dispatch(walk),
+        _ => vectors::dispatch(walk),
+    }
+    (curves, reached)
+}
+
+/// The start, its turns counted on, where it lies in the step from a node: with the step that leads there.
+fn returned(chain: &Chain, first: &Node, from: &Node) -> Option<(f64, Node)> {
+    if !curve::may_pass(chain, from, &first.at) || dot(&first.rates[0], &from.rates[0]) < 0.5 {
+        return None;
+    }
+    let along = curve::passes_through(chain, from, &first.at)?;
+    // the start itself, with the turns made on the way
+    let mut end = *first;
+    for c in 0..chain.columns {
+        if chain.is_turn(c) {
+            let here = from.at.values[c] + from.gone(c, along);
+            let turn = std::f64::consts::TAU;
+            end.at.values[c] += turn * ((here - first.at.values[c]) / turn).round();
         }
-        for (k, curve) in open.into_iter().zip(self.walk(&ends, stops)) {
-            curves[k] = curve;
-        }
-        curves
     }
-
-    /// Whether a slide or screw is farther out than curves are followed.
-    pub fn is_far(&self, at: &Configuration) -> bool {
-        let far = |(joint, &c): (&Joint, &usize)| {
-            !matches!(joint, Joint::Turn | Joint::Ball(_)) && at.values[c].abs() > FARTHEST
-        };
-        self.joints.iter().zip(&self.first).any(far)
-    }
-
-    /// The curve walked the other way: its own nodes where each step is certain that way too.
-    pub fn turned_round(&self, curve: &Curve, stops: &[Stop]) -> Curve {
-        self.reversed(curve)
-            .unwrap_or_else(|| self.walk(&[back_from_end(curve)], stops).swap_remove(0))
-    }
-
-    fn walk(&self, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
-        self.walk_until(starts, stops, false).0
-    }
-
-    /// Each motion until it comes to the next of the starts, its own or another, and which that is.
-    pub fn pieces(&self, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
-        self.walk_until(starts, &[], true)
-    }
-
-    fn walk_until(&self, starts: &[Start], stops: &[Stop], any: bool) -> (Vec<Curve>, Vec<Option<usize>>) {
-        let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
-        let mut reached = vec![None; starts.len()];
-        let walk = Walk {
-            chain: self,
-            starts,
-            stops,
-            any,
-            curves: &mut curves,
-            reached: &mut reached,
-        };
-        match starts.len() {
-            0 => {}
-            // one curve has nothing beside it, and vector code would be slower
-            1 => simd::dispatch(walk),
-            _ => vectors::dispatch(walk),
-        }
-        (curves, reached)
-    }
-
-    /// The start, its turns counted on, where it lies in the step from a node: with the step that leads there.
-    fn returned(&self, first: &Node, from: &Node) -> Option<(f64, Node)> {
-        if !self.may_pass(from, &first.at) || dot(&first.rates[0], &from.rates[0]) < 0.5 {
-            return None;
-        }
-        let along = self.passes_through(from, &first.at)?;
-        // the start itself, with the turns made on the way
-        let mut end = *first;
-        for c in 0..self.columns {
-            if self.is_turn(c) {
-                let here = from.at.values[c] + from.gone(c, along);
-                let turn = std::f64::consts::TAU;
-                end.at.values[c] += turn * ((here - first.at.values[c]) / turn).round();
-            }
-        }
-        Some((along, end))
-    }
+    Some((along, end))
 }
 
 fn back_from_end(curve: &Curve) -> Start {
@@ -155,9 +159,9 @@ impl LaneKernel for Walk<'_> {
             }
         }
         let mut growth = [0.0; LANES];
-        let mut step = self.chain.likely(&here.node, V::load(&growth)).store();
+        let mut step = curve::likely(self.chain, &here.node, V::load(&growth)).store();
         while walker.iter().any(|&w| w < count) {
-            let tried = self.chain.step(&here, V::load(&step));
+            let tried = curve::step(self.chain, &here, V::load(&step));
             let (mut allowed, tube) = (tried.allowed.store(), tried.tube.store());
             growth = tried.growth.store();
             split = self.split(&tried.next.node);
@@ -197,7 +201,7 @@ impl LaneKernel for Walk<'_> {
             for lane in (0..LANES).filter(|&k| fresh[k]) {
                 growth[lane] = 0.0;
             }
-            let likely = self.chain.likely(&here.node, V::load(&growth)).store();
+            let likely = curve::likely(self.chain, &here.node, V::load(&growth)).store();
             for lane in 0..LANES {
                 step[lane] = if allowed[lane] >= 0.0 || fresh[lane] {
                     likely[lane]
@@ -213,11 +217,11 @@ impl Kernel for Walk<'_> {
     #[inline(always)]
     fn run<const FUSED: bool>(mut self) {
         let (at, before) = &self.starts[0];
-        let mut here = self.chain.stand(at, before);
+        let mut here = curve::stand(self.chain, at, before);
         self.record(0, here.node);
-        let mut step = self.chain.likely(&here.node, 0.0);
+        let mut step = curve::likely(self.chain, &here.node, 0.0);
         loop {
-            let tried = self.chain.step(&here, step);
+            let tried = curve::step(self.chain, &here, step);
             let allowed = tried.allowed >= 0.0 && tried.next.node.inverse_norm.is_finite();
             let end = if allowed {
                 here = tried.next;
@@ -229,7 +233,7 @@ impl Kernel for Walk<'_> {
                 self.curves[0].end = end;
                 return;
             }
-            let likely = self.chain.likely(&here.node, tried.growth);
+            let likely = curve::likely(self.chain, &here.node, tried.growth);
             step = if allowed { likely } else { shortened(step, likely) };
         }
     }
@@ -268,7 +272,7 @@ impl Walk<'_> {
             before[c] = V::load(&directions[c]);
         }
         let at = Configuration::beside(&each, self.chain.ball_count());
-        self.chain.stand(&at, &before)
+        curve::stand(self.chain, &at, &before)
     }
 
     /// The lanes of a node.
@@ -337,8 +341,11 @@ impl Walk<'_> {
         for end in ends {
             // it has left its own first steps behind
             if (end != walker || last > 3)
-                && let Some((along, node)) =
-                    chain.returned(&self.curves[end].nodes[0], &self.curves[walker].nodes[last])
+                && let Some((along, node)) = returned(
+                    chain,
+                    &self.curves[end].nodes[0],
+                    &self.curves[walker].nodes[last],
+                )
                 && nearest.as_ref().is_none_or(|n| along < n.0)
             {
                 nearest = Some((along, node, end));

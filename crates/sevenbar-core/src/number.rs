@@ -1,0 +1,58 @@
+//! A number, or several side by side.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number, or several side by side: what the formulas of a loop are written in, once for both.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// The same number in each lane.
+    fn splat(x: f64) -> Self;
+    /// `self + a b`
+    fn plus_product(self, a: Self, b: Self) -> Self;
+    /// `self - a b`
+    fn minus_product(self, a: Self, b: Self) -> Self;
+    /// The square root.
+    fn sqrt(self) -> Self;
+    /// `yes` in the lanes where `self > b`, `no` in the others, and where either is not a number.
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self;
+    /// Sine and cosine of an angle [rad].
+    fn sin_cos(self) -> (Self, Self);
+    /// The lesser of two.
+    #[inline(always)]
+    fn lesser(self, b: Self) -> Self {
+        self.if_greater(b, b, self)
+    }
+    /// The size of a number.
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.if_greater(Self::splat(0.0), self, -self)
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self + a * b
+    }
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        self - a * b
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        if self > b { yes } else { no }
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+}
