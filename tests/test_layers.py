@@ -15,7 +15,7 @@ PYTHON_FILES = sorted(PACKAGE.rglob("*.py"))
 RUST_FILES = sorted((ROOT / "crates").rglob("*.rs"))
 CORE_FILES = sorted((CORE / "src").rglob("*.rs"))
 
-CORE_IMPORTERS = {"__init__", "closed_form", "general", "many"}
+CORE_IMPORTERS = {"__init__", "closed_form", "from_core", "general", "many"}
 
 NOT_IN_THE_CORE = re.compile(
     r"\b(pyo3|numpy)\b"

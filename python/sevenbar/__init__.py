@@ -29,6 +29,7 @@ from sevenbar.motion import (
     Motion,
     OpenRange,
     Output,
+    Search,
     Trace,
 )
 
@@ -47,6 +48,7 @@ __all__ = [
     "OpenRange",
     "Output",
     "Point",
+    "Search",
     "Trace",
     "__version__",
     "errors",

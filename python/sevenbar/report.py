@@ -21,7 +21,7 @@ from rich.text import Text
 
 from sevenbar.errors import RequestError, shown
 from sevenbar.folder import draw, fill_folder, write_columns, write_figures
-from sevenbar.general import left_open
+from sevenbar.how_found import how_found, left_open
 from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit, Extremes, Modes, Motion
 from sevenbar.page import Facts
@@ -104,8 +104,8 @@ def as_dict(motion: Motion) -> dict[str, Any]:
             "finite": motion.mobility.finite,
         },
         "completeness": motion.completeness,
-        "established": motion.established,
-        "misfits": motion.misfits.tolist(),
+        "established": how_found(motion),
+        "misfits": motion.search.misfits.tolist(),
         "circuits": [_circuit_dict(circuit) for circuit in motion.circuits],
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),

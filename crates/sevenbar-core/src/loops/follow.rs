@@ -81,7 +81,7 @@ fn walk_until(
     let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
     let mut reached = vec![None; starts.len()];
     let walk = Walk {
-        chain: chain,
+        chain,
         starts,
         stops,
         any,
