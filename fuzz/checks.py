@@ -253,7 +253,7 @@ def circuits_are_distinct(motion: sb.Motion) -> None:
 
 def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:
     """Each well-conditioned circuit whose input turns fully has its modes at an input."""
-    if motion.completeness == "searched" or motion.misfits.size:
+    if motion.completeness == "searched" or motion.search.misfits.size:
         return
     turning = [c for c in motion if c.closed and c.input_range is None and np.nanmax(c.condition) < WELL]
     least = sum(circuit.turns for circuit in turning)
@@ -262,7 +262,7 @@ def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:
 
 def modes_are_on_circuits(motion: sb.Motion, modes: sb.Modes) -> None:
     """Each mode at one of the inputs of the rows is a pose of a row, or stands alone."""
-    if motion.completeness == "searched" or motion.misfits.size or motion.motion_type in WITHOUT:
+    if motion.completeness == "searched" or motion.search.misfits.size or motion.motion_type in WITHOUT:
         return
     if any(not circuit.closed for circuit in motion):
         return

@@ -14,6 +14,7 @@ import pytest
 
 import sevenbar as sb
 from fuzz.random_loops import SPECIAL, Rows, drawn, rows
+from sevenbar.reporting.how_found import how_found
 from strategies import wrapped
 from test_sweep_rssr_core import critical
 
@@ -171,7 +172,7 @@ def test_an_overconstrained_loop_moves_until_its_condition_is_broken_and_then_do
     for off in [*OFF, *(-off for off in OFF)]:
         linkage = family(off)
         motion = told(linkage)
-        misses = motion.misfits.size > 0
+        misses = motion.search.misfits.size > 0
         if abs(off) >= DISAGREE:
             assert motion.motion_type in {"rigid", "cannot-assemble"}, off
             assert not motion.circuits
@@ -193,9 +194,9 @@ def test_a_leaning_four_bar_that_agrees_in_one_circuit_only_says_by_how_much_the
     motion = told(opened_four_bar(1e-9))
     assert len(motion.circuits) == 1
     # crossed over, coupler and rocker lean to different sides: by twice the angle at most, and the gap comes to it
-    misfits = motion.misfits
+    misfits = motion.search.misfits
     assert 1e-9 < misfits[0] < misfits[-1] < np.hypot(2e-9, 2e-9)
-    assert f"miss by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad" in motion.established
+    assert f"miss by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad" in how_found(motion)
     # at one input, too
     modes = motion.linkage.assembly_modes(0.3)
     assert len(modes) == 1

@@ -15,7 +15,10 @@ PYTHON_FILES = sorted(PACKAGE.rglob("*.py"))
 RUST_FILES = sorted((ROOT / "crates").rglob("*.rs"))
 CORE_FILES = sorted((CORE / "src").rglob("*.rs"))
 
-CORE_IMPORTERS = {"__init__", "kinematics/batches", "kinematics/closed_form", "kinematics/general"}
+CORE_IMPORTERS = {
+    "__init__",
+    *(f"kinematics/{name}" for name in ("batches", "closed_form", "from_core", "general")),
+}
 
 NOT_IN_THE_CORE = re.compile(
     r"\b(pyo3|numpy)\b"

@@ -72,8 +72,8 @@ def test_limits_of_a_coupler_turned_over_and_beside_infinite_joints_are_counted(
     linkage = drawn(np.random.default_rng(seed), "RSSR")
     motion, exact = linkage.motion(24, method="general"), linkage.motion(24)
     assert motion.completeness == "counted"
-    assert motion.count is not None
-    assert motion.count.dead_centres == sum(d.kind == "input" for c in exact for d in c.dead_centres)
+    assert motion.search.count is not None
+    assert motion.search.count.dead_centres == sum(d.kind == "input" for c in exact for d in c.dead_centres)
 
 
 def test_two_circuits_found_late_that_turn_back_at_the_same_inputs_both_count() -> None:
@@ -89,8 +89,8 @@ def test_two_circuits_found_late_that_turn_back_at_the_same_inputs_both_count() 
             joints[-1]["axes"] = [first.tolist(), np.cross(first, rng.normal(size=3)).tolist()]
     motion = sb.from_axes(joints).motion(24)
     assert (motion.completeness, len(motion.circuits)) == ("counted", 4)
-    assert motion.count is not None
-    assert motion.count.dead_centres == 8
+    assert motion.search.count is not None
+    assert motion.search.count.dead_centres == 8
 
 
 def test_where_turns_of_an_rssr_are_infinite_at_real_rocker_angles_its_crank_counts() -> None:
@@ -100,8 +100,8 @@ def test_where_turns_of_an_rssr_are_infinite_at_real_rocker_angles_its_crank_cou
         linkage = sb.rssr(112.1046, 85.6589, 56.6266, 106.9128, 42.8507, L2)
         motion, exact = (linkage.motion(24, input="rocker", method=m) for m in ("general", "auto"))
         assert (motion.completeness, len(motion.circuits)) == ("counted", len(exact.circuits))
-        assert motion.count is not None
-        assert motion.count.joint == "crank"
+        assert motion.search.count is not None
+        assert motion.search.count.joint == "crank"
 
 
 def test_a_complex_pair_straight_beside_a_drawn_pose_is_counted() -> None:
@@ -135,8 +135,12 @@ def test_circuits_that_end_where_slides_are_infinite_are_counted_and_none_is_mis
 def test_the_paper_s_loop_has_no_branch_point() -> None:
     motion = sb.load("seven_r").motion(24)
     assert motion.completeness == "counted"
-    assert motion.count is not None
-    assert (motion.count.dead_centres, motion.count.complex_branch_points, motion.count.open) == (0, 0, ())
+    assert motion.search.count is not None
+    assert (
+        motion.search.count.dead_centres,
+        motion.search.count.complex_branch_points,
+        motion.search.count.open,
+    ) == (0, 0, ())
 
 
 def test_the_count_is_of_all_dead_centres_of_its_joint() -> None:
@@ -150,9 +154,9 @@ def test_the_count_is_of_all_dead_centres_of_its_joint() -> None:
         )
         motion = linkage.motion(24)
         assert motion.completeness == "counted"
-        assert motion.count is not None
+        assert motion.search.count is not None
         dead_centres = [d for c in motion for d in c.dead_centres if d.kind == "input"]
-        assert motion.count.dead_centres == len(dead_centres)
+        assert motion.search.count.dead_centres == len(dead_centres)
 
 
 @pytest.mark.parametrize(
@@ -174,13 +178,13 @@ def test_overconstrained_loops_are_counted(name: str, dead_centres: int) -> None
     """Their circuits meet others that only the closure with added joints has: zeros of the determinant, and no dead centres."""
     motion = sb.load(name).motion(36)
     assert motion.completeness == "counted"
-    assert motion.count is not None
-    assert motion.count.open == ()
-    assert motion.count.dead_centres == dead_centres
+    assert motion.search.count is not None
+    assert motion.search.count.open == ()
+    assert motion.search.count.dead_centres == dead_centres
     found = [d for c in motion.circuits for d in c.dead_centres if d.kind == "input"]
     assert len(found) == dead_centres
 
 
 def test_screws_are_not_counted() -> None:
     motion = sb.load("screw_drill").motion(24)
-    assert (motion.completeness, motion.count) == ("searched", None)
+    assert (motion.completeness, motion.search.count) == ("searched", None)

@@ -13,6 +13,7 @@ import sevenbar as sb
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.batches import loop_motions
 from sevenbar.reporting import report
+from sevenbar.reporting.how_found import how_found
 
 Z = [0, 0, 1]
 
@@ -123,7 +124,7 @@ def test_screws_are_seeds_where_nothing_turns():
     assert linkage.mobility().finite == 1
     motion = linkage.motion(24)
     assert motion.circuits
-    assert "screws within one turn" in motion.established
+    assert "screws within one turn" in how_found(motion)
 
 
 def test_screws_on_the_corners_of_a_kite_are_told_to_move():

@@ -30,6 +30,7 @@ from sevenbar.kinematics.motion import (
     Motion,
     OpenRange,
     Output,
+    Search,
     Trace,
 )
 
@@ -48,6 +49,7 @@ __all__ = [
     "OpenRange",
     "Output",
     "Point",
+    "Search",
     "Trace",
     "__version__",
     "errors",

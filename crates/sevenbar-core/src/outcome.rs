@@ -1,4 +1,6 @@
-//! What both solvers say of a circuit's rows and dead centres.
+//! What both solvers say of a circuit: its rows, its dead centres, and what it is measured by.
+
+use std::f64::consts::TAU;
 
 /// What a row holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,4 +66,122 @@ pub struct DeadCentre {
     /// How ill its place is conditioned: for the RSSR, how much a relative change of the squared dimensions is magnified in it; else
     /// the norm of the inverse of the bordered Jacobian.
     pub condition: f64,
+}
+
+/// The least and the greatest value of a quantity, each with the input there.
+pub type Ends = [[f64; 2]; 2];
+
+/// What a joint does on a circuit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// It turns fully.
+    Crank,
+    /// It turns to and fro.
+    Rocker,
+    /// It slides.
+    Slider,
+    /// It turns without end, and the loop never comes back.
+    Spindle,
+}
+
+impl Role {
+    /// The motion type of a circuit whose input and output do this.
+    pub fn pair(input: Self, output: Self) -> &'static str {
+        use Role::{Crank, Rocker, Slider, Spindle};
+        match (input, output) {
+            (Crank, Crank) => "double-crank",
+            (Crank, Rocker) => "crank-rocker",
+            (Crank, Slider) => "crank-slider",
+            (Crank, Spindle) => "crank-spindle",
+            (Rocker, Crank) => "rocker-crank",
+            (Rocker, Rocker) => "double-rocker",
+            (Rocker, Slider) => "rocker-slider",
+            (Rocker, Spindle) => "rocker-spindle",
+            (Slider, Crank) => "slider-crank",
+            (Slider, Rocker) => "slider-rocker",
+            (Slider, Slider) => "double-slider",
+            (Slider, Spindle) => "slider-spindle",
+            (Spindle, Crank) => "spindle-crank",
+            (Spindle, Rocker) => "spindle-rocker",
+            (Spindle, Slider) => "spindle-slider",
+            (Spindle, Spindle) => "double-spindle",
+        }
+    }
+}
+
+/// What a circuit is measured by, whichever solver found it.
+#[derive(Clone, Debug)]
+pub struct CircuitMeasures {
+    /// How input and output move; "change-point" where it is not smooth.
+    pub motion_type: &'static str,
+    /// Whether it comes back to its first pose.
+    pub closed: bool,
+    /// Turns that the input gains until it closes, be it with dead centres on the way; none where it rocks.
+    pub turns: usize,
+    /// The range of the input; `None` for one that turns fully.
+    pub input: Option<[f64; 2]>,
+    /// The range of the output; `None` for one that turns fully.
+    pub output: Option<[f64; 2]>,
+    /// Those of input and output.
+    pub dead_centres: Vec<DeadCentre>,
+    /// The transmission angle, where it is defined.
+    pub transmission: Option<Ends>,
+    /// Velocity, acceleration and jerk of the output; `None` where they have no bound or the circuit is not smooth.
+    pub rates: [Option<Ends>; 3],
+}
+
+impl CircuitMeasures {
+    /// The same at another speed of the input, from that at unit speed.
+    pub fn at_speed(mut self, speed: f64) -> Self {
+        let mut factor = 1.0;
+        for ends in &mut self.rates {
+            factor *= speed;
+            if let Some(ends) = ends {
+                *ends = ends.map(|[value, at]| [factor * value, at]);
+                if ends[1] < ends[0] {
+                    ends.swap(0, 1);
+                }
+            }
+        }
+        self
+    }
+
+    /// Whether the input has dead centres.
+    pub fn turns_back(&self) -> bool {
+        self.dead_centres.iter().any(|d| d.kind == DeadCentreKind::Input)
+    }
+
+    /// The lowest and the highest output dead centre, of equal ones the first; `None` for an output that turns fully, and where
+    /// there are not two.
+    pub fn angle(&self) -> Option<Ends> {
+        self.output?;
+        let outputs = self
+            .dead_centres
+            .iter()
+            .filter(|d| d.kind == DeadCentreKind::Output);
+        let mut ends = outputs.map(|d| [d.output, d.input]);
+        let (first, second) = (ends.next()?, ends.next()?);
+        let (mut lowest, mut highest) = (first, first);
+        for end in std::iter::once(second).chain(ends) {
+            lowest = if end[0] < lowest[0] { end } else { lowest };
+            highest = if end[0] > highest[0] { end } else { highest };
+        }
+        Some([lowest, highest])
+    }
+
+    /// How far the output goes; `None` for one that turns fully.
+    pub fn swing(&self) -> Option<f64> {
+        self.output.map(|[low, high]| high - low)
+    }
+
+    /// Time of the slower stroke of the output over that of the quicker, for an input that turns fully and never back; `None` also
+    /// where both ends of the output are at one input: a stroke without time.
+    pub fn time_ratio(&self) -> Option<f64> {
+        let [low, high] = self
+            .angle()
+            .filter(|_| self.input.is_none() && !self.turns_back())?;
+        let stroke = (high[1] - low[1]).rem_euclid(TAU);
+        let (slower, quicker) = (stroke.max(TAU - stroke), stroke.min(TAU - stroke));
+        (quicker > 0.0).then_some(slower / quicker)
+    }
 }

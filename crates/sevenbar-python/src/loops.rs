@@ -1,13 +1,14 @@
 //! Any single loop, for Python.
 
-use crate::{CoreError, dead_centre_rows, flat, law_rows};
+use crate::values::{RawCircuit, RawFound, RawMotion, RawSearch, RowArrays, change_point};
+use crate::{CoreError, flat, law_rows};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyReadonlyArray3, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::PyType;
 use sevenbar_core::loops::{self, Circuit, Idle, Kind, Through};
 use sevenbar_core::rigid::Pose;
 
@@ -125,7 +126,7 @@ impl Loop {
     /// by how much redundant constraints keep other poses open.
     fn assembly_modes<'py>(&self, py: Python<'py>, column: usize, value: f64) -> PyResult<Modes<'py>> {
         let found = py
-            .detach(|| self.0.modes(column, value))
+            .detach(|| loops::modes(&self.0, column, value))
             .ok_or_else(|| no_input(column))?;
         let (values, residuals): (Vec<Vec<f64>>, Vec<f64>) = found.modes.into_iter().unzip();
         Ok((
@@ -136,13 +137,11 @@ impl Loop {
         ))
     }
 
-    /// How freely it moves, from the first poses found over the values of a column; empty where there are none.
-    fn mobility<'py>(&self, py: Python<'py>, column: usize) -> PyResult<Bound<'py, PyDict>> {
-        let result = PyDict::new(py);
-        if let Some(found) = py.detach(|| self.0.mobility(column)) {
-            write_found(&result, &found)?;
-        }
-        Ok(result)
+    /// How freely it moves, from the first poses found over the values of a column; none where there are none.
+    fn mobility(&self, py: Python<'_>, column: usize) -> PyResult<Option<RawFound>> {
+        py.detach(|| loops::mobility(&self.0, column))
+            .map(|found| RawFound::new(py, &found))
+            .transpose()
     }
 
     /// The whole motion over the inputs of a column.
@@ -155,54 +154,26 @@ impl Loop {
         samples: usize,
         speed: f64,
         law: Option<PyReadonlyArray2<'py, f64>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<RawMotion> {
         let law = law_rows(law);
         let motion = py
-            .detach(|| self.0.motion(input, output, samples, speed, law.as_deref()))
+            .detach(|| loops::motion(&self.0, input, output, samples, speed, law.as_deref()))
             .ok_or_else(|| no_input(input))?;
-        let result = PyDict::new(py);
-        if let Some(found) = &motion.found {
-            write_found(&result, found)?;
-        }
-        result.set_item("completeness", motion.completeness.name())?;
-        match &motion.count {
-            Ok(count) => {
-                let open: Vec<_> = count.open.iter().map(|o| (o.from, o.to, o.missing)).collect();
-                result.set_item(
-                    "count",
-                    (
-                        count.column,
-                        count.dead_centres,
-                        count.complex_branch_points,
-                        count.poles,
-                        open,
-                    ),
-                )?;
-            }
-            Err(why) => result.set_item("uncounted", why.name())?,
-        }
-        result.set_item("seed_columns", motion.seed_columns.clone())?;
-        result.set_item("seeds", motion.seeds)?;
-        result.set_item("still", motion.still)?;
-        result.set_item("misfits", motion.misfits.clone())?;
-        result.set_item("input_rests", motion.input_rests)?;
-        result.set_item("moving", motion.moving)?;
-        let circuits = motion
-            .circuits
-            .into_iter()
-            .map(|c| self.circuit_dict(py, c))
-            .collect::<PyResult<Vec<_>>>()?;
-        result.set_item("circuits", circuits)?;
-        let change_points: Vec<_> = motion
-            .change_points
-            .into_iter()
-            .map(|p| (p.values, p.circuits, p.ways, p.freedoms))
-            .collect();
-        result.set_item("change_points", change_points)?;
-        Ok(result)
+        let circuits = motion.circuits.into_iter();
+        Ok(RawMotion {
+            motion_type: motion.motion_type,
+            limits: None,
+            circuits: circuits
+                .map(|c| Py::new(py, self.circuit(py, c)?))
+                .collect::<PyResult<_>>()?,
+            change_points: motion.change_points.into_iter().map(change_point).collect(),
+            search: Some(Py::new(py, RawSearch::new(py, motion.search)?)?),
+            moving: motion.moving,
+        })
     }
 
-    /// The one circuit through a pose (columns,): itself, or how far the loop is from closing, or why there is none.
+    /// The one circuit through a pose (columns,); else how far the loop is from closing, the columns that move with the input at rest,
+    /// or nothing where no motion could be followed.
     #[pyo3(signature = (pose, input, output, samples, speed, law=None))]
     #[expect(clippy::too_many_arguments)]
     fn circuit_through<'py>(
@@ -214,26 +185,21 @@ impl Loop {
         samples: usize,
         speed: f64,
         law: Option<PyReadonlyArray2<'py, f64>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<RawThrough> {
         let law = law_rows(law);
         let pose = flat("pose", &pose)?;
         if pose.len() != self.0.columns() {
             return Err(CoreError::new_err("pose needs one value for each column"));
         }
         let through = py
-            .detach(|| {
-                self.0
-                    .circuit_through(pose, input, output, samples, speed, law.as_deref())
-            })
+            .detach(|| loops::circuit_through(&self.0, pose, input, output, samples, speed, law.as_deref()))
             .ok_or_else(|| no_input(input))?;
-        let result = PyDict::new(py);
-        match through {
-            Through::Circuit(circuit) => return self.circuit_dict(py, *circuit),
-            Through::Apart(gap) => result.set_item("apart", gap)?,
-            Through::Still => result.set_item("still", true)?,
-            Through::InputRests(moving) => result.set_item("moving", moving)?,
-        }
-        Ok(result)
+        Ok(match through {
+            Through::Circuit(circuit) => RawThrough::Circuit(Py::new(py, self.circuit(py, *circuit)?)?),
+            Through::Apart(gap) => RawThrough::Apart(gap),
+            Through::InputRests(moving) => RawThrough::InputRests(moving),
+            Through::Still => RawThrough::Still(()),
+        })
     }
 
     /// A point of a link along rows of a circuit with three derivatives by time, (4, n, 3), in the report frame; `link` counts from 0,
@@ -245,42 +211,35 @@ impl Loop {
         link: usize,
         at: [f64; 3],
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let out = py.detach(|| self.0.point(&rows.0, link, at));
+        let out = py.detach(|| loops::point(&self.0, &rows.0, link, at));
         PyArray1::from_vec(py, out).reshape([4, rows.0.len(), 3])
     }
 }
 
-fn write_found(result: &Bound<'_, PyDict>, found: &loops::Found) -> PyResult<()> {
-    result.set_item("rank", found.rank)?;
-    result.set_item("finite", found.finite)?;
-    result.set_item("wrenches", found.redundant.clone())
+/// What goes through a pose.
+#[derive(IntoPyObject)]
+enum RawThrough {
+    Circuit(Py<RawCircuit>),
+    Apart(f64),
+    InputRests(Vec<usize>),
+    Still(()),
 }
 
 impl Loop {
-    fn circuit_dict<'py>(&self, py: Python<'py>, circuit: Circuit) -> PyResult<Bound<'py, PyDict>> {
-        let result = PyDict::new(py);
-        let rows = circuit.rows;
-        let table = py.detach(|| self.0.joint_table(&rows));
-        result.set_item(
-            "joints",
-            PyArray1::from_vec(py, table).reshape([4, rows.len(), self.0.columns()])?,
-        )?;
-        result.set_item("status", rows.status().into_pyarray(py))?;
-        result.set_item("branch", rows.passes().into_pyarray(py))?;
-        result.set_item("residual", rows.residuals().into_pyarray(py))?;
-        result.set_item("condition", rows.conditions().into_pyarray(py))?;
-        result.set_item("closed", circuit.closed)?;
-        result.set_item("singular", circuit.singular)?;
-        result.set_item("turns", circuit.turns)?;
-        result.set_item("input", circuit.input.map(|e| (e[0], e[1])))?;
-        result.set_item("output", circuit.output.map(|e| (e[0], e[1])))?;
-        result.set_item("dead_centres", dead_centre_rows(&circuit.dead_centres))?;
-        let ends = |e: Option<[[f64; 2]; 2]>| e.map(|e| [(e[0][0], e[0][1]), (e[1][0], e[1][1])]);
-        result.set_item("velocity", ends(circuit.extremes[0]))?;
-        result.set_item("acceleration", ends(circuit.extremes[1]))?;
-        result.set_item("jerk", ends(circuit.extremes[2]))?;
-        result.set_item("rows", Rows(rows))?;
-        Ok(result)
+    fn circuit(&self, py: Python<'_>, circuit: Circuit) -> PyResult<RawCircuit> {
+        let Circuit { rows, measures } = circuit;
+        let table = py.detach(|| loops::joint_table(&self.0, &rows));
+        let arrays = RowArrays {
+            joints: PyArray1::from_vec(py, table)
+                .reshape([4, rows.len(), self.0.columns()])?
+                .unbind(),
+            status: rows.status().into_pyarray(py).unbind(),
+            branch: rows.passes().into_pyarray(py).unbind(),
+            mode: None,
+            residual: rows.residuals().into_pyarray(py).unbind(),
+            condition: rows.conditions().into_pyarray(py).unbind(),
+        };
+        Ok(RawCircuit::new(arrays, &measures, Some(Py::new(py, Rows(rows))?)))
     }
 }
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,7 +12,7 @@ import numpy.typing as npt
 
 from sevenbar import _core
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.general import expanded, merged, pair, size_of, word
+from sevenbar.kinematics.general import expanded, merged, size_of
 from sevenbar.kinematics.geometry import Loop, following_coupler
 from sevenbar.kinematics.motion import Integers
 
@@ -35,10 +34,6 @@ WORDS = np.array(CODES, dtype=object)
 
 #: The dimensions of an RSSR in the order of the core's rows.
 RSSR_ROWS = ("M", "N", "L1", "L2", "L3", "D")
-
-#: Rates of the output, by the order of their derivative.
-RATES = {"velocity": 1, "acceleration": 2, "jerk": 3}
-
 
 #: The core's word for a loop that its input drives.
 DRIVEN = 0
@@ -97,16 +92,13 @@ def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> 
 
     The output range of a change point is not among it: that takes following. As `rssr_types` for the rest.
     """
-    raw = _core.measure_rssr(np.ascontiguousarray(dimensions), side, threads)
-    codes, limits, counts = raw["motion_type"], raw["limits"], raw["circuits"]
+    raw = _core.measure_rssr(
+        np.ascontiguousarray(dimensions), side, np.ascontiguousarray(speed, np.float64), threads
+    )
+    codes, limits, counts = raw.codes, raw.limits, raw.circuits
     linkage, circuit = _numbered(counts)
-    transmission = np.degrees(raw["transmission"])
-    columns = _columns(raw, speed[linkage], turns=True) | {
-        # a circuit of an RSSR has the type of all of them
-        "circuit_type": WORDS[codes[linkage]],
-        "transmission_lowest": transmission[:, 0],
-        "transmission_highest": transmission[:, 2],
-    }
+    # a circuit of an RSSR has the type of all of them
+    columns = _columns(raw.measures, WORDS[codes[linkage]], turns=True)
     clear = (codes != INVALID) & (codes != CHANGE_POINT)
     return Motions(clear, WORDS[codes], limits, counts, linkage, circuit, columns)
 
@@ -127,35 +119,17 @@ def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int
         input,
         output,
         samples,
+        np.array([linkage.speed_of(input) for linkage in linkages], dtype=np.float64),
         threads,
     )
-    counts = raw["circuits"]
-    linkage, circuit = _numbered(counts)
+    linkage, circuit = _numbered(raw.circuits)
     kinds = linkages[0].column_kinds
-    open_ended = (raw["closed"] == 0) & (raw["singular"] == 0)
-    ends = []
-    for column, end in ((input, "input"), (output, "output")):
-        span = raw[f"{end}_range"][:, 1] - raw[f"{end}_range"][:, 0]
-        told = np.where(np.isfinite(span), word(kinds[column], rocks=True), word(kinds[column], rocks=False))
-        endless = open_ended & (span > math.tau)
-        ends.append(np.where(endless, word(kinds[column], rocks=True, endless=True), told))
-    own = np.array([pair(*both) for both in zip(*ends, strict=True)], dtype=object)
-    own[raw["singular"] != 0] = "change-point"
-    types = np.array(["mixed"] * len(counts), dtype=object)
-    bounds = np.concatenate([[0], np.cumsum(counts)])
-    for place, (first, last) in enumerate(pairwise(bounds)):
-        words = set(own[first:last])
-        if "change-point" in words:
-            types[place] = "change-point"
-        elif len(words) == 1:
-            types[place] = words.pop()
-    speed = np.array([linkage.speed_of(input) for linkage in linkages])
-    columns = _columns(raw, speed[linkage], turns=kinds[output] == "turn")
-    missing = np.full(len(linkage), np.nan)
-    columns |= {"circuit_type": own, "transmission_lowest": missing, "transmission_highest": missing}
-    clear = (raw["status"] == DRIVEN) & (counts > 0)
+    types = np.array(raw.motion_types, dtype=object)
+    own = np.array(raw.circuit_types, dtype=object)
+    columns = _columns(raw.measures, own, turns=kinds[output] == "turn")
+    clear = (raw.status == DRIVEN) & (raw.circuits > 0)
     limits = _limits(raw, linkage, linkages, turns=kinds[input] == "turn")
-    return Motions(clear, types, limits, counts, linkage, circuit, columns)
+    return Motions(clear, types, limits, raw.circuits, linkage, circuit, columns)
 
 
 def _numbered(counts: Integers) -> tuple[Integers, Integers]:
@@ -165,11 +139,11 @@ def _numbered(counts: Integers) -> tuple[Integers, Integers]:
     return linkage, np.arange(len(linkage)) - firsts[linkage]
 
 
-def _limits(raw: Mapping[str, Any], linkage: Integers, linkages: Sequence[Loop], *, turns: bool) -> Floats:
+def _limits(raw: _core.LoopBatch, linkage: Integers, linkages: Sequence[Loop], *, turns: bool) -> Floats:
     """The limits (n, m) of loops, from the input dead centres of their circuits."""
     count = len(linkages)
-    owner = np.repeat(linkage, raw["input_dead_centre_count"])
-    inputs = raw["input_dead_centres"][:, 0]
+    owner = np.repeat(linkage, raw.limit_counts)
+    inputs = raw.limits
     bounds = np.searchsorted(owner, np.arange(count + 1))
     found = [
         merged(inputs[first:last], turns=turns, size=1.0 if turns else size_of(loop))
@@ -181,28 +155,19 @@ def _limits(raw: Mapping[str, Any], linkage: Integers, linkages: Sequence[Loop],
     return limits
 
 
-def _columns(raw: Mapping[str, Any], speed: Floats, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
-    """Measures (c,) of circuits from the core's arrays, at a speed of each; `turns`: the output does."""
-    swing = raw["output_range"][:, 1] - raw["output_range"][:, 0]
+def _columns(raw: _core.RawMeasures, types: Words, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
+    """Measures (c,) of circuits of some types, by name; `turns`: the output does."""
     columns: dict[str, npt.NDArray[Any]] = {
-        "turns": raw["turns"].astype(np.float64),
-        "swing": np.degrees(swing) if turns else swing,
-        "time_ratio": _time_ratio(raw),
+        "turns": raw.turns.astype(np.float64),
+        "swing": np.degrees(raw.swing) if turns else raw.swing,
+        "time_ratio": raw.time_ratio,
+        "circuit_type": types,
     }
-    for name, order in RATES.items():
-        ends = raw[name][:, [0, 2]] * (speed**order)[:, None]
-        columns[f"{name}_lowest"], columns[f"{name}_highest"] = ends.min(axis=1), ends.max(axis=1)
+    for name, ends in (
+        ("velocity", raw.velocity),
+        ("acceleration", raw.acceleration),
+        ("jerk", raw.jerk),
+        ("transmission", np.degrees(raw.transmission)),
+    ):
+        columns[f"{name}_lowest"], columns[f"{name}_highest"] = ends[:, 0], ends[:, 2]
     return columns
-
-
-def _time_ratio(raw: Mapping[str, Any]) -> Floats:
-    """The slower stroke over the quicker, of a full turn of the input with a rocking output."""
-    ends = raw["output_dead_centres"]
-    stroke = (ends[:, 3] - ends[:, 1]) % math.tau
-    slower, quicker = np.maximum(stroke, math.tau - stroke), np.minimum(stroke, math.tau - stroke)
-    rocks = np.isfinite(raw["output_range"]).all(axis=1) & np.isnan(raw["input_range"][:, 0])
-    # an RSSR's input that turns fully has none
-    rocks &= np.equal(raw.get("input_dead_centre_count", 0), 0)
-    ratio = np.full(len(stroke), np.nan)
-    np.divide(slower, quicker, out=ratio, where=rocks & (quicker > 0))
-    return ratio

@@ -1,28 +1,28 @@
-"""The RSSR in closed form: what the core's arrays come to for its crank, coupler and rocker."""
+"""The RSSR in closed form."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from sevenbar import _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.from_core import change_points_from, circuit_from
 from sevenbar.kinematics.motion import (
     SPIN_UNDEFINED,
     Circuit,
-    Extremes,
+    Integers,
     Law,
     Modes,
     Motion,
     Output,
+    Search,
     Solvable,
     Trace,
-    change_points_from,
-    circuit_from,
+    Words,
 )
 
 Side = Literal["crank", "rocker"]
@@ -84,28 +84,23 @@ class ClosedForm:
             output=linkage.columns[other],
             speed=np.nan if law is not None else speed,
             samples=samples,
-            motion_type=raw["motion_type"],
-            limits=raw["limits"],
-            change_points=change_points_from(raw["change_points"], column),
+            motion_type=raw.motion_type,
+            limits=np.array([]) if raw.limits is None else raw.limits,
+            change_points=change_points_from(raw, column),
             circuits=tuple(
-                self._circuit(i, c, (column, other), speed, law) for i, c in enumerate(raw["circuits"])
+                self._circuit(i, c, (column, other), speed, law) for i, c in enumerate(raw.circuits)
             ),
-            completeness="closed-form",
-            established="all modes in closed form, the ranges of the input by the roots of a quartic",
+            search=Search("closed-form"),
             # two circles and a distance never repeat each other
             redundant=(),
             law=law,
         )
 
     def _circuit(
-        self, index: int, raw: Mapping[str, Any], columns: tuple[int, int], speed: float, law: Law | None
+        self, index: int, raw: _core.RawCircuit, columns: tuple[int, int], speed: float, law: Law | None
     ) -> Circuit:
-        (least, least_at), (greatest, greatest_at) = raw["transmission"]
-        own: dict[str, Any] = {}
-        if raw["motion_type"] == "change-point":
-            own["output_range"] = _followed_range(raw["joints"][0][:, columns[1]])
         # (n, 2, 4): crank and rocker, each with three derivatives
-        rates = np.moveaxis(raw["joints"][:, :, [0, -1]], 0, -1)
+        rates = np.moveaxis(raw.joints[:, :, [0, -1]], 0, -1)
         return circuit_from(
             raw,
             linkage=self._linkage,
@@ -114,15 +109,10 @@ class ClosedForm:
             speed=speed,
             law=law,
             size=self.size,
-            motion_type=raw["motion_type"],
-            closed=True,
-            mode=raw["mode"],
-            transmission=Extremes(least, least_at, greatest, greatest_at),
-            _point=partial(self._trace, rates),
-            **own,
+            point=partial(self._trace, rates),
         )
 
-    def _trace(self, rates: Floats, link: int, at: Floats) -> Trace:
+    def _trace(self, rates: Floats, _order: Integers, _status: Words, link: int, at: Floats) -> Trace:
         """A point, `at` in its link's own frame, along rows of both sides' rates, (n, 2, 4)."""
         crank, rocker = (np.ascontiguousarray(rates[:, end]) for end in (0, 1))
         position, velocity, acceleration, jerk = self._core.point(link, at, crank, rocker)
@@ -136,10 +126,3 @@ class ClosedForm:
 
 def _side(column: int) -> Side:
     return "crank" if column == 0 else "rocker"
-
-
-def _followed_range(angles: Floats) -> tuple[float, float] | None:
-    """The range of an output as sampled along its circuit; `None` where it gains a turn."""
-    if not np.isfinite(angles).all() or abs(angles[-1] - angles[0]) > np.pi:
-        return None
-    return float(angles.min()), float(angles.max())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -26,8 +26,6 @@ Words = npt.NDArray[np.str_]
 #: What a row can hold, by the core's number: all; the pose but no rates (two reasons); nothing; all but the
 #: balls' turns, which a row with the pose but no rates may lack, too.
 STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
-
-_STATUS_WORDS = np.array(STATUSES)
 
 #: The status of a row of a trace on the coupler where the spin's rule names no direction.
 SPIN_UNDEFINED = "spin-undefined"
@@ -80,17 +78,6 @@ class ChangePoint:
     def isolated(self) -> bool:
         """Whether no motion leads out of it."""
         return self.ways == 0
-
-
-def change_points_from(
-    raw: Sequence[tuple[Any, Sequence[int], int, int]], column: int
-) -> tuple[ChangePoint, ...]:
-    """Change points as the core has them (values, circuits, ways, freedoms); `column`: the input."""
-    points = (
-        ChangePoint(float(values[column]), np.array(values), tuple(circuits), ways, freedoms)
-        for values, circuits, ways, freedoms in raw
-    )
-    return tuple(sorted(points, key=lambda point: point.input % math.tau))
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +157,29 @@ class Count:
     poles: int
     #: Ranges that do not balance; none where circuits are `counted`.
     open: tuple[OpenRange, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What a search for the circuits came to; of the closed form no more than that.
+
+    All modes were found at so many `values` of each of the `columns`; from `unfollowed` of them no motion
+    could be followed. `rank` is that of the joints' screws in these poses and `freedoms` those of the
+    motions out of them, `None` where there are none.
+    """
+
+    completeness: Literal["closed-form", "counted", "algebraic", "searched"]
+    columns: tuple[str, ...] = ()
+    values: int = 0
+    unfollowed: int = 0
+    rank: int | None = None
+    freedoms: int | None = None
+    #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    misfits: Floats = field(default_factory=_none)
+    #: How the circuits were counted; `None` where they were not.
+    count: Count | None = None
+    #: Why they were not: modes were "searched", a solution was "lost", or with the input "still" others move.
+    uncounted: Literal["searched", "lost", "still"] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -288,6 +298,14 @@ class Circuit:
     velocity: Extremes | None
     acceleration: Extremes | None
     jerk: Extremes | None
+    #: Of the output itself [rad, or length]: its lowest and highest dead centre; `None` where it turns fully.
+    angle: Extremes | None
+    #: How far the output rocks [rad, or length]; `None` for one that turns fully.
+    swing: float | None
+    #: Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output. `None`
+    #: also for a crank that turns back on the way, and at a change point where both ends of the output are at
+    #: one input: a stroke without time.
+    time_ratio: float | None
     input_column: int
     output_column: int
     #: Whether the output is an angle, not a slide.
@@ -326,33 +344,6 @@ class Circuit:
             return self.input_range
         ends.append(ends[0] + math.tau * self.turns)
         return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
-
-    @property
-    def angle(self) -> Extremes | None:
-        """The extremes of the output angle [rad]: its dead centres; `None` for an output that turns fully."""
-        ends = [d for d in self.dead_centres if d.kind == "output"]
-        if self.output_range is None or len(ends) < 2:
-            return None
-        low, high = min(ends, key=lambda d: d.output), max(ends, key=lambda d: d.output)
-        return Extremes(low.output, low.input, high.output, high.input)
-
-    @property
-    def swing(self) -> float | None:
-        """The angle [rad] through which the output rocks; `None` for one that turns fully."""
-        return None if self.output_range is None else self.output_range[1] - self.output_range[0]
-
-    @property
-    def time_ratio(self) -> float | None:
-        """Time of the slower stroke over that of the quicker, >= 1, for a crank with a rocking output.
-
-        `None` also for a crank that turns back on the way, and at a change point where both ends of the
-        output are at one input: a stroke without time.
-        """
-        if self.angle is None or self.input_range is not None or self.turns_back:
-            return None
-        stroke = (self.angle.highest_at - self.angle.lowest_at) % math.tau
-        slower, quicker = max(stroke, math.tau - stroke), min(stroke, math.tau - stroke)
-        return slower / quicker if quicker > 0 else None
 
     def point(self, link: int, at: tuple[float, float, float]) -> Trace:
         """A point of link 1, 2, .. along the circuit.
@@ -498,16 +489,16 @@ class Motion:
     #: Poses at which branches meet, or would by a change of some 1e-12 of a dimension; isolated poses too.
     change_points: tuple[ChangePoint, ...]
     circuits: tuple[Circuit, ...]
-    completeness: Literal["closed-form", "counted", "algebraic", "searched"]
-    #: How the set of circuits was established.
-    established: str
+    #: How the circuits were looked for, and what was found out.
+    search: Search
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...]
     law: Law | None = None
-    #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
-    misfits: Floats = field(default_factory=_none)
-    #: How the circuits were counted; `None` where they were not.
-    count: Count | None = None
+
+    @property
+    def completeness(self) -> Literal["closed-form", "counted", "algebraic", "searched"]:
+        """How it is known that no circuit is missing."""
+        return self.search.completeness
 
     @property
     def change_point_inputs(self) -> Floats:
@@ -582,92 +573,6 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, unit: str) -> dict[str, np
                 columns[f"{point.name}_{letter}{name}_{suffix}"] = values[:, axis]
     columns[f"residual_{unit}"] = circuit.residual
     return columns
-
-
-def status_words(numbers: Integers) -> Words:
-    """The status of each row by the core's number."""
-    return _STATUS_WORDS[numbers]
-
-
-def circuit_from(
-    raw: Mapping[str, Any],
-    *,
-    linkage: Loop,
-    index: int,
-    columns: tuple[int, int],
-    speed: float,
-    law: Law | None,
-    size: float,
-    **own: Any,
-) -> Circuit:
-    """A circuit from the core's arrays; `columns`: input and output; `own`: what its solver adds."""
-    q, dq, ddq, dddq = raw["joints"]
-    input_column, output_column = columns
-    inputs = q[:, input_column]
-    if law is None:
-        velocity = scaled_extremes(raw["velocity"], speed)
-        acceleration = scaled_extremes(raw["acceleration"], speed * speed)
-        jerk = scaled_extremes(raw["jerk"], speed**3)
-    else:
-        velocity = sampled_extremes(dq[:, output_column], inputs)
-        acceleration = sampled_extremes(ddq[:, output_column], inputs)
-        jerk = sampled_extremes(dddq[:, output_column], inputs)
-    if "status" not in own:
-        own["status"] = status_words(raw["status"])
-    own.setdefault("output_range", raw["output"])
-    return Circuit(
-        index=index,
-        turns=raw["turns"],
-        columns=linkage.columns,
-        q=q,
-        dq=dq,
-        ddq=ddq,
-        dddq=dddq,
-        time=driven_time(inputs, speed, law),
-        branch=raw["branch"],
-        residual=raw["residual"] * size,
-        condition=raw["condition"],
-        dead_centres=tuple(DeadCentre(*d) for d in raw["dead_centres"]),
-        input_range=raw["input"],
-        velocity=velocity,
-        acceleration=acceleration,
-        jerk=jerk,
-        input_column=input_column,
-        output_column=output_column,
-        output_turns=linkage.column_kinds[output_column] == "turn",
-        size=size,
-        _frames=linkage.point_frames,
-        **own,
-    )
-
-
-def driven_time(inputs: Floats, speed: float, law: Law | None) -> Floats:
-    """The time [s] of each row: along the input's travel, or the law's once for each pass."""
-    if law is not None:
-        return np.tile(law.t, len(inputs) // law.t.size)
-    if inputs.size == 0:
-        return np.array([])
-    steps = np.abs(inputs[1:] - inputs[:-1])
-    steps[np.isnan(steps)] = 0.0
-    time = np.zeros(len(inputs))
-    np.cumsum(steps, out=time[1:])
-    return time / abs(speed)
-
-
-def scaled_extremes(raw: list[tuple[float, float]] | None, factor: float) -> Extremes | None:
-    """The extremes of a rate at another speed than the core's one."""
-    if raw is None:
-        return None
-    ends = sorted((value * factor, at) for value, at in raw)
-    return Extremes(*ends[0], *ends[1])
-
-
-def sampled_extremes(values: Floats, inputs: Floats) -> Extremes | None:
-    """Extremes as sampled: all that a law given by samples can tell."""
-    if np.isnan(values).all():
-        return None
-    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    return Extremes(float(values[low]), float(inputs[low]), float(values[high]), float(inputs[high]))
 
 
 def chosen_circuit(motion: Motion, index: int) -> Circuit:

@@ -20,10 +20,10 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.general import left_open
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Circuit, Extremes, Modes, Motion
 from sevenbar.reporting.folder import draw, fill_folder, write_columns, write_figures
+from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.summary import (
     COMPLETE,
@@ -104,8 +104,8 @@ def as_dict(motion: Motion) -> dict[str, Any]:
             "finite": motion.mobility.finite,
         },
         "completeness": motion.completeness,
-        "established": motion.established,
-        "misfits": motion.misfits.tolist(),
+        "established": how_found(motion),
+        "misfits": motion.search.misfits.tolist(),
         "circuits": [_circuit_dict(circuit) for circuit in motion.circuits],
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),

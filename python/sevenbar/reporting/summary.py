@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.kinematics.general import words_of
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Circuit, DeadCentre, Extremes, Modes, Motion, Solvable
+from sevenbar.reporting.how_found import how_found
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
@@ -142,7 +142,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts.extend(_change_points(motion))
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
     if motion.completeness != "closed-form":
-        facts.append(("established", motion.established))
+        facts.append(("established", how_found(motion)))
         facts.append(("mobility", _mobility(motion.mobility)))
     if motion.idle:
         facts.append(("idle freedom", "; ".join(motion.idle) + ", held by convention"))
@@ -529,3 +529,13 @@ def _dead_centres(circuit: Circuit, kind: str, show: _Shown, *, within: bool = F
     places = list(dict.fromkeys(show(d.input, whole=True) for d in found))
     more = len(places) - MOST_DEAD_CENTRES
     return (*places[:MOST_DEAD_CENTRES], *([f"and {more} more"] if more > 0 else [])) or ("none",)
+
+
+def words_of(motion_type: str) -> tuple[str, str]:
+    """What input and output are called, read off the motion type of a circuit.
+
+    >>> words_of("double-spindle"), words_of("spindle-slider"), words_of("change-point")
+    (('spindle', 'spindle'), ('spindle', 'slider'), ('change', 'point'))
+    """
+    first, _, second = motion_type.partition("-")
+    return (second, second) if first == "double" else (first, second)

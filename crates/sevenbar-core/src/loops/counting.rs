@@ -8,22 +8,19 @@
 //! Source: docs/theory_many.md, (12) to (16), (20).
 
 use super::chain::Configuration;
-use super::circle::{Circle, InputClosure};
-use super::closure::{Slides, Solution, UNKNOWNS};
+use super::circle::Circle;
+use super::closure::Solution;
 use super::continuation::{CAREFUL, Place};
 use super::locating::{Branching, branch_points};
-use super::modes::{CIRCLE, REAL as REAL_SOLUTION, SAME_MODE, Unknown};
-use super::phases::FACTORS;
+use super::modes::{CIRCLE, REAL as REAL_SOLUTION, Unknown};
+use super::sectors::{Border, CLEAR, Known, Sector, Stand, Winding, all, apart, less, total, within};
 use super::starts::distinct;
-use super::survey::{Infinite, Survey};
+use super::survey::Survey;
 use num_complex::Complex64;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Radii of the circles that are tried, where one loses a solution.
 const RADII: [f64; 4] = [CIRCLE, 1.02, 1.1, 1.008];
-
-/// What a count may be off a whole number before something was lost on the way.
-const WHOLE: f64 = 0.02;
 
 /// How often a range that does not balance is halved, down to a millionth of a radian.
 const MOST_HALVINGS: usize = 18;
@@ -38,17 +35,8 @@ const MOST_RANGES: usize = 300;
 /// An open range wider than this [rad] is tried again from another circle.
 const WIDE: f64 = 0.01;
 
-/// A solution is the same as another if it is nearer to it than this part of the distance to the next.
-const NEARER: f64 = 0.1;
-
 /// Part of the circle's height to which the path of a range that does not balance is led first.
 const LOWERED: f64 = 0.05;
-
-/// Where a range is parted, as parts of it, if a dead centre is in the way.
-const PARTINGS: [f64; 4] = [0.5, 0.43, 0.59, 0.36];
-
-/// No border stands nearer to a dead centre than this [rad].
-const CLEAR: f64 = 1e-8;
 
 /// A branch point this near the real inputs is real [rad], and two this near are one.
 const REAL: f64 = 1e-9;
@@ -68,17 +56,6 @@ pub struct Open {
     pub missing: Option<i64>,
 }
 
-/// Inputs of the zeros of the determinant that are known [rad].
-#[derive(Clone, Debug, Default)]
-pub(super) struct Known {
-    /// Dead centres of all curves.
-    pub dead_centres: Vec<f64>,
-    /// Where a curve meets one that only the filled-up closure has.
-    pub meetings: Vec<f64>,
-    /// Poses at which curves are not smooth: two zeros each.
-    pub singular: Vec<f64>,
-}
-
 /// The account of an input's branch points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Count {
@@ -92,13 +69,6 @@ pub struct Count {
     pub poles: usize,
     /// Ranges that do not balance, none where all do.
     pub open: Vec<Open>,
-}
-
-impl Known {
-    /// The simple zeros.
-    fn simple(&self) -> impl Iterator<Item = &f64> {
-        self.dead_centres.iter().chain(&self.meetings)
-    }
 }
 
 /// Why nothing was counted.
@@ -123,30 +93,8 @@ impl Uncounted {
     }
 }
 
-/// A way down to a real input: where it begins, and the change of the phases on it.
-#[derive(Clone, Copy)]
-struct Border {
-    angle: f64,
-    height: f64,
-    down: [f64; FACTORS],
-}
-
-/// The range between two borders of a circle, the places at which they stand, and its zeros less poles and infinite joints.
-struct Sector {
-    places: [usize; 2],
-    borders: [Border; 2],
-    numbers: (i64, i64),
-}
-
-/// A border with the places at its top.
-struct Stand {
-    border: Border,
-    places: Vec<Place>,
-}
-
 struct Account<'a> {
-    survey: &'a Survey<'a>,
-    closure: &'a InputClosure<'a>,
+    winding: Winding<'a>,
     known: Known,
     located: Vec<Branching>,
     open: Vec<Open>,
@@ -170,8 +118,7 @@ pub(super) fn count(
     let own = survey.algebraic.own();
     let places = circle.count;
     let mut account = Account {
-        survey: survey,
-        closure: &closure,
+        winding: Winding { survey, closure: &closure },
         known,
         located: Vec::new(),
         open: Vec::new(),
@@ -206,103 +153,18 @@ pub(super) fn count(
     count.ok_or(Uncounted::Lost)
 }
 
-/// Whether an angle lies in a range, whole turns aside.
-fn within(angle: f64, from: f64, to: f64) -> bool {
-    (angle - from).rem_euclid(TAU) < to - from
-}
-
-/// How far two angles are apart [rad], whole turns aside.
-fn apart(a: f64, b: f64) -> f64 {
-    let off = (a - b).rem_euclid(TAU);
-    off.min(TAU - off)
-}
-
-/// The square of how far two solutions are apart [parts of their values, or of the size].
-fn square_apart(slides: &Slides, a: &Solution, b: &Solution) -> f64 {
-    let off = |i: usize| {
-        let square = (a[i] - b[i]).norm_sqr();
-        if slides[i] {
-            square / (1.0 + a[i].norm_sqr())
-        } else {
-            square / b[i].norm_sqr()
-        }
-    };
-    (0..UNKNOWNS).map(off).fold(0.0, f64::max)
-}
-
-/// The places of some of the paths; none where one is lost.
-fn all(own: &[usize], at: &[Option<Place>]) -> Option<Vec<Place>> {
-    own.iter().map(|&path| at[path]).collect()
-}
-
-/// The sum of the phases of all places.
-fn total<'a>(places: impl IntoIterator<Item = &'a Place>) -> [f64; FACTORS] {
-    let mut sum = [0.0; FACTORS];
-    for place in places {
-        for (s, x) in sum.iter_mut().zip(place.phases().0) {
-            *s += x;
-        }
-    }
-    sum
-}
-
-fn less(a: [f64; FACTORS], b: [f64; FACTORS]) -> [f64; FACTORS] {
-    std::array::from_fn(|k| a[k] - b[k])
-}
-
 impl Account<'_> {
-    /// The ranges between the borders of a circle, and what is counted in each; none where a solution was lost on the way round.
-    fn sectors(&self, circle: &Circle, own: &[usize]) -> Option<Vec<Sector>> {
-        let count = circle.count;
-        let all = |at: &[Option<Place>]| all(own, at);
-        let lost = |at: &Vec<Option<Place>>| own.iter().any(|&path| at[path].is_none());
-        if circle.places.iter().any(lost)
-            || !self.are_same(&all(&circle.places[0])?, &all(&circle.places[count])?)
-        {
-            return None;
-        }
-        let sum = |at: &[Option<Place>]| total(own.iter().filter_map(|&path| at[path].as_ref()));
-        let phases: Vec<[f64; FACTORS]> = circle.places.iter().map(|at| sum(at)).collect();
-        let spacing = TAU / count as f64;
-        let mut borders: Vec<(usize, Border)> = Vec::with_capacity(count + 1);
-        for k in 0..count {
-            let angle = circle.first + k as f64 * spacing;
-            if let Some(ends) = all(&circle.ends[k])
-                && self.is_clear(angle, &ends)
-            {
-                let down = less(total(&ends), phases[k]);
-                borders.push((k, Border { angle, height: circle.radius.ln(), down }));
-            }
-        }
-        let mut end = *borders.first()?;
-        end.1.angle += TAU;
-        borders.push(end);
-        let mut sectors = Vec::with_capacity(count);
-        for w in borders.windows(2) {
-            let ((from, a), (to, b)) = (w[0], w[1]);
-            let mut arc = less(phases[to], phases[from]);
-            if to <= from {
-                let round = less(phases[count], phases[0]);
-                arc = std::array::from_fn(|k| arc[k] + round[k]);
-            }
-            // each lost count is a lost solution
-            let numbers = self.numbers(&a, &b, &arc)?;
-            sectors.push(Sector { places: [from, to], borders: [a, b], numbers });
-        }
-        Some(sectors)
-    }
-
     /// Settles all ranges of a circle; gives how many solutions run to infinity within it, or nothing where a solution was lost on
     /// the way round.
     fn balance(&mut self, circle: &Circle, own: &[usize]) -> Option<i64> {
-        let sectors = self.sectors(circle, own)?;
+        let sectors = self.winding.sectors(&self.known, circle, own)?;
         for Sector { places, borders: [a, b], numbers } in &sectors {
             if self.missing(Some(*numbers), a, b) == Some(0) {
                 continue;
             }
             let stand = |border: &Border, k: usize| {
                 let places = all(own, &circle.places[k])?;
-                self.lowered(&Stand { border: *border, places }, LOWERED)
+                self.winding.lowered(&Stand { border: *border, places }, LOWERED)
             };
             match (stand(a, places[0]), stand(b, places[1])) {
                 (Some(a), Some(b)) => self.settle(&a, &b, 0),
@@ -312,101 +174,10 @@ impl Account<'_> {
         Some(sectors.iter().map(|s| s.numbers.1).sum())
     }
 
-    /// Whether a border at an angle may be: its real solutions are all apart, and no dead centre is near.
-    fn is_clear(&self, angle: f64, ends: &[Place]) -> bool {
-        let slides = &self.survey.finder.slides;
-        let all_apart = distinct(slides, ends.iter().map(|p| *p.solution()), SAME_MODE).len() == ends.len();
-        all_apart
-            && self
-                .known
-                .simple()
-                .copied()
-                .chain(self.survey.afar.iter().map(|a| a.input))
-                .all(|at| apart(at, angle) > CLEAR)
-    }
-
-    /// Whether two lists hold the same solutions: each has one in the other that is far nearer than all others, and no two have one.
-    fn are_same(&self, a: &[Place], b: &[Place]) -> bool {
-        let slides = &self.survey.finder.slides;
-        let mut taken = vec![false; b.len()];
-        a.iter().all(|a| {
-            let (mut nearest, mut least, mut next) = (0, f64::INFINITY, f64::INFINITY);
-            for (k, b) in b.iter().enumerate() {
-                let off = square_apart(slides, a.solution(), b.solution());
-                if off < least {
-                    (nearest, least, next) = (k, off, least);
-                } else {
-                    next = next.min(off);
-                }
-            }
-            least < NEARER * NEARER * next && !std::mem::replace(&mut taken[nearest], true)
-        })
-    }
-
-    /// The same border from nearer to the real inputs.
-    fn lowered(&self, stand: &Stand, part: f64) -> Option<Stand> {
-        let Border { angle, height, down } = stand.border;
-        let places = self
-            .closure
-            .lowered(&stand.places, angle, (height, part * height))?;
-        let gone = less(total(&places), total(&stand.places));
-        let border = Border { angle, height: part * height, down: less(down, gone) };
-        Some(Stand { border, places })
-    }
-
-    /// A border between two at one height.
-    fn parted(&self, a: &Stand, b: &Stand) -> Option<Stand> {
-        let Border { angle: from, height, .. } = a.border;
-        PARTINGS.iter().find_map(|part| {
-            let angle = from + part * (b.border.angle - from);
-            let places = self.closure.along(&a.places, height, (from, angle))?;
-            let ends = self.closure.lowered(&places, angle, (height, 0.0))?;
-            let down = less(total(&ends), total(&places));
-            self.is_clear(angle, &ends)
-                .then_some(Stand { border: Border { angle, height, down }, places })
-        })
-    }
-
-    /// Zeros less poles of the determinant between two borders, and how many joints are infinite there; none where these are no
-    /// whole numbers.
-    ///
-    /// Source: docs/theory_many.md, (13) and (14).
-    fn numbers(&self, a: &Border, b: &Border, arc: &[f64; FACTORS]) -> Option<(i64, i64)> {
-        let change: [f64; FACTORS] = std::array::from_fn(|k| arc[k] + b.down[k] - a.down[k]);
-        let whole = |x: f64| ((x - x.round()).abs() < WHOLE).then_some(x.round() as i64);
-        let inside = |x: &&Complex64| within(x.arg(), a.angle, b.angle) && x.norm().ln().abs() < a.height;
-        let zeros = whole(change[0] / PI)?;
-        let infinite = match &self.survey.infinite {
-            Infinite::At(at) => at.iter().filter(inside).count() as i64,
-            Infinite::Watched(met) => {
-                let mut sum = 0;
-                for (i, met) in met.iter().enumerate() {
-                    if self.survey.watch.values[i].is_some() {
-                        let winding = whole((change[1 + 2 * i] + change[2 + 2 * i]) / TAU)?;
-                        let poles = met.iter().filter(inside).count() as i64 - winding;
-                        if poles < 0 {
-                            return None;
-                        }
-                        sum += poles;
-                    }
-                }
-                sum
-            }
-        };
-        // slides infinite at a real input are known
-        let afar = self
-            .survey
-            .afar
-            .iter()
-            .filter(|at| within(at.input, a.angle, b.angle));
-        let (order, slides) = afar.fold((0, 0), |sum, at| (sum.0 + at.order, sum.1 + at.slides));
-        (infinite >= slides).then_some((zeros - order, infinite - slides))
-    }
-
     /// How many branch points are counted between two borders and not known.
     fn missing(&self, numbers: Option<(i64, i64)>, a: &Border, b: &Border) -> Option<i64> {
         let (zeros, poles) = numbers?;
-        if poles > 0 || zeros % self.survey.flips != 0 {
+        if poles > 0 || zeros % self.winding.survey.flips != 0 {
             return None;
         }
         let between = |at: &f64| within(*at, a.angle, b.angle);
@@ -416,21 +187,25 @@ impl Account<'_> {
         let complex = complex
             .filter(|p| between(&p.tau.re) && p.tau.im.abs() < a.height)
             .count() as i64;
-        Some(zeros / self.survey.flips - known - singular - complex)
+        Some(zeros / self.winding.survey.flips - known - singular - complex)
     }
 
     /// Looks for what is missing between two borders, in ever smaller ranges.
     fn settle(&mut self, a: &Stand, b: &Stand, halved: usize) {
         let (from, to) = (&a.border, &b.border);
         let numbers = self
+            .winding
             .closure
             .along(&a.places, from.height, (from.angle, to.angle))
-            .filter(|places| self.are_same(places, &b.places))
-            .and_then(|places| self.numbers(from, to, &less(total(&places), total(&a.places))));
+            .filter(|places| self.winding.are_same(places, &b.places))
+            .and_then(|places| {
+                self.winding
+                    .numbers(from, to, &less(total(&places), total(&a.places)))
+            });
         if self.missing(numbers, from, to) == Some(0) {
             return;
         }
-        let middle = self.parted(a, b);
+        let middle = self.winding.parted(&self.known, a, b);
         let most = match numbers {
             None => MOST_HALVINGS_LOST,
             Some((_, 0)) => MOST_HALVINGS,
@@ -450,7 +225,7 @@ impl Account<'_> {
             && self.ranges < MOST_RANGES
             && let Some(middle) = middle
         {
-            let lower = |stand: &Stand| self.lowered(stand, 0.5);
+            let lower = |stand: &Stand| self.winding.lowered(stand, 0.5);
             if let (Some(a), Some(middle), Some(b)) = (lower(a), lower(&middle), lower(b)) {
                 self.settle(&a, &middle, halved + 1);
                 self.settle(&middle, &b, halved + 1);
@@ -479,7 +254,7 @@ impl Account<'_> {
 
     /// Branch points to which the places at the borders of a range lead; the curves through real ones are followed.
     fn locate(&mut self, borders: &[&Stand]) {
-        let finder = self.survey.finder;
+        let finder = self.winding.survey.finder;
         let slides = &finder.slides;
         let (from, to) = (borders[0].border.angle, borders[borders.len() - 1].border.angle);
         let (height, wide) = (borders[0].border.height, to - from);
@@ -504,7 +279,7 @@ impl Account<'_> {
             }
             x
         };
-        for found in branch_points(self.closure, slides, &starts, wanted) {
+        for found in branch_points(self.winding.closure, slides, &starts, wanted) {
             let gimbal = |&(i, zero): &(usize, Complex64)| {
                 let z = found.at[i] / zero;
                 (z + 1.0 / z).norm() < 2.0 * GIMBAL
@@ -517,14 +292,15 @@ impl Account<'_> {
                     || distinct(slides, [b.at, found.at].map(plain).into_iter(), SAME_POINT.sqrt()).len()
                         == 1)
             };
-            if self.survey.watch.middles.iter().any(gimbal) || self.located.iter().any(|b| known(&b)) {
+            if self.winding.survey.watch.middles.iter().any(gimbal) || self.located.iter().any(|b| known(&b))
+            {
                 continue;
             }
             let pose = (found.tau.im.abs() < REAL)
                 .then(|| {
                     finder.configuration(
                         &found.at,
-                        &self.survey.algebraic.zeros,
+                        &self.winding.survey.algebraic.zeros,
                         found.tau.re,
                         REAL_SOLUTION,
                     )
@@ -564,16 +340,10 @@ mod tests {
     fn numbers(survey: &Survey) -> Vec<(f64, (i64, i64))> {
         let closure = survey.algebraic.closure(Some(&survey.watch));
         let circle = survey.algebraic.circle(&closure, CIRCLE, 24, CAREFUL);
-        let account = Account {
-            survey,
-            closure: &closure,
-            known: Known::default(),
-            located: Vec::new(),
-            open: Vec::new(),
-            ranges: 0,
-            seed: &mut |_| Known::default(),
-        };
-        let sectors = account.sectors(&circle, &survey.algebraic.own()).unwrap();
+        let winding = Winding { survey, closure: &closure };
+        let sectors = winding
+            .sectors(&Known::default(), &circle, &survey.algebraic.own())
+            .unwrap();
         sectors.iter().map(|s| (s.borders[0].angle, s.numbers)).collect()
     }
 

@@ -3,7 +3,16 @@
 use super::idle::Idle;
 use super::kinds::Kind;
 use super::reduce::{Reduced, Source, reduce};
+use crate::outcome::Role;
 use crate::rigid::{Pose, norm};
+use std::f64::consts::TAU;
+
+/// A column of joint values, in the description and in the chain.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column {
+    pub outer: usize,
+    pub inner: usize,
+}
 
 /// A closed loop of joints: `base Z1 G1 Z2 .. Zn = ground`.
 #[derive(Clone, Debug)]
@@ -107,6 +116,21 @@ impl Loop {
             (Source::Joint(_), Kind::Ball) => None,
             (Source::Joint(j), _) => Some(chain.first[j]),
             _ => None,
+        }
+    }
+
+    /// A column that may drive or be driven; `None` where it is no joint of one freedom that moves.
+    pub(super) fn inner(&self, outer: usize) -> Option<Column> {
+        Some(Column { outer, inner: self.chain_column(outer)? })
+    }
+
+    /// What a column does on a circuit: `endless` where that has no end of its own, and is followed to where something is far out.
+    pub(super) fn role(&self, column: Column, range: Option<[f64; 2]>, endless: bool) -> Role {
+        match range {
+            _ if self.is_slide(column.outer) => Role::Slider,
+            Some([low, high]) if endless && high - low > TAU => Role::Spindle,
+            Some(_) => Role::Rocker,
+            None => Role::Crank,
         }
     }
 

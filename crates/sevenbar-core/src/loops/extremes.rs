@@ -6,14 +6,11 @@
 //!
 //! Source: docs/theory_many.md, (11).
 
-use super::circuits::Passes;
 use super::dense::Columns;
+use super::passes::Passes;
 use super::rates::{self, ORDERS};
 use super::row::{Row, UNIT};
-use crate::outcome::RowStatus;
-
-/// The least and the greatest value of a quantity, each with the input there.
-pub type Ends = [[f64; 2]; 2];
+use crate::outcome::{Ends, RowStatus};
 
 /// A derivative of the output at unit speed, of order four, below which it is zero.
 const NO_SLOPE: f64 = 1e-13;

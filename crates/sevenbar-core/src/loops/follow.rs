@@ -80,14 +80,7 @@ fn walk_until(
 ) -> (Vec<Curve>, Vec<Option<usize>>) {
     let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
     let mut reached = vec![None; starts.len()];
-    let walk = Walk {
-        chain: chain,
-        starts,
-        stops,
-        any,
-        curves: &mut curves,
-        reached: &mut reached,
-    };
+    let walk = Walk { chain, starts, stops, any, curves: &mut curves, reached: &mut reached };
     match starts.len() {
         0 => {}
         // one curve has nothing beside it, and vector code would be slower

@@ -1,12 +1,12 @@
 //! The numerical work on loops with known answers.
 
 use super::chain::{Chain, Configuration, Joint};
-use super::circuits::Passes;
 use super::curve::{self, Curve, End};
 use super::dense::{Columns, singular_values};
 use super::follow;
 use super::join;
 use super::modes::{ModeFinder, random_pose, same};
+use super::passes::Passes;
 use super::rotations::{rotation, squared_up};
 use crate::random::Random;
 use crate::rigid::Pose;

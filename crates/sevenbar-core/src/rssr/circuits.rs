@@ -202,7 +202,7 @@ fn driver_column(input: Input) -> usize {
     Rssr::in_loop_order(input, 0, JOINT_COLUMNS - 1).0
 }
 
-fn follower_column(input: Input) -> usize {
+pub(super) fn follower_column(input: Input) -> usize {
     Rssr::in_loop_order(input, 0, JOINT_COLUMNS - 1).1
 }
 

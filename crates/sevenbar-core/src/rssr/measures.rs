@@ -1,16 +1,15 @@
-//! Motions of many square-axis RSSRs as numbers: everything that a circuit is told by.
+//! What circuits are measured by, and the motions of many square-axis RSSRs as such numbers.
 
+use super::circuits::{Row, follower_column};
 use super::classify::{INVALID, MOST_LIMITS, columns_of_one_length, linkage, padded};
 use super::domain::Extent;
 use super::extremes::Extreme;
 use super::linkage::Input;
-use super::motion::{Circuit, Motion};
+use super::motion::{Circuit, Motion, MotionType};
 use crate::error::Error;
-use crate::outcome::DeadCentreKind;
+use crate::outcome::{CircuitMeasures, Ends};
 use crate::sweep::in_order;
-
-/// Lowest value, input there, highest value, input there; NaN where there are none.
-pub type Ends = [f64; 4];
+use std::f64::consts::PI;
 
 /// What a motion comes to.
 #[derive(Clone, Debug)]
@@ -23,32 +22,24 @@ pub struct MotionMeasures {
     pub circuits: Vec<CircuitMeasures>,
 }
 
-/// What a circuit comes to, at an input speed of 1.
-#[derive(Clone, Copy, Debug)]
-pub struct CircuitMeasures {
-    /// The range of the input; NaN for a full turn.
-    pub input_range: [f64; 2],
-    /// The range of the output; NaN for a full turn, and at a change point.
-    pub output_range: [f64; 2],
-    /// Turns of the input until it closes on itself; 0 for one that rocks.
-    pub turns: usize,
-    /// The transmission angle.
-    pub transmission: Ends,
-    /// First, second and third derivative of output by input; NaN where they have no bound or a change point lies within.
-    pub rates: [Ends; 3],
-    /// The lowest and the highest output dead centre; NaN unless there are two.
-    pub output_dead_centres: Ends,
-}
-
-/// What the motion of each linkage comes to, from M, N, L1, L2, L3, D of the paper's square axes.
+/// What the motion of each linkage comes to, from M, N, L1, L2, L3, D of the paper's square axes, the input of each
+/// at its speed.
 ///
 /// # Errors
 /// [`Error::Lengths`] where the arrays are not of one length.
-pub fn measure(dimensions: [&[f64]; 6], input: Input, threads: usize) -> Result<Vec<MotionMeasures>, Error> {
+pub fn measure(
+    dimensions: [&[f64]; 6],
+    input: Input,
+    speed: &[f64],
+    threads: usize,
+) -> Result<Vec<MotionMeasures>, Error> {
     let count = columns_of_one_length(dimensions)?;
+    if speed.len() != count {
+        return Err(Error::Lengths { what: "speed", got: speed.len(), want: count });
+    }
     Ok(in_order(count, threads, |i| {
         linkage(dimensions.map(|column| column[i])).map_or(MotionMeasures::NONE, |linkage| {
-            MotionMeasures::of(&linkage.motion(input))
+            MotionMeasures::of(linkage.motion(input), speed[i])
         })
     }))
 }
@@ -60,54 +51,65 @@ impl MotionMeasures {
         circuits: Vec::new(),
     };
 
-    fn of(motion: &Motion) -> Self {
+    fn of(motion: Motion, speed: f64) -> Self {
         Self {
             motion_type: motion.motion_type as u8,
             limits: padded(&motion.limits),
-            circuits: motion.circuits.iter().map(CircuitMeasures::of).collect(),
+            circuits: motion
+                .circuits
+                .into_iter()
+                .map(|circuit| CircuitMeasures::from(circuit).at_speed(speed))
+                .collect(),
         }
     }
 }
 
-impl CircuitMeasures {
-    fn of(circuit: &Circuit) -> Self {
+impl From<Circuit> for CircuitMeasures {
+    /// At unit speed of the input.
+    fn from(circuit: Circuit) -> Self {
         Self {
-            input_range: range(circuit.input),
-            output_range: range(circuit.output),
+            motion_type: circuit.motion_type.name(),
+            closed: true,
             turns: circuit.turns,
-            transmission: ends(circuit.transmission),
-            rates: [circuit.velocity, circuit.acceleration, circuit.jerk]
-                .map(|rate| rate.map_or([f64::NAN; 4], ends)),
-            output_dead_centres: output_dead_centres(circuit),
+            input: range(circuit.input),
+            output: range(circuit.output),
+            dead_centres: circuit.dead_centres,
+            transmission: Some(ends(circuit.transmission)),
+            rates: [circuit.velocity, circuit.acceleration, circuit.jerk].map(|rate| rate.map(ends)),
         }
     }
 }
 
-fn range(extent: Extent) -> [f64; 2] {
+/// The measures of a circuit with its rows, at unit speed of the input: at a change point they alone tell the range of the output.
+pub fn measures_with_rows(circuit: Circuit, rows: &[Row], input: Input) -> CircuitMeasures {
+    let followed = (circuit.motion_type == MotionType::ChangePoint).then(|| followed_range(rows, input));
+    let mut measures = CircuitMeasures::from(circuit);
+    if let Some(output) = followed {
+        measures.output = output;
+    }
+    measures
+}
+
+/// The range of an output as sampled along its circuit; `None` where it gains a turn.
+fn followed_range(rows: &[Row], input: Input) -> Option<[f64; 2]> {
+    let column = follower_column(input);
+    let angles = || rows.iter().map(|row| row.joints[column][0]);
+    let gained = angles().next_back()? - angles().next()?;
+    (angles().all(f64::is_finite) && gained.abs() <= PI).then(|| {
+        [
+            angles().fold(f64::INFINITY, f64::min),
+            angles().fold(f64::NEG_INFINITY, f64::max),
+        ]
+    })
+}
+
+fn range(extent: Extent) -> Option<[f64; 2]> {
     match extent {
-        Extent::Full => [f64::NAN; 2],
-        Extent::Arc(start, end) => [start, end],
+        Extent::Full => None,
+        Extent::Arc(start, end) => Some([start, end]),
     }
 }
 
-fn ends([lowest, highest]: [Extreme; 2]) -> Ends {
-    [lowest.value, lowest.input, highest.value, highest.input]
-}
-
-/// Where the output of a circuit turns back, at the lowest and at the highest; of equal ones the first.
-fn output_dead_centres(circuit: &Circuit) -> Ends {
-    let mut found = circuit
-        .dead_centres
-        .iter()
-        .filter(|d| d.kind == DeadCentreKind::Output)
-        .map(|d| [d.output, d.input]);
-    let (Some(first), Some(second)) = (found.next(), found.next()) else {
-        return [f64::NAN; 4];
-    };
-    let (mut lowest, mut highest) = (first, first);
-    for end in std::iter::once(second).chain(found) {
-        lowest = if end[0] < lowest[0] { end } else { lowest };
-        highest = if end[0] > highest[0] { end } else { highest };
-    }
-    [lowest[0], lowest[1], highest[0], highest[1]]
+fn ends(extremes: [Extreme; 2]) -> Ends {
+    extremes.map(|extreme| [extreme.value, extreme.input])
 }

@@ -26,6 +26,6 @@ pub use classify::{INVALID, MOST_LIMITS, classify};
 pub use domain::Extent;
 pub use extremes::Extreme;
 pub use linkage::{Circle, Input, Rssr};
-pub use measures::{CircuitMeasures, Ends, MotionMeasures, measure};
+pub use measures::{MotionMeasures, measure, measures_with_rows};
 pub use motion::{Circuit, Motion, MotionType};
 pub use pair::{Pair, Reach};
