@@ -9,7 +9,7 @@ import numpy as np
 
 from fuzz import random_loops
 from sevenbar.description.gallery import names, text
-from sevenbar.description.written import FREEDOMS
+from sevenbar.kinematics.joints import KINDS
 
 Description = dict[str, Any]
 Draw = Callable[[np.random.Generator], Description]
@@ -37,7 +37,7 @@ def shuffled(rng: np.random.Generator) -> Description:
         kinds = "".join(rng.choice(list("RRRRPPCUSSH"), rng.integers(FEWEST, MOST)))
         if "H" in kinds and rng.random() < 0.9:
             continue
-        if sum(len(FREEDOMS[kind]) for kind in kinds) in FREEDOMS_KEPT:
+        if sum(len(KINDS[kind].freedoms) for kind in kinds) in FREEDOMS_KEPT:
             break
     tidy = rng.random() < 0.7
     joints = [
@@ -110,12 +110,13 @@ FAMILIES: dict[str, Draw] = {
     "shuffled kinds": shuffled,
     "round rows": rows,
     "worn gallery": worn,
+    "planar joints": _of_case(random_loops.planar),
 }
 
 SCREWS: dict[str, Draw] = {"screws": _of_case(random_loops.screws)}
 
 #: Patterns of the batches: each goes through the core as one call.
-PATTERNS = ("RRRRRRR", "RCCC", "RSCR", "RSSP", "RRSRR", "RUURR", "PRRRRRR", "RRRR", "RSPRR", "RSUR")
+PATTERNS = ("RRRRRRR", "RCCC", "RSCR", "RSSP", "RRSRR", "RUURR", "PRRRRRR", "RRRR", "RSPRR", "RSUR", "RERC")
 
 
 def of_pattern(rng: np.random.Generator, kinds: str) -> Description:

@@ -15,6 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import A0, B0, LINK_ENDS, A, B, Chain, Skeleton, short
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.motion import Motion
 
 #: Colours of Okabe and Ito, told apart by colour-blind readers too.
@@ -279,6 +280,7 @@ def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
         "cylinder": {"color": colour, "lw": 8 * scale, "solid_capstyle": "butt", "path_effects": outline},
         "thread": {"color": "white", "lw": 7 * scale, "ls": (0, (0.22, 0.22)), "dash_capstyle": "butt"},
         "arm": {"color": colour, "lw": 5 * scale, "solid_capstyle": "butt"},
+        "plate": {"color": colour, "lw": 1.6 * scale},
         "block": {"color": colour, "ls": "", "marker": "s", "ms": 9 * scale, "mec": "#202020", "mew": 0.8},
         "ball": {"color": "#f4f4f4", "ls": "", "marker": "o", "ms": 8 * scale, "mec": "#303030", "mew": 2.4},
     }[word]
@@ -356,17 +358,6 @@ def link_keys(motion: Motion, frame: Skeleton) -> list[Line2D]:
     return [*keys, Line2D([], [], color="#404040", lw=0.9, ls=(0, (7, 2, 1.5, 2)), label="joint axis")]
 
 
-#: The words for joints in a legend, and the mark of each.
-KINDS = {
-    "R": ("hinge", "cylinder"),
-    "P": ("slide", "block"),
-    "H": ("screw", "thread"),
-    "C": ("cylinder, slides too", "cylinder"),
-    "U": ("universal joint", "arm"),
-    "S": ("ball", "ball"),
-}
-
-
 def chain_keys(linkage: Loop, ends: tuple[str, str]) -> list[Line2D]:
     """The legend's entries of any loop: its links and the kinds of its joints."""
     colours, _ = chain_colours(linkage, ends)
@@ -375,12 +366,14 @@ def chain_keys(linkage: Loop, ends: tuple[str, str]) -> list[Line2D]:
     if COUPLER in colours:
         keys.append(Line2D([], [], color=COUPLER, lw=5, label="other moving links"))
     keys.append(Line2D([], [], color=GROUND, lw=4, alpha=0.6, label="ground"))
-    for kind, (word, mark) in KINDS.items():
-        if kind in linkage.kind:
+    for letter, kind in KINDS.items():
+        if letter in linkage.kind:
+            mark = kind.shape
             style = {
                 "cylinder": {"marker": "s", "ms": 7},
                 "thread": {"marker": "s", "ms": 6, "mfc": "white", "mew": 2.4},
+                "plate": {"marker": "D", "ms": 7, "mfc": "white", "mew": 1.6},
             }
             look = style.get(mark) or ({"marker": "P", "ms": 8} if mark == "arm" else _mark(mark, JOINT))
-            keys.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=word))
+            keys.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=kind.legend))
     return keys

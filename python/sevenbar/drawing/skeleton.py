@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -146,7 +146,8 @@ class Chain(Skeleton):
 
     `axes` (n, 3) are those of the first row, through each joint. `links` holds the places along each link,
     the ground's last; `marks` what is drawn of each joint: a word and the places it joins. `paths` are the
-    places whose paths are drawn, `points` the named ones among them.
+    places whose paths are drawn, `points` the named ones among them. `reach` is how far joints slide across
+    their axes, least and most (2,) by the joint's number.
     """
 
     links: tuple[tuple[int, ...], ...]
@@ -154,6 +155,7 @@ class Chain(Skeleton):
     joints: tuple[int, ...]
     points: tuple[int, ...]
     extent: float
+    reach: Mapping[int, tuple[Floats, Floats]]
 
     @property
     def solid(self) -> int:
@@ -178,8 +180,9 @@ class Chain(Skeleton):
         return [seen[list(pair)] for pair in ends]
 
 
-#: Half the length of a joint's drawn axis and of its cylinder, as shares of the linkage's extent.
-AXIS, CYLINDER = 0.075, 0.032
+#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate reaches past what slides
+#: on it, as shares of the linkage's extent.
+AXIS, CYLINDER, PLATE = 0.075, 0.032, 0.04
 
 
 def chain(
@@ -187,13 +190,13 @@ def chain(
     frames: Floats,
     points: Sequence[tuple[str, int, Floats]] = (),
     *,
-    extent: float | None = None,
+    like: Chain | None = None,
 ) -> Chain:
     """The places of a loop from the frames (n, moving links, 4, 4) of its links along a walk.
 
     `points` are named places on links, (n, 3) each. Each joint is drawn where its axis was placed, each
     link from joint to joint; in Denavit-Hartenberg rows along the offset, then along the common normal.
-    `extent` is that of the linkage where the frames show only a part of its motion.
+    `like` is that of the whole motion where the frames show only a part of it.
     """
     rows, count = len(frames), len(linkage.joints)
     after = np.concatenate([frames, np.broadcast_to(linkage.ground, (rows, 1, 4, 4))], axis=1)
@@ -201,7 +204,7 @@ def chain(
     before = np.stack([np.broadcast_to(linkage.base, (rows, 4, 4)), *steps], axis=1)
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
     spread = float((np.nanmax(origins, axis=(0, 1)) - np.nanmin(origins, axis=(0, 1))).max())
-    in_rows = "twist_1_deg" in linkage.dimensions
+    in_rows = linkage.form == "rows"
     spherical = not spread > 1e-9
     places: list[Floats] = []
 
@@ -211,9 +214,10 @@ def chain(
 
     # a loop whose axes meet where all frames lie is shown on a sphere round that place
     radius = 1.0 if spherical else 0.0
-    span = extent or (1.6 if spherical else spread)
+    span = like.extent if like else 1.6 if spherical else spread
     feet: list[tuple[int, int]] = []
     marks: list[tuple[int, str, tuple[int, ...]]] = []
+    reach: dict[int, tuple[Floats, Floats]] = {}
     links: list[tuple[int, ...]] = []
     for i, joint in enumerate(linkage.joints):
         first, second = before[:, i, :3, 2], after[:, i, :3, 2]
@@ -228,20 +232,31 @@ def chain(
             way = np.where(back, -1.0, 1.0) * axis
             return add(middle - half * span * way), add(end + half * span * way)
 
-        if joint.kind != "S":
+        shape = joint.row.shape
+        if shape == "plate":
+            # as wide as it slides
+            across = before[:, i, :3, :2]
+            slid = np.einsum("nij,ni->nj", across, far - near)
+            low, high = np.nanmin(slid, axis=0, initial=0.0), np.nanmax(slid, axis=0, initial=0.0)
+            low, high = reach[i] = like.reach[i] if like else (low, high)
+            ends = np.stack([low - PLATE * span, high + PLATE * span])
+            corners = [(ends[a, 0], ends[b, 1]) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
+            marks.append((i, "axis", along(near + across @ ((low + high) / 2), first, AXIS)))
+            marks.append((i, "axis", along(far, second, AXIS)))
+            marks.append((i, shape, tuple(add(near + across @ np.array(corner)) for corner in corners)))
+            marks.append((i, "block", (feet[i][1],)))
+            continue
+        if shape != "ball":
             marks.append((i, "axis", along(near, first, AXIS, far)))
-        match joint.kind:
-            case "R" | "C" | "H":
-                cylinder = along(far, second, CYLINDER)
-                marks.append((i, "cylinder", cylinder))
-                marks += [(i, "thread", cylinder)] if joint.kind == "H" else []
-            case "P":
-                marks.append((i, "block", (feet[i][1],)))
-            case "U":
-                marks.append((i, "axis", along(far, second, AXIS)))
-                marks += [(i, "arm", along(near, first, CYLINDER)), (i, "arm", along(far, second, CYLINDER))]
-            case _:
-                marks.append((i, "ball", (feet[i][1],)))
+        if joint.row.has_cross:
+            marks.append((i, "axis", along(far, second, AXIS)))
+            marks += [(i, shape, along(near, first, CYLINDER)), (i, shape, along(far, second, CYLINDER))]
+        elif shape in ("cylinder", "thread"):
+            cylinder = along(far, second, CYLINDER)
+            marks.append((i, "cylinder", cylinder))
+            marks += [(i, shape, cylinder)] if shape == "thread" else []
+        else:
+            marks.append((i, shape, (feet[i][1],)))
     for i in range(count):
         start, end = feet[i][1], feet[(i + 1) % count][0]
         inner: tuple[int, ...] = ()
@@ -274,6 +289,7 @@ def chain(
         joints=joints,
         points=own,
         extent=span,
+        reach=reach,
     )
 
 
@@ -298,42 +314,11 @@ def _arc_between(centre: Floats, start: Floats, end: Floats) -> list[Floats]:
 def frames_of(linkage: Loop, q: Floats) -> Floats:
     """The frames (n, moving links, 4, 4) of the links in the report frame, from joint values (n, columns)."""
     now = np.broadcast_to(linkage.base, (len(q), 4, 4))
-    found, column = [], 0
-    for i, joint in enumerate(linkage.joints[:-1]):
-        values = q[:, column : column + len(joint.columns)].T
-        column += len(joint.columns)
-        match joint.kind:
-            case "R":
-                move = _turn(values[0], 2)
-            case "P":
-                move = _slide(values[0])
-            case "H":
-                move = _turn(values[0], 2) @ _slide(joint.pitch * values[0] / math.tau)
-            case "C":
-                move = _turn(values[0], 2) @ _slide(values[1])
-            case "U":
-                move = _turn(values[0], 2) @ _turn(np.full(len(q), joint.angle), 0) @ _turn(values[1], 2)
-            case _:
-                move = _turn(values[0], 2) @ _turn(values[1], 1) @ _turn(values[2], 0)
-        found.append(now @ move)
-        now = found[-1] @ linkage.links[i]
+    found = []
+    for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
+        found.append(now @ joint.motion(q[:, own]))
+        now = found[-1] @ link
     return np.stack(found, axis=1)
-
-
-def _turn(angle: Floats, axis: int) -> Floats:
-    """Rotations (n, 4, 4) about x, y or z (`axis` 0, 1, 2)."""
-    matrices = np.tile(np.eye(4), (len(angle), 1, 1))
-    a, b = (axis + 1) % 3, (axis + 2) % 3
-    matrices[:, a, a] = matrices[:, b, b] = np.cos(angle)
-    matrices[:, b, a], matrices[:, a, b] = np.sin(angle), -np.sin(angle)
-    return matrices
-
-
-def _slide(distance: Floats) -> Floats:
-    """Translations (n, 4, 4) along z."""
-    matrices = np.tile(np.eye(4), (len(distance), 1, 1))
-    matrices[:, 2, 3] = distance
-    return matrices
 
 
 def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
@@ -396,7 +381,7 @@ def places_of(linkage: Loop, q: Floats, frame: Skeleton) -> Floats:
     frames = frames_of(linkage, q)
     points = [(point.name, point.link, _carried(linkage, frames, point)) for point in linkage.points]
     if isinstance(frame, Chain):
-        return chain(linkage, frames, points, extent=frame.extent).places
+        return chain(linkage, frames, points, like=frame).places
     traces = [trace for _, _, trace in points]
     centres = [np.broadcast_to(frame.pose(0)[centre], traces[0].shape) for centre in (A0, B0)]
     return np.stack([centres[0], traces[0], traces[1], centres[1], *traces[2:]], axis=1)

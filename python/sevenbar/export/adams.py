@@ -12,10 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError
+from sevenbar.errors import RequestError, shown
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
+from sevenbar.kinematics.joints import Step
 from sevenbar.kinematics.rigid import inverse
 from sevenbar.kinematics.rigid import pose as matrix
 from sevenbar.text.units import LENGTHS
@@ -52,8 +53,8 @@ class _Commands:
         self.model = "." + _word(self.linkage.name, "linkage")
         self.lines: list[str] = []
         self.joints = _distinct([_word(joint.name, "joint") for joint in self.linkage.joints])
-        #: Each column's joint, its markers, and whether it turns; none for turns of Hooke joints and balls.
-        self.columns: dict[str, tuple[str, str, str, bool]] = {}
+        #: Each column's joint, its markers, and its step; none for turns of Hooke joints and balls.
+        self.columns: dict[str, tuple[str, str, str, Step]] = {}
 
     def text(self) -> str:
         drive = self._drive()
@@ -80,6 +81,11 @@ class _Commands:
             raise RequestError(
                 "cmd: a motion driven by a law has no constant speed; give one that is driven at a speed"
             )
+        if any(motion.input in joint.columns for joint in self.linkage.joints if joint.row.has_plane):
+            raise RequestError(
+                f"cmd: ADAMS has no motion for {shown(motion.input)}, a part of a planar joint; "
+                "give another input"
+            )
         ends = circuit.pass_range(self.pose.branch)
         if ends is None:
             turns = max(1, circuit.turns)
@@ -93,7 +99,7 @@ class _Commands:
         count = len(self.linkage.joints)
         if body < count:
             return True
-        crosses = [i for i, joint in enumerate(self.linkage.joints) if joint.kind == "U"]
+        crosses = [i for i, joint in enumerate(self.linkage.joints) if joint.row.has_cross]
         return not self._hooke(crosses[body - count])
 
     def _hooke(self, i: int) -> bool:
@@ -210,35 +216,24 @@ class _Commands:
         before, after = (i - 1) % count, i
         on_before = inverse(self.pose.frames[before]) @ self.pose.near[i]
         on_after = inverse(self.pose.frames[after]) @ self.pose.far[i]
-        if joint.kind == "U":
+        if joint.row.has_cross:
             self._universal(i, on_before, on_after)
             return
         j_marker = self._marker(before, f"{word}_j", on_before)
         i_marker = self._marker(after, f"{word}_i", on_after)
-        kinds = {
-            "R": "revolute",
-            "P": "translational",
-            "C": "cylindrical",
-            "H": "cylindrical",
-            "S": "spherical",
-        }
-        name = self._connect(kinds[joint.kind], word, i_marker, j_marker)
-        if joint.kind == "H":
+        name = self._connect(joint.row.adams, word, i_marker, j_marker)
+        if joint.row.is_screw:
             # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
             self._connect("screw", f"{word}_thread", i_marker, j_marker, self.scale * joint.pitch)
-        if joint.kind in "RH":
-            self.columns[joint.name] = (name, i_marker, j_marker, True)
-        elif joint.kind == "P":
-            self.columns[joint.name] = (name, i_marker, j_marker, False)
-        elif joint.kind == "C":
-            for column, turns in zip(joint.columns, (True, False), strict=True):
-                self.columns[column] = (name, i_marker, j_marker, turns)
+        if not joint.row.is_ball:
+            for column, step in joint.row.named(joint.name):
+                self.columns[column] = (name, i_marker, j_marker, step)
 
     def _universal(self, i: int, on_before: Floats, on_after: Floats) -> None:
         joint, word = self.linkage.joints[i], self.joints[i]
         count = len(self.linkage.joints)
         before = (i - 1) % count
-        body = count + sum(other.kind == "U" for other in self.linkage.joints[:i])
+        body = count + sum(other.row.has_cross for other in self.linkage.joints[:i])
         cross = self.assembly.frames[body]
         if self._hooke(i):
             # its crosspiece: y of the J marker and x of the I marker
@@ -251,15 +246,14 @@ class _Commands:
             i_marker = self._marker(i, f"{word}_i", frame_i)
             self._connect("hooke", word, i_marker, j_marker)
             return
-        cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
-        tilt = np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
+        tilt = joint.before(joint.row.steps[-1])
         for k, (j_body, j_frame, i_body, i_frame) in enumerate(
             ((before, on_before, body, np.eye(4)), (body, tilt, i, on_after)), 1
         ):
             j_marker = self._marker(j_body, f"{word}_{k}_j", j_frame)
             i_marker = self._marker(i_body, f"{word}_{k}_i", i_frame)
             name = self._connect("revolute", f"{word}_{k}", i_marker, j_marker)
-            self.columns[joint.columns[k - 1]] = (name, i_marker, j_marker, True)
+            self.columns[joint.columns[k - 1]] = (name, i_marker, j_marker, joint.row.steps[k - 1])
 
     def _connect(self, kind: str, word: str, i_marker: str, j_marker: str, pitch: float | None = None) -> str:
         name = f"{self.model}.{word}"
@@ -276,7 +270,8 @@ class _Commands:
     def _motion(self, drive: tuple[float, float, int]) -> None:
         speed, end, steps = drive
         motion = self.pose.motion
-        joint, _, _, turns = self.columns[motion.input]
+        joint, _, _, step = self.columns[motion.input]
+        turns = step.freedom == "turn"
         unit = 1.0 if turns else self.scale
         self._say(
             "constraint create motion_generator",
@@ -288,22 +283,23 @@ class _Commands:
         for column in (motion.input, motion.output):
             if column not in self.columns:
                 continue
-            _, i, j, turns = self.columns[column]
+            _, i, j, step = self.columns[column]
+            turns, axis = step.freedom == "turn", "XYZ"[step.axis]
             word = _word(column, "joint")
             for quantity, function, units in (
                 (
                     "position",
-                    f"AZ({i}, {j})" if turns else f"DZ({i}, {j}, {j})",
+                    f"AZ({i}, {j})" if turns else f"D{axis}({i}, {j}, {j})",
                     "angle" if turns else "length",
                 ),
                 (
                     "velocity",
-                    f"{'WZ' if turns else 'VZ'}({i}, {j}, {j})",
+                    f"{'W' if turns else 'V'}{axis}({i}, {j}, {j})",
                     "angular_velocity" if turns else "velocity",
                 ),
                 (
                     "acceleration",
-                    f"{'WDTZ' if turns else 'ACCZ'}({i}, {j}, {j})",
+                    f"{'WDT' if turns else 'ACC'}{axis}({i}, {j}, {j})",
                     "angular_acceleration" if turns else "acceleration",
                 ),
             ):

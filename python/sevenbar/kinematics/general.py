@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +17,7 @@ from sevenbar.kinematics.from_core import change_points_from, circuit_from, sear
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.motion import Circuit, Integers, Law, Modes, Motion, Solvable, Trace, Words
+from sevenbar.kinematics.rigid import axis_to_z, inverse
 
 T = TypeVar("T")
 
@@ -34,12 +35,15 @@ SAME_LIMIT = 1e-6
 
 
 class GeneralLoop:
-    """The solver of one loop. C and U are two joints each for the core, so links are counted anew there."""
+    """The solver of one loop. Some joints are several for the core, so links are counted anew there."""
 
     def __init__(self, linkage: Solvable) -> None:
         self._linkage = linkage
-        letters, advances, links, self._link = expanded(linkage)
-        self._core = _core.Loop(letters, np.array(advances), linkage.base, linkage.ground, np.array(links))
+        parts = expanded(linkage)
+        self._base, self._link = parts.base, parts.last
+        self._core = _core.Loop(
+            parts.letters, np.array(parts.advances), parts.base, linkage.ground, np.array(parts.links)
+        )
         self._found: dict[int, Mobility] = {}
 
     def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable]]:
@@ -218,7 +222,7 @@ class GeneralLoop:
             gruebler=freedoms - 6,
             rank=None if found is None else found.rank,
             idle=self.idle(),
-            redundant=() if found is None else redundant_constraints(found.wrenches, linkage.base),
+            redundant=() if found is None else redundant_constraints(found.wrenches, self._base),
             finite=finite,
         )
 
@@ -255,29 +259,36 @@ class GeneralLoop:
         return Trace(position, velocity, acceleration, jerk, own)
 
 
-def expanded(linkage: Loop) -> tuple[str, list[float], list[Floats], list[int]]:
-    """The joints as the core takes them: letters, advances for a radian, links, and where each link went."""
-    letters, advances, links, last = "", [], [], []
-    still = np.eye(4)
+class Expanded(NamedTuple):
+    """The joints as the core takes them, each about or along z of its frame.
+
+    `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
+    between them; `last` the number of the last one of each joint of the linkage.
+    """
+
+    letters: str
+    advances: list[float]
+    base: Floats
+    links: list[Floats]
+    last: list[int]
+
+
+def expanded(linkage: Loop) -> Expanded:
+    """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
+    letters, advances, fixed, last = "", [], [], []
+    ahead = linkage.base
     for i, joint in enumerate(linkage.joints):
-        if joint.kind == "C":
-            letters += "RP"
-            advances += [0.0, 0.0]
-            links.append(still)
-        elif joint.kind == "U":
-            letters += "RR"
-            advances += [0.0, 0.0]
-            cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
-            links.append(
-                np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
-            )
-        else:
-            letters += joint.kind
-            advances.append(joint.pitch / math.tau)
+        whole = joint.row.is_screw or joint.row.is_ball
+        for step in joint.row.steps[:1] if whole else joint.row.steps:
+            letters += joint.kind if whole else step.letter
+            advances.append(joint.advance)
+            along = axis_to_z(step.axis)
+            fixed.append(ahead @ joint.before(step) @ along)
+            ahead = inverse(along)
         last.append(len(letters) - 1)
         if i < len(linkage.links):
-            links.append(np.array(linkage.links[i]))
-    return letters, advances, links, last
+            ahead = ahead @ linkage.links[i]
+    return Expanded(letters, advances, fixed[0], fixed[1:], last)
 
 
 def size_of(linkage: Loop) -> float:

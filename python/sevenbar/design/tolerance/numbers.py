@@ -19,6 +19,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Dimension, Draft
+from sevenbar.description.forms import NO_LENGTH
 from sevenbar.design.tolerance.rigid import (
     Numbers,
     Rigid,
@@ -30,11 +31,11 @@ from sevenbar.design.tolerance.rigid import (
     then,
     unit,
 )
-from sevenbar.kinematics.joints import FREEDOMS
+from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 
-#: The axes of a ball's turns, and that of all other columns.
-BALL_AXES, OWN_AXIS = (2, 1, 0), 2
+#: The axes of a ball's turns.
+BALL_AXES = tuple(step.axis for step in KINDS["S"].steps)
 
 #: Report frame of rows against the ground link's; a point (u, v, w) of a row against its link's frame.
 RENAMED = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
@@ -100,17 +101,16 @@ class Numbered:
         """The one-freedom columns in loop order."""
         found = []
         for i, joint in enumerate(self.linkage.joints):
-            freedoms, ball = FREEDOMS[joint.kind], joint.kind == "S"
-            for place, freedom in enumerate(freedoms):
-                axis = BALL_AXES[place] if ball else OWN_AXIS
-                found.append(Column(i, freedom == "turn", axis, place == len(freedoms) - 1, ball))
+            steps = [step for step in joint.row.steps if not step.driven]
+            for step in steps:
+                turns, ends = step.freedom == "turn", step is steps[-1]
+                found.append(Column(i, turns, step.axis, ends, joint.row.is_ball))
         return tuple(found)
 
     def built(self, p: Numbers) -> Built:
         """The transforms for numbers p (k, ..), analytic in each."""
-        raw = self.draft.raw
-        parts = _Parts(self, p)
-        return _rssr(parts) if "rssr" in raw else _rows(parts) if "link" in raw else _drawn(parts)
+        made = {"rssr": _rssr, "rows": _rows, "drawn": _drawn}[self.linkage.form]
+        return made(_Parts(self, p))
 
     def changed(self, p: Floats) -> Linkage:
         """The linkage that a file with other numbers (k,) describes."""
@@ -211,6 +211,13 @@ def _drawn(parts: _Parts) -> Built:
             z = unit(parts.vector("joint", i, "axis"))
             across = np.eye(3)[np.argmin(np.abs(np.asarray(tables[i]["axis"], dtype=np.float64)))]
             x = unit(cross(parts.constant(across), z))
+            if joint.row.has_plane:
+                # x counts: as `forms` has it, towards the joint after, of the last joint that before
+                beside = i + 1 if i + 1 < len(tables) else i - 1
+                towards = parts.vector("joint", beside, "at") - at
+                aside = cross(cross(z, towards), z)
+                far = np.linalg.norm(aside.real) > NO_LENGTH * np.linalg.norm(towards.real)
+                x = unit(aside) if far else unit(cross(cross(z, parts.constant(across)), z))
             first = second = np.stack([x, cross(z, x), z], axis=1)
         before.append((first, at))
         after.append((second, at))

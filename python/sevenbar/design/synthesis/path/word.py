@@ -19,6 +19,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.geometry import Point, following_coupler
 from sevenbar.kinematics.linkage import Linkage
 
@@ -81,6 +82,11 @@ class PointWord:
     def __init__(self, draft: Draft, point: Point, varied: Sequence[int] = ()) -> None:
         self._raw = draft.raw
         self._linkage = draft.linkage
+        if plane := next((joint for joint in self._linkage.joints if joint.row.has_plane), None):
+            raise NotCoveredError(
+                f"linkage: {plane.name} slides in a plane, and no path is sought with such a joint; "
+                "draw it as P, P and R"
+            )
         self._point = point
         self.dimensions = tuple(d for d in draft.dimensions if d.name != "speed")
         self.start = np.array([d.value for d in self.dimensions])
@@ -90,9 +96,9 @@ class PointWord:
 
     def word(self, values: Floats) -> Word:
         """The word of the dimensions' values (k,)."""
-        if "rssr" in self._raw:
+        if self._linkage.form == "rssr":
             return self._rssr_word(values)
-        return self._rows_word(values) if "link" in self._raw else self._drawn_word(values)
+        return self._rows_word(values) if self._linkage.form == "rows" else self._drawn_word(values)
 
     def _amount(self, values: Floats, *place: str | int, rate: float = 1.0) -> Amount:
         """The amount of a step that is one dimension; `rate` makes radians of its unit."""
