@@ -16,7 +16,7 @@ from sevenbar.errors import RequestError
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
-from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.rigid import about, inverse
 from sevenbar.kinematics.rigid import pose as matrix
 from sevenbar.text.units import LENGTHS
 
@@ -251,8 +251,7 @@ class _Commands:
             i_marker = self._marker(i, f"{word}_i", frame_i)
             self._connect("hooke", word, i_marker, j_marker)
             return
-        cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
-        tilt = np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
+        tilt = matrix(about(0, joint.angle))
         for k, (j_body, j_frame, i_body, i_frame) in enumerate(
             ((before, on_before, body, np.eye(4)), (body, tilt, i, on_after)), 1
         ):
@@ -328,8 +327,7 @@ class _Commands:
         turn = frame[:3, :3]
         first = math.atan2(turn[0, 2], -turn[1, 2]) if math.hypot(turn[0, 2], turn[1, 2]) > 1e-12 else 0.0
         # what is left after the first, so that the three belong together where it is not defined
-        cosine, sine = math.cos(first), math.sin(first)
-        turn = np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]]) @ turn
+        turn = about(2, -first) @ turn
         second = math.atan2(-turn[1, 2], turn[2, 2])
         third = math.atan2(-turn[0, 1], turn[0, 0])
         location = ", ".join(map(_number, self.scale * frame[:3, 3]))

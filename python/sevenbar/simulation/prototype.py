@@ -14,7 +14,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import frames_along
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.kinematics.motion import Circuit, Solvable
-from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.kinematics.rigid import about, inverse, pose
 
 #: The number of the ground among the bodies.
 GROUND = -1
@@ -161,7 +161,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             above = np.eye(4) if before == GROUND else bodies[before].frame
             start = above @ frame_before
             carrier = None if before == GROUND else bodies[before]
-            cross = start @ turned(q[0])
+            cross = start @ pose(about(2, q[0]))
             arm = np.zeros(3) if carrier is None else start[:3, 3] - carrier.frame[:3, 3]
             carried = np.zeros(3) if carrier is None else carrier.spin
             velocity = np.zeros(3) if carrier is None else carrier.velocity + np.cross(carried, arm)
@@ -170,7 +170,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
                 Connection(f"{joint.name}.1", "R", before, len(bodies) - 1, frame_before, np.eye(4))
             )
             before = len(bodies) - 1
-            frame_before = tilted(joint.angle)
+            frame_before = pose(about(0, joint.angle))
             values.append((q[0], math.nan))
             rates.append((dq[0], math.nan))
         kind = "R" if joint.kind == "U" else joint.kind
@@ -245,15 +245,3 @@ def _spin_rules(linkage: Solvable, bodies: list[Body], connections: list[Connect
             "balls is not held in an engine; describe the loop without it"
         )
     return tuple(rules)
-
-
-def turned(angle: float) -> Floats:
-    """The turn (4, 4) about z."""
-    c, s = math.cos(angle), math.sin(angle)
-    return pose([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], np.zeros(3))
-
-
-def tilted(angle: float) -> Floats:
-    """The turn (4, 4) about x."""
-    c, s = math.cos(angle), math.sin(angle)
-    return pose([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]], np.zeros(3))
