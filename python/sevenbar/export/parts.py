@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import GROUND, JOINT, chain_colours
+from sevenbar.drawing.scene import GROUND, JOINT, link_colours
 from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.export.pose import Pose, shortest_link, size_of
 from sevenbar.kinematics.rigid import inverse, perpendicular
@@ -369,7 +369,7 @@ def _moved(part: Part, frame: Floats) -> Part:
 
 def _link_colours(pose: Pose) -> list[str]:
     """The figures' colours of the moving links; neighbours of one colour are told apart by a lighter one."""
-    colours, _ = chain_colours(pose.linkage, (pose.motion.input, pose.motion.output))
+    colours, _ = link_colours(pose.linkage, (pose.motion.input, pose.motion.output))
     for k in range(1, len(colours)):
         if colours[k] == colours[k - 1]:
             lighter = [round(0.55 * c + 0.45 * 255) for c in bytes.fromhex(colours[k][1:])]

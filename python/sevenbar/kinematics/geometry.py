@@ -105,6 +105,11 @@ class Loop:
         """What each column is: an angle [rad] or a length."""
         return tuple(freedom for joint in self.joints for freedom in FREEDOMS[joint.kind])
 
+    @property
+    def added_points(self) -> tuple[Point, ...]:
+        """The points that a person has added: all but A and B of an RSSR, which come first."""
+        return self.points[2:] if self.kind == "RSSR" else self.points
+
     def drivable(self, without: int | None = None) -> list[str]:
         """The columns that may drive or be driven: all but those of balls, and but one."""
         owners = [joint for joint in self.joints for _ in joint.columns]

@@ -295,6 +295,8 @@ class Circuit:
     output_turns: bool
     #: The size of the linkage [length].
     size: float
+    #: d(input)/dt [rad/s, or length/s]; NaN where a law drives.
+    speed: float
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
 
@@ -626,6 +628,7 @@ def circuit_from(
         output_column=output_column,
         output_turns=linkage.column_kinds[output_column] == "turn",
         size=size,
+        speed=speed if law is None else math.nan,
         _frames=linkage.point_frames,
         **own,
     )

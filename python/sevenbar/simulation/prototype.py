@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import frames_along
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.kinematics.motion import Circuit, Solvable
+from sevenbar.kinematics.poses import frames_along
 from sevenbar.kinematics.rigid import about, inverse, pose
 
 #: The number of the ground among the bodies.

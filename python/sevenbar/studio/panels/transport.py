@@ -154,7 +154,7 @@ def _reading(session: Session, view: View) -> str:
     second = float(view.along(view.path.output, session.row))
     way = ""
     if not circuit.goes_round:
-        way = " rising" if view.way[int(session.row)] * view.motion.speed > 0 else " falling"
+        way = " rising" if view.path.sign[int(session.row)] * view.motion.speed > 0 else " falling"
     modes = session.modes()
     lines = [
         f"input {view.input_text(session.row)}{way}",

@@ -11,9 +11,9 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import GROUND, JOINT, POINT_COLOURS, chain_colours
+from sevenbar.drawing.scene import GROUND, JOINT, POINT_COLOURS, link_colours
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
 from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, slices, turns
 from sevenbar.studio.pictures.shapes import TURNS
@@ -63,7 +63,7 @@ class _Solids:
     """Solids as they are collected, by shape."""
 
     layout: Layout
-    fixed: list[Floats]
+    fixed: list[Floats] = field(default_factory=list)
     rows: dict[str, list[tuple[object, ...]]] = field(default_factory=dict)
 
     def anchor(self, place: Floats) -> int:
@@ -91,22 +91,18 @@ class _Solids:
         self.rows.setdefault(shape, []).append(row)
 
 
-def plan(linkage: Loop, frame: Skeleton, ends: tuple[str, str], size: float) -> Plan:
-    """The solids of a linkage along a circuit, from the columns of input and output and its extent [length].
+def plan(frame: Skeleton, ends: tuple[str, str]) -> Plan:
+    """The solids of a linkage along a circuit, coloured by the columns of input and output.
 
     Thicknesses are shares of the extent, less where a link is short. Rails reach over the whole of the
     frame's motion. The frame needs a row without NaN.
     """
-    where = layout(linkage, frame)
-    solids = _Solids(where, list(where.fixed))
+    where, size = layout(frame), frame.span
+    solids = _Solids(where)
     solved = ~np.isnan(frame.places.sum(axis=(1, 2)))
     every = frame.places if solved.all() else frame.places[solved]
-    if len(where.fixed):
-        every = np.concatenate(
-            [every, np.broadcast_to(where.fixed, (len(every), *where.fixed.shape))], axis=1
-        )
     unit = _unit(where, every[0], size)
-    links, joints = chain_colours(linkage, ends)
+    links, joints = link_colours(frame.linkage, ends)
     links.append(GROUND)
     joints = [OTHER_JOINT if colour == JOINT else colour for colour in joints]
     for way, colour in zip(where.links, links, strict=True):
@@ -302,8 +298,7 @@ def _add_foot(solids: _Solids, place: Floats, outward: Floats, wide: float, unit
     pair = solids.anchor(place), solids.anchor(back)
     solids.add("box", pair, wide * unit, GROUND, moves=False)
     # in the plate's own axes, as `poses` turns it
-    w, x, y, z = turns(outward, np.zeros(3))
-    across = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
+    across = rotation_of(turns(outward, np.zeros(3)))[:, 0]
     sideways = solids.anchor(np.zeros(3)), solids.anchor(np.cross(outward, across))
     for share in np.linspace(-0.5, 0.5 - LEAN, STROKES):
         start = back + share * wide * unit * across

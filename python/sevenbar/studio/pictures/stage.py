@@ -9,9 +9,9 @@ import numpy as np
 from viser import GridHandle, LineSegmentsHandle, SceneApi
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import PATH, POINT_COLOURS, chain_colours, view
-from sevenbar.drawing.skeleton import A, Chain, Skeleton
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.drawing.scene import PATH, paths, view
+from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
 from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, stretched
 from sevenbar.studio.pictures.solids import plan, rgb
@@ -24,7 +24,7 @@ DASHES = np.array(
 OVERHANG = 0.07
 #: Thicknesses of lines [pixels].
 AXIS_LINE, JOINT_PATH, POINT_PATH = 1.4, 1.8, 2.8
-#: How much white is in the path of A or B.
+#: How much white is in the path of a joint that has its link's colour.
 PALE = 0.4
 #: Opacity of ghosts, and the most there are.
 GHOST, MOST_GHOSTS = 0.2, 16
@@ -144,35 +144,25 @@ class Stage:
         every = self._frame.places
         drawn = [every.reshape(-1, 3)]
         for turn, middle, scale in poses(self._plan, every[:: max(1, len(every) // 24)]).values():
-            w, x, y, z = np.moveaxis(turn, -1, 0)
-            along = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
-            half = along * scale[..., 2:] / 2
+            half = rotation_of(turn)[..., 2] * scale[..., 2:] / 2
             shown = scale[..., 2] > 0
             drawn += [(middle - half)[shown], (middle + half)[shown]]
         places = np.concatenate(drawn)
         return places[np.isfinite(places).all(axis=1)]
 
-    def set(self, linkage: Loop, frame: Skeleton, ends: tuple[str, str], paths: bool = True) -> None:
+    def set(self, frame: Skeleton, ends: tuple[str, str]) -> None:
         """Takes another linkage or circuit, by its frame and the columns of input and output.
 
-        Its paths are drawn at once, save with `paths` False; its solids, axes and names by the `pose` that
-        must follow.
+        Its paths are drawn at once, its solids, axes and names by the `pose` that must follow.
         """
         self._size = frame.span
-        self._plan = plan(linkage, frame, ends, self._size)
+        self._plan = plan(frame, ends)
         self._moving, self._frame = self._plan.moving(), frame
         self._places, self._fresh = None, True
-        colours = chain_colours(linkage, ends)[0]
-        joints, points = [], []
-        for place in frame.moving if paths else ():
-            if place >= frame.solid:
-                points.append((place, rgb(POINT_COLOURS[(place - frame.solid) % len(POINT_COLOURS)])))
-            elif isinstance(frame, Chain):
-                joints.append((place, rgb(PATH)))
-            else:
-                joints.append((place, rgb(colours[0 if place == A else 2], PALE)))
+        drawn, count = paths(frame, ends), len(frame.points)
+        joints = [(place, rgb(colour, 0.0 if colour == PATH else PALE)) for place, colour in drawn[count:]]
         self._draw_path("joints", joints, JOINT_PATH)
-        self._draw_path("points", points, POINT_PATH)
+        self._draw_path("points", [(place, rgb(colour)) for place, colour in drawn[:count]], POINT_PATH)
 
     def clear(self) -> None:
         """Takes everything out of the scene, but for the floor."""

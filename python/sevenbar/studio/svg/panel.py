@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 from sevenbar.arrays import Floats
-from sevenbar.studio.svg.axis import Axis
 from sevenbar.studio.svg.picture import FONT, GROUND, HALO, INK, Frame, breadth, words
+from sevenbar.studio.svg.scale import Scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class Panel:
     x: Floats
     y: Floats
     values: Floats
-    scale: Axis | None = None
+    scale: Scale | None = None
     unit: str = ""
     colour: str = INK
 
