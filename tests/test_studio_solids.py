@@ -18,10 +18,10 @@ from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.pictures.poses import stretched, turns
 from sevenbar.studio.pictures.shapes import mesh
-from sevenbar.studio.pictures.solids import Plan, plan, poses, rgb
+from sevenbar.studio.pictures.solids import SolidPlan, plan, poses, rgb
 
 
-def planned(name: str, circuit: int = 0) -> tuple[Motion, Skeleton, Plan]:
+def planned(name: str, circuit: int = 0) -> tuple[Motion, Skeleton, SolidPlan]:
     motion = sb.load(name).motion()
     frame = skeleton.skeleton(motion, motion.circuits[circuit])
     return motion, frame, plan(frame, (motion.input, motion.output))

@@ -118,7 +118,7 @@ def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -
 
 
 @dataclass(frozen=True, eq=False)
-class Pass:
+class DrawnPass:
     """A pass of a circuit as drawn: `input`, `angle` [deg, or length], `time` [s], the two rates; (n,)."""
 
     circuit: Circuit
@@ -131,9 +131,9 @@ class Pass:
     acceleration: Floats
 
 
-def passes(motion: Motion) -> list[Pass]:
+def passes(motion: Motion) -> list[DrawnPass]:
     """Every pass of every circuit; where the input goes back, the velocity is turned as it is in time."""
-    made: list[Pass] = []
+    made: list[DrawnPass] = []
     for circuit in motion.circuits:
         path = walk(circuit)
         velocity = path.velocities(circuit.dq[:, circuit.output_column])
@@ -156,7 +156,7 @@ def passes(motion: Motion) -> list[Pass]:
                 path.time[part],
                 shown_value(motion, motion.output, path.output[part]),
             )
-            made.append(Pass(circuit, label, style, *angles, velocity[part], acceleration[part]))
+            made.append(DrawnPass(circuit, label, style, *angles, velocity[part], acceleration[part]))
     return made
 
 
@@ -206,7 +206,7 @@ def curves(motion: Motion, against: Literal["both", "input", "time"] = "both") -
     return figure
 
 
-def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over: str) -> None:
+def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: str) -> None:
     """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
     axes.grid(lw=0.6)
     for line in drawn:
@@ -271,7 +271,7 @@ def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: f
     return min(found)[1]
 
 
-def _cut(axes: Axes, drawn: Sequence[Pass], quantity: str) -> bool:
+def _cut(axes: Axes, drawn: Sequence[DrawnPass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; tells whether it did."""
     told = [(line, told_range(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
     spans = [span for _, span in told if span is not None]
@@ -282,7 +282,7 @@ def _cut(axes: Axes, drawn: Sequence[Pass], quantity: str) -> bool:
     return True
 
 
-def _time_above(axes: Axes, motion: Motion, line: Pass) -> None:
+def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:
     rate, start = math.degrees(motion.speed), line.input[0]
 
     def time(angle: Any) -> Any:
@@ -295,7 +295,7 @@ def _time_above(axes: Axes, motion: Motion, line: Pass) -> None:
     above.set_xlabel("time [s]")
 
 
-def curve_keys(panels: Iterable[Axes], drawn: Sequence[Pass]) -> list[Line2D]:
+def curve_keys(panels: Iterable[Axes], drawn: Sequence[DrawnPass]) -> list[Line2D]:
     """One legend entry for each pass and for each kind of mark."""
     lines = {str(line.get_label()): line for axes in panels for line in axes.lines}
     if EXTREME in lines:  # drawn in each circuit's colour

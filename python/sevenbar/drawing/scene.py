@@ -10,11 +10,12 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, withStroke
 from matplotlib.ticker import MaxNLocator
-from mpl_toolkits.mplot3d.art3d import Line3D  # type: ignore[import-untyped]
+from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[import-untyped]
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import Skeleton, short
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.rigid import perpendicular, unit
 
 #: Colours of Okabe and Ito, told apart by colour-blind readers too.
 INPUT, OUTPUT, COUPLER, GROUND = "#0072B2", "#D55E00", "#009E73", "#808080"
@@ -45,13 +46,43 @@ def stage(
     `ends` are the columns of input and output. The view shows all places of `around`, of the frame itself
     where none is given.
     """
-    prepare_view(axes, (around or frame).places.reshape(-1, 3), frame.linkage.length_unit, fill)
+    whole = around or frame
+    feet = _feet(whole)
+    places = [whole.places.reshape(-1, 3), *(plate for plate, _ in feet)]
+    prepare_view(axes, np.concatenate(places), frame.linkage.length_unit, fill)
     if len(frame.places) > 1:
         for place, colour in paths(frame, ends):
             look = {"lw": 0.8, "zorder": 1} if colour == PATH else {"lw": 1.2, "alpha": 0.85, "zorder": 2}
             axes.plot(*frame.places[:, place].T, color=colour, **look)
     ground = frame.pose(0)[list(frame.links[-1])]
     axes.plot(*ground.T, color=GROUND, lw=4, alpha=0.6, zorder=2, solid_capstyle="round")
+    for plate, (stem, *strokes) in feet:
+        face = Poly3DCollection([plate], facecolors="#e4e4e4", edgecolors=GROUND, lw=0.8, zorder=3)
+        axes.add_collection3d(face)
+        for line in strokes:
+            axes.plot(*line.T, color=GROUND, lw=0.8, zorder=3)
+        axes.plot(*stem.T, color=GROUND, lw=2.2, zorder=3)
+
+
+def _feet(frame: Skeleton) -> list[tuple[Floats, list[Floats]]]:
+    """The ground where an axis stands still: plates (4, 3) on the far side, or below; stems and hatches."""
+    pose, size = frame.pose(0), 0.05 * frame.span
+    feet = []
+    for joint, place in ((0, frame.links[-1][-1]), (len(frame.joints) - 1, frame.links[-1][0])):
+        axes = [ends for i, word, ends in frame.marks if i == joint and word in ("cylinder", "arm")]
+        if not axes:
+            continue
+        start, end = pose[list(axes[-1 if joint else 0])]
+        centre, side = pose[place], unit(end - start)
+        away = float(side @ (centre - np.nanmean(frame.places, axis=(0, 1))))
+        side = side * math.copysign(1.0, away if abs(away) > 0.1 * frame.span else -side[2] or 1.0)
+        u, foot = perpendicular(side), centre + 1.7 * size * side
+        v = np.cross(side, u)
+        plate = foot + size * np.stack([-u - v, u - v, u + v, v - u])
+        # strokes at 45 degrees behind the plate's edge
+        strokes = [np.stack([p * u - v, (p + 0.4) * u - v + 0.4 * side]) for p in np.linspace(-1, 0.6, 6)]
+        feet.append((plate, [np.stack([centre, foot]), *(foot + size * line for line in strokes)]))
+    return feet
 
 
 def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:

@@ -15,10 +15,10 @@ from sevenbar.drawing.scene import GROUND, JOINT, POINT_COLOURS, link_colours
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
-from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, slices, turns
+from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, slices, turns
 from sevenbar.studio.pictures.shapes import TURNS
 
-__all__ = ["Plan", "Poses", "plan", "poses", "rgb"]
+__all__ = ["Poses", "SolidPlan", "plan", "poses", "rgb"]
 
 #: The measure of all thicknesses, as a share of the linkage's extent.
 UNIT = 0.02
@@ -91,7 +91,7 @@ class _Solids:
         self.rows.setdefault(shape, []).append(row)
 
 
-def plan(frame: Skeleton, ends: tuple[str, str]) -> Plan:
+def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
     """The solids of a linkage along a circuit, coloured by the columns of input and output.
 
     Thicknesses are shares of the extent, less where a link is short. Rails reach over the whole of the
@@ -135,11 +135,11 @@ def _unit(where: Layout, pose: Floats, size: float) -> float:
     return UNIT * size * min(1.0, max(THINNEST, SHORTEST * shortest / (UNIT * size)))
 
 
-def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> Plan:
+def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> SolidPlan:
     rows = [row for shape in solids.rows.values() for row in shape]
     places, share, shift, length, twist, sides, colours, moves = zip(*rows, strict=True)
     where = solids.layout
-    return Plan(
+    return SolidPlan(
         slices({shape: len(found) for shape, found in solids.rows.items()}),
         np.array(places).T.copy(),
         np.array(share),

@@ -13,7 +13,7 @@ from sevenbar.drawing.scene import PATH, paths, view
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
-from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, stretched
+from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, stretched
 from sevenbar.studio.pictures.solids import plan, rgb
 
 #: Where an axis line has its dashes and the dots between them, as shares of its length.
@@ -68,8 +68,8 @@ class Stage:
         self._lines: dict[str, LineSegmentsHandle] = {}
         self._path_colours: dict[str, Colours] = {}
         self._grid: GridHandle | None = None
-        self._plan: Plan | None = None
-        self._moving: Plan | None = None
+        self._plan: SolidPlan | None = None
+        self._moving: SolidPlan | None = None
         self._frame: Skeleton | None = None
         self._places: Floats | None = None
         scene.set_up_direction("+z")
@@ -260,7 +260,7 @@ class Stage:
         for name, colours in self._path_colours.items():
             self._lines[name].colors = self._shade(colours)
 
-    def _colours(self, shown: Plan) -> dict[str, Colours]:
+    def _colours(self, shown: SolidPlan) -> dict[str, Colours]:
         return {shape: self._shade(shown.colours_of(shape)) for shape in shown.shapes}
 
     def _shade(self, colours: Colours) -> Colours:
