@@ -122,7 +122,7 @@ def _wide_view(places: Floats) -> tuple[float, float]:
     elevation, azimuth = (grid.ravel() for grid in np.meshgrid([20.0, 30.0, 45.0], azimuths))
     kept = places[~np.isnan(places).any(axis=1)]
     spread = (kept - kept.mean(axis=0)).T @ (kept - kept.mean(axis=0))
-    screens = [_directions(*view) for view in zip(elevation, azimuth, strict=True)]
+    screens = [directions(*view) for view in zip(elevation, azimuth, strict=True)]
     covered = np.array([np.sqrt(max(np.linalg.det(s @ spread @ s.T), 0.0)) for s in screens])
     # among like views the usual one, x to the right and y away
     unusual = (1 - np.cos(np.radians(azimuth + 60.0))) / 2 + np.abs(elevation - 30.0) / 100
@@ -145,7 +145,7 @@ def _equal_box(axes: Any, drawn: Floats, unit: str, fill: float = 0.74) -> None:
         scale.set_tick_params(labelsize=7.5, pad=10 * stand_off - 8)
         scale.set_label_text(f"{name} [{unit}]")
         scale.labelpad = 25 * stand_off - 21
-    right, above = _screen(axes)
+    right, above = directions(axes.elev, axes.azim)
     seen = max(np.abs(right) @ extent, np.abs(above) @ extent * 1.06) / np.linalg.norm(extent)
     axes.set_box_aspect(extent, zoom=fill / seen)
 
@@ -223,7 +223,7 @@ def put(made: Bars, pose: Floats) -> None:
 
 def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> None:
     """Writes the names of places of a pose, each on its freest side; what falls together shares one label."""
-    screen = _screen(axes)
+    screen = directions(axes.elev, axes.azim)
     seen = pose @ screen.T
     lines = frame.lines(pose, screen)
     named: dict[int, list[str]] = {}
@@ -248,12 +248,8 @@ def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> No
         )
 
 
-def _screen(axes: Any) -> Floats:
-    """The directions, unit vectors (2, 3), that are seen as right and up."""
-    return _directions(axes.elev, axes.azim)
-
-
-def _directions(elevation: float, azimuth: float) -> Floats:
+def directions(elevation: float, azimuth: float) -> Floats:
+    """The directions, unit vectors (2, 3), seen as right and up from an elevation and an azimuth [deg]."""
     up, round_ = math.radians(elevation), math.radians(azimuth)
     above = [-math.sin(up) * math.cos(round_), -math.sin(up) * math.sin(round_), math.cos(up)]
     return np.array([[-math.sin(round_), math.cos(round_), 0.0], above])

@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.geometry import Loop, Point
 from sevenbar.kinematics.motion import Circuit, Motion
-from sevenbar.kinematics.poses import frames_along, frames_of, walk
+from sevenbar.kinematics.poses import at_row, frames_along, frames_of, walk
 
 #: Half the length of a joint's drawn axis and of its cylinder, as shares of the linkage's extent.
 AXIS, CYLINDER = 0.075, 0.032
@@ -41,10 +41,7 @@ class Skeleton:
 
     def pose(self, row: float) -> Floats:
         """The places (k, 3) at a row, between two rows on the straight line between them."""
-        low = min(int(row), len(self.places) - 1)
-        high, share = min(low + 1, len(self.places) - 1), row - low
-        between: Floats = (1 - share) * self.places[low] + share * self.places[high]
-        return self.places[low] if share == 0 else between
+        return at_row(self.places, row)
 
     @property
     def solid(self) -> int:

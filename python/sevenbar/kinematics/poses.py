@@ -100,6 +100,14 @@ def along(linkage: Loop, circuit: Circuit, column: int) -> Floats:
     return values
 
 
+def at_row(values: Floats, row: float) -> Floats:
+    """Values (n, ..) of rows at a row from 0 to n - 1, on the straight line between two, (..)."""
+    low = min(int(row), len(values) - 1)
+    high, share = min(low + 1, len(values) - 1), row - low
+    between: Floats = values[low] + share * (values[high] - values[low]) if share else values[low]
+    return between
+
+
 def frames_of(linkage: Loop, q: Floats) -> Floats:
     """The frames (n, moving links, 4, 4) of the links in the report frame, from joint values (n, columns)."""
     now = np.broadcast_to(linkage.base, (len(q), 4, 4))

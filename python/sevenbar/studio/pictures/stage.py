@@ -9,7 +9,7 @@ import numpy as np
 from viser import GridHandle, LineSegmentsHandle, SceneApi
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import PATH, paths, view
+from sevenbar.drawing.scene import PATH, directions, paths, view
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
@@ -118,16 +118,9 @@ class Stage:
         """
         if self._frame is None:
             return np.array([2.0, -2.0, 1.5]), np.zeros(3)
-        elevation, azimuth = (math.radians(angle) for angle in view(self._frame))
-        back = np.array(
-            [
-                math.cos(elevation) * math.cos(azimuth),
-                math.cos(elevation) * math.sin(azimuth),
-                math.sin(elevation),
-            ]
-        )
-        right = np.array([-math.sin(azimuth), math.cos(azimuth), 0.0])
-        axes = np.stack([right, np.cross(back, right), back])
+        right, above = directions(*view(self._frame))
+        back = np.cross(right, above)
+        axes = np.stack([right, above, back])
         every = self._drawn() if also is None else np.concatenate([self._drawn(), also])
         seen = self.in_scene(every) @ axes.T
         middle = (seen.min(axis=0) + seen.max(axis=0)) / 2

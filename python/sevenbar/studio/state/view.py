@@ -14,7 +14,7 @@ from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Circuit, Motion, Trace
-from sevenbar.kinematics.poses import Walk, along, walk
+from sevenbar.kinematics.poses import Walk, along, at_row, walk
 from sevenbar.reporting.summary import joint_text
 
 #: Inputs [rad, or parts of the linkage's size] nearer to a limit are at it.
@@ -201,16 +201,9 @@ class View:
             ways.append(float(to_the_end + abs(self.input_at(low) - self.path.input[0])))
         return min(ways, default=math.inf)
 
-    def along(self, values: Floats, row: float) -> Floats:
-        """Values (n, ..) of the path's rows at a row, on the straight line between two."""
-        low = min(int(row), len(values) - 1)
-        high, share = min(low + 1, len(values) - 1), row - low
-        between: Floats = values[low] + share * (values[high] - values[low]) if share else values[low]
-        return between
-
     def joints(self, row: float) -> Floats:
         """The joint values (columns,) at a row."""
-        q = np.array(self.along(self._joints, row))
+        q = np.array(at_row(self._joints, row))
         q[self.circuit.input_column] = self.input_at(row)
         return q
 
@@ -244,9 +237,9 @@ class View:
         """
         trace, path = self.traces[point], self.path
         return (
-            self.along(trace.position[path.rows], row),
-            path.sign[min(int(row), len(path.rows) - 1)] * self.along(trace.velocity[path.rows], row),
-            self.along(trace.acceleration[path.rows], row),
+            at_row(trace.position[path.rows], row),
+            path.sign[min(int(row), len(path.rows) - 1)] * at_row(trace.velocity[path.rows], row),
+            at_row(trace.acceleration[path.rows], row),
         )
 
     @cached_property
