@@ -12,6 +12,7 @@ import numpy as np
 
 import sevenbar as sb
 from sevenbar.arrays import Floats
+from sevenbar.studio.state.view import views_of
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.picture import GRID
@@ -58,7 +59,7 @@ def by_key(motion: sb.Motion) -> dict[str, Quantity]:
 
 
 def output_panels(motion: sb.Motion, circuit: int = 0, **wanted: Any) -> tuple[Panel, ...]:
-    return panels(motion, quantities(motion)[:3], circuit, **wanted)
+    return panels(views_of(motion), quantities(motion)[:3], circuit, **wanted)
 
 
 # --- a picture read as its reader does: places are told by the ticks

@@ -15,9 +15,10 @@ import sevenbar as sb
 from sevenbar.description.gallery import names
 from sevenbar.drawing import plot
 from sevenbar.drawing.figure import CIRCUIT_COLOURS
-from sevenbar.drawing.skeleton import walk
+from sevenbar.kinematics.poses import walk
+from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
-from sevenbar.studio.svg.quantities import Walked, quantities
+from sevenbar.studio.svg.quantities import quantities
 from studio_pictures import (
     MOTIONS,
     ROCKING,
@@ -74,7 +75,7 @@ def test_curves_of_the_output_are_those_of_the_figures(name: str, over: str) -> 
             strict=True,
         ):
             for line, part in zip(
-                [p for p in drawn if p.circuit is circuit], walk(motion, circuit).passes, strict=True
+                [p for p in drawn if p.circuit is circuit], walk(circuit).passes, strict=True
             ):
                 off = panel.values[part] - getattr(line, word)
                 turns = 360.0 * np.round(off / 360.0) if word == "angle" else 0.0 * off
@@ -104,19 +105,19 @@ def test_every_velocity_is_the_slope_of_its_angle_over_the_time_of_the_walk(name
     motion = motion_of(name)
     found = by_key(motion)
     for circuit in motion:
-        walked = Walked.of(motion, circuit)
+        view = View(motion, circuit)
         for key in [key for key in found if key.endswith(".angle")]:
             values, rates = (
-                found[key].values(walked),
-                found[key.replace(".angle", ".velocity")].values(walked),
+                found[key].values(view),
+                found[key.replace(".angle", ".velocity")].values(view),
             )
             if found[key].unit == "deg":
                 values = np.radians(values)
-            for part in walked.path.passes:
+            for part in view.path.passes:
                 inner = slice(
                     part.start + (part.stop - part.start) // 4, part.stop - (part.stop - part.start) // 4
                 )
-                slope = np.gradient(values, walked.path.time)[inner]
+                slope = np.gradient(values, view.path.time)[inner]
                 np.testing.assert_allclose(
                     rates[inner], slope, atol=2e-2 * np.abs(slope).max() + 1e-6 * abs(motion.speed)
                 )
@@ -129,15 +130,15 @@ def test_a_points_speed_is_its_way_over_the_time(name: str) -> None:
         speed = by_key(motion)[f"point.{point.name}.speed"]
         assert (speed.point, speed.unit) == (place, f"{motion.linkage.length_unit}/s")
         for circuit in motion:
-            walked = Walked.of(motion, circuit)
-            part = walked.path.passes[0]
+            view = View(motion, circuit)
+            part = view.path.passes[0]
             inner = slice(
                 part.start + (part.stop - part.start) // 4, part.stop - (part.stop - part.start) // 4
             )
-            position = circuit.point(point.link, point.at).position[walked.path.rows]
-            steps = np.linalg.norm(np.gradient(position, walked.path.time, axis=0), axis=1)
+            position = circuit.point(point.link, point.at).position[view.path.rows]
+            steps = np.linalg.norm(np.gradient(position, view.path.time, axis=0), axis=1)
             np.testing.assert_allclose(
-                speed.values(walked)[inner], steps[inner], atol=5e-3 * steps[inner].max()
+                speed.values(view)[inner], steps[inner], atol=5e-3 * steps[inner].max()
             )
 
 
@@ -145,16 +146,16 @@ def test_a_points_speed_is_its_way_over_the_time(name: str) -> None:
 def test_every_angle_starts_within_half_a_turn_and_runs_on_without_a_leap(name: str) -> None:
     motion = sb.load(name).motion(samples=90)
     for circuit in motion:
-        walked = Walked.of(motion, circuit)
+        view = View(motion, circuit)
         for quantity in quantities(motion):
             if quantity.unit != "deg" or quantity.column is None:
                 continue
-            values = quantity.values(walked)
+            values = quantity.values(view)
             known = values[np.isfinite(values)]
             if known.size:
                 assert -180.0 < known[0] <= 180.0 + 1e-6
             if np.isfinite(values).all():
-                off = (values[:-1] - np.degrees(circuit.q[walked.path.rows[:-1], quantity.column])) / 360.0
+                off = (values[:-1] - np.degrees(circuit.q[view.path.rows[:-1], quantity.column])) / 360.0
                 np.testing.assert_allclose(off, round(off[0]), atol=1e-9)
                 assert np.abs(np.diff(values)).max() < 60
 
@@ -165,7 +166,7 @@ def test_a_start_at_half_a_turn_does_not_flicker_with_its_rounding() -> None:
     assert math.degrees(circuit.output[0]) == pytest.approx(180)
     for nudge in (-1e-10, 0.0, 1e-10, math.tau, -math.tau - 1e-10):
         nudged = replace(circuit, q=circuit.q + nudge)
-        assert quantities(motion)[0].values(Walked.of(motion, nudged))[0] == pytest.approx(180)
+        assert quantities(motion)[0].values(View(motion, nudged))[0] == pytest.approx(180)
 
 
 # --- what can be drawn
@@ -231,7 +232,7 @@ def test_a_line_breaks_where_there_is_no_rate_and_nowhere_else(name: str) -> Non
     motion = motion_of(name)
     for circuit in motion:
         angle, *rates = output_panels(motion, circuit.index)
-        passes = walk(motion, circuit).passes
+        passes = walk(circuit).passes
         assert [len(line) for line in subpaths(angle)] == [part.stop - part.start for part in passes]
         for panel in rates:
             known = ["".join("01"[int(x)] for x in np.isfinite(panel.values[part])) for part in passes]
@@ -270,7 +271,7 @@ def test_the_chosen_circuit_has_a_third_of_the_height_in_every_rate(name: str) -
     motion = motion_of(name)
     rates = [quantity for quantity in quantities(motion) if quantity.order and quantity.point is None]
     for circuit in motion:
-        for panel in panels(motion, rates, circuit.index):
+        for panel in panels(views_of(motion), rates, circuit.index):
             _, top, _, bottom = panel.frame.box
             if panel.scale is None or np.nanmax(panel.values) - np.nanmin(panel.values) < 1e-6:
                 continue
@@ -297,7 +298,7 @@ def test_the_chosen_circuit_is_in_front_in_its_own_colour() -> None:
 
 def test_a_pass_on_which_the_input_falls_is_dashed() -> None:
     motion = motion_of("double-rocker")
-    path = walk(motion, motion.circuits[0])
+    path = walk(motion.circuits[0])
     lines = area(output_panels(motion)[0]).findall(f"{SVG}g")[-1]
     falls = [path.input[part][-1] < path.input[part][0] for part in path.passes]
     assert falls == [line.get("stroke-dasharray") is not None for line in lines]

@@ -69,7 +69,7 @@ def looked_at(session):
     q = view.joints(session.row)
     linkage = view.linkage
     shown = view.frame.pose(session.row)
-    own = places_of(linkage, q[None], view.frame)[0]
+    own = places_of(q[None], view.frame)[0]
     # between two rows a degree apart both are a little off
     assert np.nanmax(np.abs(own - shown)) < 5e-3 * view.frame.span
     row = min(round(session.row), len(view.path.rows) - 1)

@@ -15,11 +15,11 @@ from hypothesis import strategies as st
 from PIL import ImageFont
 
 import sevenbar as sb
-from sevenbar.errors import RequestError
-from sevenbar.studio.svg.axis import axis
+from sevenbar.studio.state.view import views_of
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.quantities import quantities
+from sevenbar.studio.svg.scale import scale
 from studio_pictures import (
     HOSTILE,
     MOTIONS,
@@ -109,7 +109,9 @@ def assert_inside(svg: str, width: int, height: int) -> None:
 def test_every_text_and_the_cursor_stay_inside_the_frame(name: str, width: int) -> None:
     motion = motion_of(name)
     for over in ("input", "time"):
-        for panel in panels(motion, quantities(motion), len(motion.circuits) - 1, over=over, width=width):
+        for panel in panels(
+            views_of(motion), quantities(motion), len(motion.circuits) - 1, over=over, width=width
+        ):
             assert_inside(panel.svg, width, 170)
             left, top, right, bottom = panel.frame.box
             for row in np.linspace(0, max(len(panel.values) - 1, 0), 25):
@@ -123,7 +125,7 @@ def test_every_text_and_the_cursor_stay_inside_the_frame(name: str, width: int) 
 def test_the_words_of_a_picture_do_not_lie_on_one_another() -> None:
     for name in MOTIONS:
         motion = motion_of(name)
-        for panel in panels(motion, quantities(motion), 0):
+        for panel in panels(views_of(motion), quantities(motion), 0):
             boxes = []
             for text in texts(panel.svg):
                 wide = font(bold=text.bold).getlength(text.text) / 10
@@ -136,11 +138,11 @@ def test_the_words_of_a_picture_do_not_lie_on_one_another() -> None:
 
 def test_hostile_names_are_shown_as_they_are_written() -> None:
     motion = motion_of("hostile")
-    for panel in panels(motion, quantities(motion)):
+    for panel in panels(views_of(motion), quantities(motion)):
         assert "<script" not in panel.html
         root = ET.fromstring(panel.html)
         assert not [e for e in root.iter() if "script" in e.tag]
-    shown = panels(motion, [by_key(motion)[f"point.{HOSTILE}.speed"]], width=900)[0]
+    shown = panels(views_of(motion), [by_key(motion)[f"point.{HOSTILE}.speed"]], width=900)[0]
     assert f"{HOSTILE} speed [mm/s]" in [text.text for text in texts(shown.svg)]
     assert shown.svg.count("&lt;script&gt;") == 3
 
@@ -155,14 +157,6 @@ def test_the_cursor_lies_over_the_picture_at_any_width() -> None:
 
 
 # --- motions with nothing to draw, and wrong requests
-
-
-def test_a_linkage_that_cannot_be_assembled_gets_an_empty_frame_that_says_so() -> None:
-    motion = sb.rssr(M=700, N=700, L1=10, L3=10, L2=10).motion()
-    for panel in panels(motion, quantities(motion)):
-        assert "cannot-assemble: nothing to draw" in [text.text for text in texts(panel.svg)]
-        assert_inside(panel.svg, 420, 170)
-        assert not list(ET.fromstring(panel.cursor(0)))
 
 
 def test_a_law_beyond_the_range_leaves_an_empty_frame() -> None:
@@ -187,14 +181,6 @@ def test_a_law_is_drawn_as_it_runs(over: str) -> None:
     np.testing.assert_allclose(value_at(beside, vertices[:, 1]), panel.values, atol=0.1 * pixels(beside))
 
 
-def test_wrong_requests_say_what_is_allowed() -> None:
-    motion = motion_of("rssr")
-    with pytest.raises(RequestError, match="circuit: 2 is not a circuit of this motion; give 0 to 1"):
-        output_panels(motion, 2)
-    with pytest.raises(RequestError, match="over: 'both' is not offered; give input or time"):
-        output_panels(motion, over="both")
-
-
 # --- the scales
 
 
@@ -206,14 +192,14 @@ def test_wrong_requests_say_what_is_allowed() -> None:
     degrees=st.booleans(),
 )
 def test_ticks_are_few_inside_and_told_apart(middle: float, span: float, most: int, *, degrees: bool) -> None:
-    scale = axis(middle - span / 2, middle + span / 2, most, degrees=degrees)
-    places = scale.ticks
+    found = scale(middle - span / 2, middle + span / 2, most, degrees=degrees)
+    places = found.ticks
     assert 1 <= len(places) <= most
     room = 1e-6 * span
-    assert all(scale.low - room <= place <= scale.high + room for place in places)
+    assert all(found.low - room <= place <= found.high + room for place in places)
     for place in places:
         # what is written is the place itself, not one nearby
-        assert number(scale.word(place)) * 10.0**scale.power == pytest.approx(place, abs=1e-6 * scale.step)
+        assert number(found.word(place)) * 10.0**found.power == pytest.approx(place, abs=1e-6 * found.step)
 
 
 @pytest.mark.parametrize(
@@ -230,15 +216,15 @@ def test_ticks_stand_at_numbers_that_people_use(
     low: float, high: float, wanted: list[float], *, degrees: bool
 ) -> None:
     most = 7 if low == 0 else 6 if not degrees else 5
-    np.testing.assert_allclose(axis(low, high, most, degrees=degrees).ticks, wanted, atol=1e-12)
+    np.testing.assert_allclose(scale(low, high, most, degrees=degrees).ticks, wanted, atol=1e-12)
 
 
 def test_large_and_small_numbers_share_a_power_of_ten_with_the_unit() -> None:
-    large, small = axis(-2.6e6, 7.1e6, 5), axis(0, 4.2e-5, 5)
+    large, small = scale(-2.6e6, 7.1e6, 5), scale(0, 4.2e-5, 5)
     assert ([large.word(t) for t in large.ticks], large.unit("mm/s²")) == (
         ["−2", "0", "2", "4", "6"],
         "10⁶ mm/s²",
     )
     assert (small.word(2e-5), small.unit("rad/s")) == ("20", "10⁻⁶ rad/s")
     assert large.reading(1234567.0, "mm/s²") == "1.235·10⁶ mm/s²"
-    assert axis(0, 100, 5).reading(-0.001, "deg") == "0.0°"
+    assert scale(0, 100, 5).reading(-0.001, "deg") == "0.0°"

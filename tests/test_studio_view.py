@@ -17,7 +17,7 @@ from sevenbar.description.gallery import names, text
 from sevenbar.drawing.skeleton import places_of
 from sevenbar.errors import RequestError
 from sevenbar.studio.state.session import Session
-from sevenbar.studio.state.view import View, modes_at
+from sevenbar.studio.state.view import View, modes_at, views_of
 from studio_sessions import DOUBLE_ROCKER, distance, drawn, opened, state
 
 # --- modes
@@ -37,7 +37,7 @@ def test_the_modes_of_every_input_are_the_assembly_modes(name: str) -> None:
         for value in rng.uniform(min(ends), max(ends), 5):
             # a whole turn more is the same
             asked = value + 2 * np.pi * int(rng.integers(-3, 4)) if turn else value
-            met = modes_at(motion, asked)
+            met = modes_at(views_of(motion), asked)
             modes = linkage.assembly_modes(value, input=column)
             assert len(met) == len(modes), (column, value)
             left = list(modes.q)
@@ -60,7 +60,9 @@ def test_a_sample_is_met_exactly_and_once(name: str) -> None:
         view = View(motion, circuit)
         for row in {0, 1, 7, len(circuit.input) // 2, len(circuit.input) - 1}:
             mine = [
-                at for other, at in modes_at(motion, float(circuit.input[row])) if other.circuit is circuit
+                at
+                for other, at in modes_at(views_of(motion), float(circuit.input[row]))
+                if other.circuit is circuit
             ]
             assert [at for at in mine if abs(at - row) < 1e-6] == [row]
             np.testing.assert_array_equal(view.joints(float(row)), circuit.q[row])
@@ -97,7 +99,7 @@ def test_the_next_mode_visits_each_once_and_comes_back(name: str) -> None:
         view, row = session.view, session.row
         count = len(session.modes())
         value = view.input_at(row)
-        assert count == max(1, len(modes_at(view.motion, value)))
+        assert count == max(1, len(modes_at(views_of(view.motion), value)))
         seen = []
         for _ in range(count):
             session.next_mode()
@@ -144,7 +146,7 @@ def test_places_worked_out_from_joint_values_are_those_of_the_frame(name: str) -
         view = View(session.view.motion, circuit)
         rows = np.array([0, 5, len(circuit.input) // 3])
         known = ~np.isnan(circuit.q[rows]).any(axis=1)
-        got = places_of(view.linkage, circuit.q[rows[known]], view.frame)
+        got = places_of(circuit.q[rows[known]], view.frame)
         want = np.stack([view.frame.pose(float(row)) for row in rows[known]])
         np.testing.assert_allclose(got, want, atol=1e-9 * view.frame.span)
 

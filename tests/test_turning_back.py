@@ -10,7 +10,6 @@ import adams_reader
 import sevenbar as sb
 from sevenbar.drawing.figure import note
 from sevenbar.drawing.plot import configuration, curves, joints
-from sevenbar.drawing.skeleton import walk
 from sevenbar.errors import RequestError
 from sevenbar.export import pose
 from sevenbar.export.adams import write_cmd
@@ -18,6 +17,7 @@ from sevenbar.export.layout import arrange
 from sevenbar.kinematics.batches import loop_motions
 from sevenbar.kinematics.measures import MEASURES, rows_of
 from sevenbar.kinematics.motion import Law
+from sevenbar.kinematics.poses import walk
 from sevenbar.reporting import report
 from sevenbar.reporting.summary import summary
 from sevenbar.simulation.course import course
@@ -109,7 +109,7 @@ def test_its_rows_go_from_dead_centre_to_dead_centre_and_gain_the_turns(index):
             own = circuit.input[circuit.branch == branch]
             assert (np.sign(np.diff(own)) == np.sign(places[branch + 1] - places[branch])).all()
             assert circuit.pass_range(branch) == pytest.approx(sorted(places[branch : branch + 2]), abs=1e-12)
-        path = walk(motion, circuit)
+        path = walk(circuit)
         assert path.input[-1] == pytest.approx(path.input[0] + gained, abs=1e-12)
         assert path.ways == tuple([1.0, -1.0] * (len(ends) // 2))
         assert circuit.velocity is circuit.acceleration is circuit.jerk is circuit.time_ratio is None
@@ -163,8 +163,8 @@ def test_a_falling_input_turns_only_the_rates(index):
         assert other.q.tobytes() == circuit.q.tobytes()
         assert other.dq == pytest.approx(-circuit.dq, nan_ok=True)
         assert other.ddq == pytest.approx(circuit.ddq, nan_ok=True)
-        assert walk(falling, other).ways == tuple(-way for way in walk(motion, circuit).ways)
-        assert walk(falling, other).input[-1] == pytest.approx(circuit.input[0] + math.tau * circuit.turns)
+        assert walk(other).ways == tuple(-way for way in walk(circuit).ways)
+        assert walk(other).input[-1] == pytest.approx(circuit.input[0] + math.tau * circuit.turns)
 
 
 @pytest.mark.parametrize("index", WITH_SUCH[:3])
@@ -236,3 +236,18 @@ def test_other_programs_are_driven_within_one_pass(index, tmp_path):
         else:
             assert not run.closes
             assert len(set(circuit.branch[run.rows])) == 1
+
+
+@pytest.mark.parametrize("index", WITH_SUCH[:3])
+def test_velocities_along_a_walk_are_turned_where_the_input_goes_back(index):
+    motion = moved(index)
+    for circuit in such(motion):
+        path = walk(circuit)
+        assert walk(circuit) is path
+        seen = path.velocities(circuit.dq)
+        for way, part in zip(path.ways, path.passes, strict=True):
+            inner = slice(part.start + 1, part.stop - 1)
+            assert (path.sign[inner] == way).all()
+            assert np.array_equal(seen[inner], way * circuit.dq[path.rows[inner]], equal_nan=True)
+            rises = np.diff(path.input[part])
+            assert (np.sign(rises[np.abs(rises) > 1e-9]) == way * math.copysign(1, motion.speed)).all()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +16,7 @@ from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.kinematics.geometry import Drive, Joint, Point
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.kinematics.rigid import about, inverse, pose, unit
 
 if TYPE_CHECKING:
     from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
@@ -246,13 +246,14 @@ def _from_dimensions(form: RssrForm) -> Linkage:
 
 def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
     """Classic Denavit-Hartenberg rows: the ground's frame is that of the last link, its axes renamed."""
-    report = pose(_I_ALONG_LAST_AXIS, np.zeros(3))
+    report = pose(_I_ALONG_LAST_AXIS)
     # what follows the joint's own motion in each row: Tz(offset) or Rz(angle), the other being the variable
-    fixed = [pose(_about_z(row.angle), [0.0, 0.0, row.offset]) for row in rows]
-    spans = [pose(_about_x(row.twist), [row.length, 0.0, 0.0]) for row in rows]
+    turns = about(2, [row.angle for row in rows])
+    fixed = pose(turns, [(0.0, 0.0, row.offset) for row in rows])
+    spans = pose(about(0, [row.twist for row in rows]), [(row.length, 0.0, 0.0) for row in rows])
     ground = report @ inverse(fixed[-1])
     # u, v, w of a point: v goes along the link, so after the fixed angle; u counts from before the offset
-    points = [pose(_about_z(row.angle) @ _UVW, np.zeros(3)) for row in rows]
+    points = pose(turns @ _UVW)
     points[-1] = ground @ points[-1]
     dimensions: dict[str, float] = {}
     for i, row in enumerate(rows, 1):
@@ -267,8 +268,8 @@ def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
         ),
         base=report @ spans[-1],
         ground=ground,
-        links=np.stack([f @ span for f, span in zip(fixed[:-1], spans[:-1], strict=True)]),
-        point_frames=np.stack(points),
+        links=fixed[:-1] @ spans[:-1],
+        point_frames=points,
         drive=Drive(*form.driven),
         form="rows",
         dimensions=dimensions,
@@ -286,9 +287,9 @@ def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) 
     # x of a frame goes towards the joint after, of the last one towards that before
     towards = [*places[1:], places[-2]]
     angles = [_between(*joint.axes) if joint.axes else 0.0 for joint in drawn]
-    before = [pose(_frame(j, t - p), p) for j, p, t in zip(drawn, places, towards, strict=True)]
+    before = pose([_frame(j, t - p) for j, p, t in zip(drawn, places, towards, strict=True)], places)
     # a joint U at zero is not the identity: it turns from its first axis to its second
-    after = [frame @ pose(_about_x(a), np.zeros(3)) for frame, a in zip(before, angles, strict=True)]
+    after = before @ pose(about(0, angles))
     return Linkage(
         name=form.name,
         joints=tuple(
@@ -297,8 +298,8 @@ def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) 
         ),
         base=before[0],
         ground=after[-1],
-        links=np.stack([inverse(a) @ b for a, b in zip(after[:-1], before[1:], strict=True)]),
-        point_frames=np.stack([*(inverse(frame) for frame in after[:-1]), np.eye(4)]),
+        links=inverse(after[:-1]) @ before[1:],
+        point_frames=np.concatenate([inverse(after[:-1]), [np.eye(4)]]),
         drive=Drive(*form.driven),
         points=(Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else (),
     )
@@ -315,7 +316,7 @@ def _coincident(drawn: tuple[JointForm, ...], names: Sequence[str]) -> list[Prob
             f"{list(drawn[i - 1].at)} lies on the axis of {names[end]}; the link between has no length",
         )
         for i, end, arm in ((2, 0, arm_a), (3, 3, arm_b))
-        if not np.linalg.norm(np.cross(_unit(drawn[end].axis), arm)) > NO_LENGTH * size
+        if not np.linalg.norm(np.cross(unit(cast(npt.ArrayLike, drawn[end].axis)), arm)) > NO_LENGTH * size
     ]
     if not np.linalg.norm(coupler) > NO_LENGTH * size:
         place = list(drawn[2].at)
@@ -344,37 +345,15 @@ def _frame(joint: JointForm, towards: Floats) -> Floats:
     """Columns x, y, z of a joint's frame: z along its axis; of a ball the axes of the ground."""
     if joint.axes:
         first, second = joint.axes
-        z, x = _unit(first), _unit(np.cross(_unit(first), _unit(second)))
+        z, x = unit(first), unit(np.cross(unit(first), unit(second)))
         return np.column_stack([x, np.cross(z, x), z])
     return np.eye(3) if joint.axis is None else _frame_about(joint.axis, towards)
 
 
 def _between(first: npt.ArrayLike, second: npt.ArrayLike) -> float:
     """The angle [rad] from one axis to another."""
-    a, b = _unit(first), _unit(second)
+    a, b = unit(first), unit(second)
     return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
-
-
-def _unit(vector: npt.ArrayLike | None) -> Floats:
-    direction = np.asarray(vector, dtype=np.float64)
-    return np.asarray(direction / math.hypot(*direction))
-
-
-def _about_x(angle: float) -> Floats:
-    c, s = _cosine_and_sine(angle)
-    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-
-
-def _about_z(angle: float) -> Floats:
-    c, s = _cosine_and_sine(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _cosine_and_sine(angle: float) -> tuple[float, float]:
-    """Both, with an exact 0 where only rounding is left: twists of 90 or 180 degrees are meant exactly."""
-    rounding = np.finfo(float).eps * abs(angle)
-    c, s = math.cos(angle), math.sin(angle)
-    return (0.0 if abs(c) < rounding else c), (0.0 if abs(s) < rounding else s)
 
 
 def _degrees(angle: float) -> float:
@@ -382,9 +361,9 @@ def _degrees(angle: float) -> float:
     return float(f"{math.degrees(angle):.15g}")
 
 
-def _frame_about(axis: npt.ArrayLike | None, towards: Floats) -> Floats:
+def _frame_about(axis: npt.ArrayLike, towards: Floats) -> Floats:
     """Columns x, y, z: z along the axis, x across it towards a place (any where that lies on the axis)."""
-    z = _unit(axis)
+    z = unit(axis)
     across = towards - (towards @ z) * z
     if np.linalg.norm(across) <= NO_LENGTH * np.linalg.norm(towards):
         across = np.eye(3)[np.argmin(np.abs(z))]

@@ -19,10 +19,12 @@ from matplotlib.artist import Artist
 from PIL import Image
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing import plot, scene, skeleton
+from sevenbar.drawing import plot, scene
 from sevenbar.drawing.figure import STYLE, new_figure, shown_value, slides, title, written_whole
+from sevenbar.drawing.skeleton import skeleton
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
 from sevenbar.kinematics.motion import Circuit, Motion, chosen_circuit
+from sevenbar.kinematics.poses import Walk, walk
 
 Picture = npt.NDArray[np.uint8]
 
@@ -106,7 +108,7 @@ def _reported(
             progress(done, total)
 
 
-def _rows(motion: Motion, path: skeleton.Walk, frames: int) -> Floats:
+def _rows(motion: Motion, path: Walk, frames: int) -> Floats:
     """Where on the walk each picture stands: rows, with shares of the way to the next, (frames,)."""
     if motion.law is None:
         times = path.time[0] + (path.time[-1] - path.time[0]) * np.arange(frames) / frames
@@ -117,21 +119,22 @@ def _rows(motion: Motion, path: skeleton.Walk, frames: int) -> Floats:
 
 def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture]:
     """The pictures (height, width, 3), one after the other; only what moves is drawn anew."""
-    path, frame = skeleton.walk(motion, circuit), skeleton.skeleton(motion, circuit)
+    path, frame = walk(circuit), skeleton(motion, circuit)
+    ends = motion.input, motion.output
     figure = new_figure(*SIZE)
     figure.set_dpi(DPI)
     space = figure.add_axes((0.0, 0.02, SIZE[1] / SIZE[0], 1.0), projection="3d")
-    scene.stage(space, motion, frame)
+    scene.stage(space, frame, ends)
     scene.label(space, frame, frame.pose(0), frame.standing)
     curve = figure.add_axes((0.65, 0.3, 0.32, 0.5))
     drawn = [line for line in plot.passes(motion) if line.circuit is circuit]
     plot.panel(curve, motion, drawn, "angle", "input")
     figure.suptitle(f"{title(motion)}\ncircuit {circuit.index}", fontsize=11)
-    figure.legend(handles=scene.link_keys(motion, frame), loc="lower left", ncols=4, frameon=False)
+    figure.legend(handles=scene.keys(frame, ends), loc="lower left", ncols=4, frameon=False)
     keys = plot.curve_keys([curve], drawn)
     figure.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.81, 0.2), ncols=2, frameon=False)
 
-    bars = scene.bars(space, motion, frame)
+    bars = scene.bars(space, frame, ends)
     (cursor,) = curve.plot([], [], color="#303030", lw=1.0, zorder=5)
     (dot,) = curve.plot([], [], "o", color="#303030", ms=7, zorder=6)
     reading = figure.text(0.65, 0.83, "", fontsize=10)
@@ -147,11 +150,11 @@ def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture
     canvas.draw()
     still = canvas.copy_from_bbox(figure.bbox)
     count = np.arange(len(path.time))
-    ends = ((motion.input, path.input), (motion.output, path.output))
-    units = [f" {motion.linkage.length_unit}" if slides(motion, c) else "°" for c, _ in ends]
+    courses = ((motion.input, path.input), (motion.output, path.output))
+    units = [f" {motion.linkage.length_unit}" if slides(motion, c) else "°" for c in ends]
     for row in _rows(motion, path, frames):
         angle, output = (
-            float(shown_value(motion, column, np.interp(row, count, values))) for column, values in ends
+            float(shown_value(motion, column, np.interp(row, count, values))) for column, values in courses
         )
         scene.put(bars, frame.pose(float(row)))
         cursor.set_data([angle, angle], curve.get_ylim())

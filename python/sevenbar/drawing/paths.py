@@ -25,11 +25,12 @@ from sevenbar.drawing.figure import (
     slides,
     title,
 )
-from sevenbar.drawing.scene import INPUT, OUTPUT, chain_bars, chain_keys, prepare_view, put, stage_chain
-from sevenbar.drawing.skeleton import chain, frames_of, one_pose, short, walk
+from sevenbar.drawing.scene import INPUT, OUTPUT, bars, keys, prepare_view, put, stage
+from sevenbar.drawing.skeleton import one_pose, short, skeleton_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Circuit, Integers, Modes, Motion, chosen_circuit
+from sevenbar.kinematics.poses import frames_of, walk
 
 
 def joints(motion: Motion) -> Figure:
@@ -65,7 +66,7 @@ def joints(motion: Motion) -> Figure:
             if place + across >= len(shown_columns):
                 axes.set_xlabel(input_label(motion))
                 axes.tick_params(labelbottom=True)
-        inputs = np.concatenate([shown_value(motion, motion.input, walk(motion, c).input) for c in motion])
+        inputs = np.concatenate([shown_value(motion, motion.input, walk(c).input) for c in motion])
         # a law may leave every range, or have one row
         inputs = inputs[np.isfinite(inputs)]
         for axes in figure.axes:
@@ -74,10 +75,10 @@ def joints(motion: Motion) -> Figure:
             if not slides(motion, motion.input):
                 axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 1.5, 3, 4.5, 6, 9, 10]))
         figure.suptitle(title(motion), fontsize=11)
-        keys = [
+        lines = [
             Line2D([], [], **_circuit_style(circuit), label=f"circuit {circuit.index}") for circuit in motion
         ]
-        figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 4), frameon=False)
+        figure.legend(handles=lines, loc="outside lower center", ncols=min(len(lines), 4), frameon=False)
     return figure
 
 
@@ -90,7 +91,7 @@ def _circuit_style(circuit: Circuit) -> dict[str, Any]:
 def _joint_line(axes: Axes, motion: Motion, circuit: Circuit, name: str) -> None:
     """One column of a circuit over the input, cut where it is wrapped."""
     index = motion.linkage.columns.index(name)
-    rows = walk(motion, circuit)
+    rows = walk(circuit)
     across, values = shown_value(motion, motion.input, rows.input), circuit.q[rows.rows, index]
     if not slides(motion, name):
         values = np.degrees(np.angle(np.exp(1j * values)))
@@ -130,7 +131,7 @@ def point_path(
     trace = chosen.point(link, at)
     if not np.isfinite(trace.position).all(axis=1).any():
         raise RequestError(f"point: it has no place along circuit {chosen.index}; nothing to draw")
-    path = walk(motion, chosen)
+    path = walk(chosen)
     unit = motion.linkage.length_unit
     called = short(name or f"link {link} at ({', '.join(f'{x:g}' for x in at)})", 40)
     with rc_context(STYLE):
@@ -206,8 +207,7 @@ def modes_overview(
     slide = linkage.column_kinds[first] == "slide"
     value = f"{modes.input:.6g} {linkage.length_unit}" if slide else f"{math.degrees(modes.input):.6g}°"
     ends = linkage.columns[first], linkage.columns[second]
-    frames = frames_of(linkage, modes.q)
-    poses = chain(linkage, frames)
+    poses = skeleton_of(linkage, frames_of(linkage, modes.q))
     across = min(count, 2 if count < 5 else 4)
     down = math.ceil(count / across)
     side = 4.6 if across < 3 else 3.3
@@ -220,8 +220,8 @@ def modes_overview(
             place = (column / across, bottom, 1 / across, 0.95 * side / height)
             axes: Any = figure.add_axes(place, projection="3d")
             one = one_pose(poses, index)
-            stage_chain(axes, linkage, one, around=poses, fill=0.84)
-            put(chain_bars(axes, linkage, one, ends, scale=0.7), one.pose(0))
+            stage(axes, one, ends, around=poses, fill=0.84)
+            put(bars(axes, one, ends, scale=0.7), one.pose(0))
             if index:
                 for scale in (axes.xaxis, axes.yaxis, axes.zaxis):
                     scale.set_ticklabels([])
@@ -232,5 +232,5 @@ def modes_overview(
             f"{short(linkage.name, 60)}: {count} assembly {word} at {{}} = {value}".format(ends[0]),
             fontsize=11,
         )
-        figure.legend(handles=chain_keys(linkage, ends), loc="lower center", ncols=4, frameon=False)
+        figure.legend(handles=keys(one_pose(poses, 0), ends), loc="lower center", ncols=4, frameon=False)
     return figure

@@ -33,10 +33,11 @@ from sevenbar.drawing.figure import (
     told_range,
 )
 from sevenbar.drawing.paths import joints, modes_overview, point_path
-from sevenbar.drawing.scene import bars, label, link_keys, put, stage
-from sevenbar.drawing.skeleton import Skeleton, skeleton, walk
+from sevenbar.drawing.scene import bars, keys, label, put, stage
+from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import Circuit, Extremes, Motion, chosen_circuit
+from sevenbar.kinematics.poses import walk
 
 __all__ = ["FORMATS", "configuration", "curves", "joints", "modes_overview", "point_path", "save"]
 
@@ -65,9 +66,9 @@ def _label(motion: Motion, quantity: str) -> str:
 def configuration(motion: Motion, circuit: int = 0, positions: int | None = None) -> Figure:
     """The linkage in space, in several positions spread over a circuit: one strong, the others faint.
 
-    `circuit` is its index in `motion.circuits`, `positions` how many poses (1 to 100; six for an RSSR, else
-    three). Lengths are in the linkage's unit, equal along all three axes. Raises `RequestError` where there
-    is no such circuit.
+    `circuit` is its index in `motion.circuits`, `positions` how many poses (1 to 100; six for up to four
+    joints, else three). Lengths are in the linkage's unit, equal along all three axes. Raises
+    `RequestError` where there is no such circuit.
 
         >>> import sevenbar as sb
         >>> figure = configuration(sb.load("bennett").motion())
@@ -78,7 +79,7 @@ def configuration(motion: Motion, circuit: int = 0, positions: int | None = None
     """
     chosen = chosen_circuit(motion, circuit)
     if positions is None:
-        positions = 6 if motion.linkage.kind == "RSSR" else 3
+        positions = 6 if len(motion.linkage.joints) < 5 else 3
     if (
         isinstance(positions, bool)
         or not isinstance(positions, (int, np.integer))
@@ -90,35 +91,34 @@ def configuration(motion: Motion, circuit: int = 0, positions: int | None = None
     with rc_context(STYLE):
         figure = new_figure(7.0, 7.0)
         axes = figure.add_axes((0.0, 0.02, 1.0, 1.0), projection="3d")
-        stage(axes, motion, frame)
+        ends = motion.input, motion.output
+        stage(axes, frame, ends)
         for pose in poses[1:]:
-            put(bars(axes, motion, frame, ghost=True), pose)
-        put(bars(axes, motion, frame), poses[0])
+            put(bars(axes, frame, ends, ghost=True), pose)
+        put(bars(axes, frame, ends), poses[0])
         label(axes, frame, poses[0], range(len(frame.names)))
         which = f"circuit {chosen.index}, {len(poses)} position{'s' * (len(poses) > 1)}"
         figure.suptitle(f"{title(motion)}\n{which}", fontsize=11)
-        figure.legend(handles=link_keys(motion, frame), loc="lower center", ncols=4, frameon=False)
+        figure.legend(handles=keys(frame, ends), loc="lower center", ncols=4, frameon=False)
     return figure
 
 
 def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -> list[int]:
     """Rows with a pose, evenly spread by the travel of both angles, a rocking circuit's off its ends."""
-    path = walk(motion, circuit)
+    path = walk(circuit)
     solved = np.flatnonzero(~np.isnan(frame.places[:, : frame.solid]).any(axis=(1, 2)))
     ends = ((motion.input, path.input[solved]), (motion.output, path.output[solved]))
     # of a slide its whole range counts as much as half a turn
     scaled = [v * math.pi / (np.ptp(v) or 1.0) if slides(motion, column) else v for column, v in ends]
     steps = np.hypot(*(np.diff(values) for values in scaled))
     travel = np.concatenate([[0.0], np.cumsum(steps)])
-    start = 0.0 if circuit.goes_round else 0.5
-    if motion.linkage.kind != "RSSR":
-        start = 0.35  # many a loop lies flat, or folded, at zero
-    wanted = (np.arange(positions) + start) / positions * travel[-1]
+    # many a loop lies flat, or folded, at zero
+    wanted = (np.arange(positions) + 0.35) / positions * travel[-1]
     return [int(solved[np.argmin(np.abs(travel - place))]) for place in wanted]
 
 
 @dataclass(frozen=True, eq=False)
-class Pass:
+class DrawnPass:
     """A pass of a circuit as drawn: `input`, `angle` [deg, or length], `time` [s], the two rates; (n,)."""
 
     circuit: Circuit
@@ -131,11 +131,13 @@ class Pass:
     acceleration: Floats
 
 
-def passes(motion: Motion) -> list[Pass]:
+def passes(motion: Motion) -> list[DrawnPass]:
     """Every pass of every circuit; where the input goes back, the velocity is turned as it is in time."""
-    made: list[Pass] = []
+    made: list[DrawnPass] = []
     for circuit in motion.circuits:
-        path = walk(motion, circuit)
+        path = walk(circuit)
+        velocity = path.velocities(circuit.dq[:, circuit.output_column])
+        acceleration = circuit.ddq[path.rows, circuit.output_column]
         for branch, part in enumerate(path.passes):
             label = f"circuit {circuit.index}"
             if len(path.passes) > 1:
@@ -143,7 +145,6 @@ def passes(motion: Motion) -> list[Pass]:
                 if motion.law is None:
                     rise = path.input[part][-1] - path.input[part][0]
                     label += ": input rising" if rise > 0 else ": input falling"
-            rates = path.rows[part], circuit.output_column
             colour = CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)]
             style = {
                 "color": colour,
@@ -155,8 +156,7 @@ def passes(motion: Motion) -> list[Pass]:
                 path.time[part],
                 shown_value(motion, motion.output, path.output[part]),
             )
-            velocity = path.ways[branch] * circuit.dq[rates]
-            made.append(Pass(circuit, label, style, *angles, velocity, circuit.ddq[rates]))
+            made.append(DrawnPass(circuit, label, style, *angles, velocity[part], acceleration[part]))
     return made
 
 
@@ -206,7 +206,7 @@ def curves(motion: Motion, against: Literal["both", "input", "time"] = "both") -
     return figure
 
 
-def panel(axes: Axes, motion: Motion, drawn: Sequence[Pass], quantity: str, over: str) -> None:
+def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: str) -> None:
     """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
     axes.grid(lw=0.6)
     for line in drawn:
@@ -271,7 +271,7 @@ def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: f
     return min(found)[1]
 
 
-def _cut(axes: Axes, drawn: Sequence[Pass], quantity: str) -> bool:
+def _cut(axes: Axes, drawn: Sequence[DrawnPass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; tells whether it did."""
     told = [(line, told_range(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
     spans = [span for _, span in told if span is not None]
@@ -282,7 +282,7 @@ def _cut(axes: Axes, drawn: Sequence[Pass], quantity: str) -> bool:
     return True
 
 
-def _time_above(axes: Axes, motion: Motion, line: Pass) -> None:
+def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:
     rate, start = math.degrees(motion.speed), line.input[0]
 
     def time(angle: Any) -> Any:
@@ -295,7 +295,7 @@ def _time_above(axes: Axes, motion: Motion, line: Pass) -> None:
     above.set_xlabel("time [s]")
 
 
-def curve_keys(panels: Iterable[Axes], drawn: Sequence[Pass]) -> list[Line2D]:
+def curve_keys(panels: Iterable[Axes], drawn: Sequence[DrawnPass]) -> list[Line2D]:
     """One legend entry for each pass and for each kind of mark."""
     lines = {str(line.get_label()): line for axes in panels for line in axes.lines}
     if EXTREME in lines:  # drawn in each circuit's colour

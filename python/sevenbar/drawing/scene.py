@@ -13,10 +13,10 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[import-untyped]
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import A0, B0, LINK_ENDS, A, B, Chain, Skeleton, short
+from sevenbar.drawing.skeleton import Skeleton, short
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joints import KINDS
-from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.rigid import perpendicular, unit
 
 #: Colours of Okabe and Ito, told apart by colour-blind readers too.
 INPUT, OUTPUT, COUPLER, GROUND = "#0072B2", "#D55E00", "#009E73", "#808080"
@@ -30,47 +30,76 @@ POINT_COLOURS = ("#CC79A7", "#E69F00", "#56B4E9", "#000000")
 
 #: The thinnest side of the drawn box, as a share of its longest.
 THINNEST_BOX = 0.4
+#: A path shorter than this share of the linkage's extent is none.
+SAME = 1e-6
 
 
-def stage(axes: Any, motion: Motion, frame: Skeleton) -> None:
-    """Draws into 3D axes what stands still: paths, ground, bearings, joint axes; and sets the view."""
-    if isinstance(frame, Chain):
-        return stage_chain(axes, motion.linkage, frame)
-    axes.computed_zorder = False
-    axes.view_init(*view(frame))
-    axes.set_proj_type("ortho")
-    drawn = [frame.places.reshape(-1, 3)]
-    for place, colour in zip(frame.moving, (*_ends_colours(motion), *_point_colours(frame)), strict=True):
-        path = _arc(frame, place) if place in (A, B) else frame.places[:, place]
-        axes.plot(*path.T, color=colour, lw=1.1, alpha=0.85, zorder=2)
-    unit = 0.02 * frame.span
-    ground = frame.pose(0)[[A0, B0]]
-    axes.plot(*ground.T, color=GROUND, lw=3, alpha=0.6, zorder=2, solid_capstyle="round")
-    middle = np.nanmean(frame.places.reshape(-1, 3), axis=0)
-    for centre, axis, arm in zip(ground, frame.axes, _arms(frame), strict=True):
-        away = float(axis @ (centre - middle))
-        down = -math.copysign(1.0, axis[2] or 1.0)
-        side = axis * (math.copysign(1.0, away) if abs(away) > 0.1 * frame.span else down)
-        drawn.append(_bearing(axes, centre, side, unit, min(unit, max(0.4 * unit, 0.4 * arm))))
-    _equal_box(axes, np.concatenate(drawn), motion.linkage.length_unit)
-    return None
-
-
-def stage_chain(
-    axes: Any, linkage: Loop, frame: Chain, *, around: Chain | None = None, fill: float = 0.74
+def stage(
+    axes: Any,
+    frame: Skeleton,
+    ends: tuple[str, str],
+    *,
+    around: Skeleton | None = None,
+    fill: float = 0.74,
 ) -> None:
-    """Draws into 3D axes what stands still of any loop: the paths and the ground; and sets the view.
+    """Draws into 3D axes what stands still, the paths and the ground, and sets the view.
 
-    The view shows all places of `around`, of the frame itself where none is given.
+    `ends` are the columns of input and output. The view shows all places of `around`, of the frame itself
+    where none is given.
     """
-    prepare_view(axes, (around or frame).places.reshape(-1, 3), linkage.length_unit, fill)
+    whole = around or frame
+    feet = _feet(whole)
+    places = [whole.places.reshape(-1, 3), *(plate for plate, _ in feet)]
+    prepare_view(axes, np.concatenate(places), frame.linkage.length_unit, fill)
     if len(frame.places) > 1:
-        for place in frame.joints[1:-1]:
-            axes.plot(*frame.places[:, place].T, color=PATH, lw=0.8, zorder=1)
-        for place, colour in zip(frame.points, _point_colours(frame), strict=True):
-            axes.plot(*frame.places[:, place].T, color=colour, lw=1.4, alpha=0.9, zorder=2)
+        for place, colour in paths(frame, ends):
+            look = {"lw": 0.8, "zorder": 1} if colour == PATH else {"lw": 1.2, "alpha": 0.85, "zorder": 2}
+            axes.plot(*frame.places[:, place].T, color=colour, **look)
     ground = frame.pose(0)[list(frame.links[-1])]
     axes.plot(*ground.T, color=GROUND, lw=4, alpha=0.6, zorder=2, solid_capstyle="round")
+    for plate, (stem, *strokes) in feet:
+        face = Poly3DCollection([plate], facecolors="#e4e4e4", edgecolors=GROUND, lw=0.8, zorder=3)
+        axes.add_collection3d(face)
+        for line in strokes:
+            axes.plot(*line.T, color=GROUND, lw=0.8, zorder=3)
+        axes.plot(*stem.T, color=GROUND, lw=2.2, zorder=3)
+
+
+def _feet(frame: Skeleton) -> list[tuple[Floats, list[Floats]]]:
+    """The ground where an axis stands still: plates (4, 3) on the far side, or below; stems and hatches."""
+    pose, size = frame.pose(0), 0.05 * frame.span
+    feet = []
+    for joint, place in ((0, frame.links[-1][-1]), (len(frame.joints) - 1, frame.links[-1][0])):
+        axes = [ends for i, word, ends in frame.marks if i == joint and word in ("cylinder", "arm")]
+        if not axes:
+            continue
+        start, end = pose[list(axes[-1 if joint else 0])]
+        centre, side = pose[place], unit(end - start)
+        away = float(side @ (centre - np.nanmean(frame.places, axis=(0, 1))))
+        side = side * math.copysign(1.0, away if abs(away) > 0.1 * frame.span else -side[2] or 1.0)
+        u, foot = perpendicular(side), centre + 1.7 * size * side
+        v = np.cross(side, u)
+        plate = foot + size * np.stack([-u - v, u - v, u + v, v - u])
+        # strokes at 45 degrees behind the plate's edge
+        strokes = [np.stack([p * u - v, (p + 0.4) * u - v + 0.4 * side]) for p in np.linspace(-1, 0.6, 6)]
+        feet.append((plate, [np.stack([centre, foot]), *(foot + size * line for line in strokes)]))
+    return feet
+
+
+def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
+    """The places whose paths are drawn, and the colour of each: named points, then joints that carry none.
+
+    The far ends of the first and the last moving link have their link's colour where it is that of input or
+    output, all other joints a pale one.
+    """
+    colours = link_colours(frame.linkage, ends)[0]
+    found = [(place, POINT_COLOURS[i % len(POINT_COLOURS)]) for i, place in enumerate(frame.points)]
+    runs = {0: colours[0], len(frame.inner) - 1: colours[-1]}
+    for i, place in enumerate(frame.inner):
+        apart = np.abs(frame.places[:, list(frame.points)] - frame.places[:, [place]])
+        if not (np.nanmax(apart, axis=(0, 2)) < SAME * frame.span).any():
+            found.append((place, PATH if runs.get(i, COUPLER) == COUPLER else runs[i]))
+    return found
 
 
 def prepare_view(axes: Any, places: Floats, unit: str, fill: float = 0.74) -> None:
@@ -85,7 +114,7 @@ def prepare_view(axes: Any, places: Floats, unit: str, fill: float = 0.74) -> No
 
 def view(frame: Skeleton) -> tuple[float, float]:
     """Elevation and azimuth [deg] from which the whole motion of a frame is seen well."""
-    return _wide_view(frame.places.reshape(-1, 3)) if isinstance(frame, Chain) else _view(frame)
+    return _wide_view(frame.places.reshape(-1, 3))
 
 
 def _wide_view(places: Floats) -> tuple[float, float]:
@@ -94,74 +123,12 @@ def _wide_view(places: Floats) -> tuple[float, float]:
     elevation, azimuth = (grid.ravel() for grid in np.meshgrid([20.0, 30.0, 45.0], azimuths))
     kept = places[~np.isnan(places).any(axis=1)]
     spread = (kept - kept.mean(axis=0)).T @ (kept - kept.mean(axis=0))
-    screens = [_directions(*view) for view in zip(elevation, azimuth, strict=True)]
+    screens = [directions(*view) for view in zip(elevation, azimuth, strict=True)]
     covered = np.array([np.sqrt(max(np.linalg.det(s @ spread @ s.T), 0.0)) for s in screens])
     # among like views the usual one, x to the right and y away
     unusual = (1 - np.cos(np.radians(azimuth + 60.0))) / 2 + np.abs(elevation - 30.0) / 100
     best = int(np.argmax(covered / (covered.max() or 1.0) - 0.3 * unusual))
     return float(elevation[best]), float(azimuth[best])
-
-
-def _arc(frame: Skeleton, ball: int) -> Floats:
-    """The arc of a circle that A or B runs over, smooth however coarse the rows are."""
-    end = 0 if ball == A else 1
-    centre = frame.pose(0)[(A0, B0)[end]]
-    arms = frame.places[:, ball] - centre
-    arms = arms[~np.isnan(arms).any(axis=1)]
-    across = np.cross(frame.axes[end], arms[0])
-    turn = np.unwrap(np.arctan2(arms @ across, arms @ arms[0]))
-    grid = np.linspace(turn.min(), turn.max(), 241)[:, None]
-    arc: Floats = centre + np.cos(grid) * arms[0] + np.sin(grid) * across
-    return arc
-
-
-def _arms(frame: Skeleton) -> tuple[float, float]:
-    distances = np.linalg.norm(frame.places[:, [A, B]] - frame.places[:, [A0, B0]], axis=2)
-    crank, rocker = np.nanmax(distances, axis=0)
-    return float(crank), float(rocker)
-
-
-def _view(frame: Skeleton) -> tuple[float, float]:
-    """Elevation and azimuth [deg] that show both circles open and the ground link from the side."""
-    # none along an axis of the box, whose labels would fall together
-    azimuths = (np.arange(-180.0, 180.0, 90.0)[:, None] + [20.0, 30.0, 45.0, 60.0, 70.0]).ravel()
-    elevation, azimuth = (grid.ravel() for grid in np.meshgrid([20.0, 30.0, 40.0, 50.0], azimuths))
-    up, round_ = np.radians(elevation), np.radians(azimuth)
-    towards = np.stack([np.cos(up) * np.cos(round_), np.cos(up) * np.sin(round_), np.sin(up)], axis=1)
-    opened = np.abs(towards @ frame.axes.T).min(axis=1)
-    ground = frame.pose(0)[B0] - frame.pose(0)[A0]
-    end_on = np.abs(towards @ ground) / (np.linalg.norm(ground) or 1.0)
-    # among like views the usual one, x to the right and y away
-    unusual = (1 - np.cos(np.radians(azimuth + 60.0))) / 2 + np.abs(elevation - 30.0) / 100
-    best = int(np.argmax(np.minimum(opened, 0.6) - 0.4 * end_on**2 - 0.3 * unusual))
-    return float(elevation[best]), float(azimuth[best])
-
-
-def _bearing(axes: Any, centre: Floats, side: Floats, unit: float, radius: float) -> Floats:
-    """An R joint on the ground: cylinder, axis, hatched plate on the far side; returns their hull (n, 3)."""
-    across = np.cross(side, np.eye(3)[np.argmin(np.abs(side))])
-    u = across / np.linalg.norm(across)
-    v = np.cross(side, u)
-    turn = np.linspace(0, math.tau, 17)
-    ring = radius * (np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v)
-    near, far = centre - 1.8 * unit * side + ring, centre + 1.8 * unit * side + ring
-    wall = [np.stack([near[i], near[i + 1], far[i + 1], far[i]]) for i in range(16)]
-    foot = centre + 4.5 * unit * side
-    corners = [foot + 2.8 * unit * (p * u + q * v) for p, q in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    plate = Poly3DCollection([corners], facecolors="#e4e4e4", edgecolors=GROUND, lw=0.8, zorder=3)
-    axes.add_collection3d(plate)
-    # strokes at 45 degrees behind the plate's edge say "ground"
-    for p in np.linspace(-1, 0.6, 6):
-        ends = foot + 2.8 * unit * np.stack([p * u - v, (p + 0.4) * u - v + 0.4 * side])
-        axes.plot(*ends.T, color=GROUND, lw=0.8, zorder=3)
-    axes.plot(*np.stack([centre, foot]).T, color=GROUND, lw=2.2, zorder=3)
-    ends = np.stack([centre - 8 * unit * side, centre + 8 * unit * side])
-    axes.plot(*ends.T, color="#404040", lw=0.9, ls=(0, (7, 2, 1.5, 2)), zorder=4)
-    # apart, for faces of unlike corner counts in one collection are padded with what the memory held
-    for faces in (wall, [near[:-1], far[:-1]]):
-        look = {"facecolors": "#b8b8b8", "edgecolors": "#707070", "lw": 0.25, "zorder": 5}
-        axes.add_collection3d(Poly3DCollection(faces, **look, shade=True))
-    return np.concatenate([ends, near, far, np.stack(corners)])
 
 
 def _equal_box(axes: Any, drawn: Floats, unit: str, fill: float = 0.74) -> None:
@@ -179,53 +146,15 @@ def _equal_box(axes: Any, drawn: Floats, unit: str, fill: float = 0.74) -> None:
         scale.set_tick_params(labelsize=7.5, pad=10 * stand_off - 8)
         scale.set_label_text(f"{name} [{unit}]")
         scale.labelpad = 25 * stand_off - 21
-    right, above = _screen(axes)
+    right, above = directions(axes.elev, axes.azim)
     seen = max(np.abs(right) @ extent, np.abs(above) @ extent * 1.06) / np.linalg.norm(extent)
     axes.set_box_aspect(extent, zoom=fill / seen)
-
-
-def _ends_colours(motion: Motion) -> tuple[str, str]:
-    """The colours of links 1 and 3."""
-    return (INPUT, OUTPUT) if motion.input == motion.linkage.joints[0].name else (OUTPUT, INPUT)
-
-
-def _point_colours(frame: Skeleton) -> list[str]:
-    return [POINT_COLOURS[i % len(POINT_COLOURS)] for i in range(len(frame.names) - frame.solid)]
 
 
 Bars = list[tuple[Any, tuple[int, ...]]]
 
 
-def bars(axes: Any, motion: Motion, frame: Skeleton, *, ghost: bool = False) -> Bars:
-    """New artists for one pose, each with the places it joins: bars, balls, points; `put` moves them."""
-    if isinstance(frame, Chain):
-        return chain_bars(axes, motion.linkage, frame, (motion.input, motion.output), ghost=ghost)
-    first, second = _ends_colours(motion)
-    order, width = (3, 2.0) if ghost else (6, 5.0)
-    look = {"alpha": 0.28 if ghost else 1.0, "zorder": order}
-    made: Bars = []
-
-    def add(places: tuple[int, ...], **style: Any) -> None:
-        line = Line3D([], [], [], solid_capstyle="round", **look | style)
-        axes.add_line(line)
-        made.append((line, places))
-
-    for places in frame.stays:
-        add(places, color=COUPLER if places[::2] == LINK_ENDS[2] else GROUND, lw=width / 3)
-    for link, colour in ((2, COUPLER), (1, first), (3, second)):
-        outline = [] if ghost else [withStroke(linewidth=width + 1.6, foreground="#202020"), Normal()]
-        add(LINK_ENDS[link], color=colour, lw=width, path_effects=outline)
-    ball = {"ls": "", "marker": "o", "zorder": order + 1}
-    size = 3.0 if ghost else 9.0
-    add((A, B), **ball, color="#303030", ms=size)
-    if not ghost:
-        add((A, B), **ball, color="#f4f4f4", ms=size / 2.6)
-    for place, colour in zip(range(4, len(frame.names)), _point_colours(frame), strict=True):
-        add((place,), **ball, color=colour, ms=0.6 * size)
-    return made
-
-
-def chain_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[str]]:
+def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[str]]:
     """The colours of the moving links and of the joints, from the columns of input and output."""
     owner = {column: i for i, joint in enumerate(linkage.joints) for column in joint.columns}
     count = len(linkage.joints)
@@ -238,17 +167,19 @@ def chain_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list
     return links, joints
 
 
-def chain_bars(
+def bars(
     axes: Any,
-    linkage: Loop,
-    frame: Chain,
+    frame: Skeleton,
     ends: tuple[str, str],
     *,
     ghost: bool = False,
     scale: float = 1.0,
 ) -> Bars:
-    """`bars` of any loop; `ends` are the columns of input and output, `scale` that of the widths."""
-    colours, joint_colours = chain_colours(linkage, ends)
+    """New artists for one pose, each with the places it joins: links, joints, points; `put` moves them.
+
+    `ends` are the columns of input and output, `scale` is that of the widths.
+    """
+    colours, joint_colours = link_colours(frame.linkage, ends)
     order, width = (3, 1.5) if ghost else (6, 4.0 * scale)
     look = {"alpha": 0.25 if ghost else 1.0, "zorder": order, "solid_capstyle": "round"}
     made: Bars = []
@@ -267,7 +198,7 @@ def chain_bars(
     if not ghost:
         for joint, word, joined in frame.marks:
             add(joined, **_mark(word, joint_colours[joint], scale), zorder=order + (word != "axis"))
-    for place, colour in zip(frame.points, _point_colours(frame), strict=True):
+    for place, colour in paths(frame, ends)[: len(frame.points)]:
         add((place,), ls="", marker="o", color=colour, ms=3.0 if ghost else 7.0 * scale, zorder=order + 2)
     return made
 
@@ -294,7 +225,7 @@ def put(made: Bars, pose: Floats) -> None:
 
 def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> None:
     """Writes the names of places of a pose, each on its freest side; what falls together shares one label."""
-    screen = _screen(axes)
+    screen = directions(axes.elev, axes.azim)
     seen = pose @ screen.T
     lines = frame.lines(pose, screen)
     named: dict[int, list[str]] = {}
@@ -319,12 +250,8 @@ def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> No
         )
 
 
-def _screen(axes: Any) -> Floats:
-    """The directions, unit vectors (2, 3), that are seen as right and up."""
-    return _directions(axes.elev, axes.azim)
-
-
-def _directions(elevation: float, azimuth: float) -> Floats:
+def directions(elevation: float, azimuth: float) -> Floats:
+    """The directions, unit vectors (2, 3), seen as right and up from an elevation and an azimuth [deg]."""
     up, round_ = math.radians(elevation), math.radians(azimuth)
     above = [-math.sin(up) * math.cos(round_), -math.sin(up) * math.sin(round_), math.cos(up)]
     return np.array([[-math.sin(round_), math.cos(round_), 0.0], above])
@@ -336,38 +263,16 @@ def _distance(spot: Floats, line: Floats) -> float:
     return float(np.linalg.norm(spot - line[0] - share * along))
 
 
-def link_keys(motion: Motion, frame: Skeleton) -> list[Line2D]:
-    """The legend's entries of a 3D view."""
-    if isinstance(frame, Chain):
-        paths = [
-            Line2D([], [], color=colour, lw=1.4, label=f"path of {frame.names[place]}")
-            for place, colour in zip(frame.points, _point_colours(frame), strict=True)
-        ]
-        inner = frame.places[:, list(frame.joints[1:-1])]
-        if np.nanmax(np.ptp(inner[~np.isnan(inner).any(axis=(1, 2))], axis=0)) > 1e-6 * frame.span:
-            paths.insert(0, Line2D([], [], color=PATH, lw=0.8, label="paths of the joints"))
-        return [*chain_keys(motion.linkage, (motion.input, motion.output)), *paths]
-    keys = [
-        Line2D([], [], color=INPUT, lw=5, label=f"input: {short(motion.input, 24)}"),
-        Line2D([], [], color=COUPLER, lw=5, label="coupler"),
-        Line2D([], [], color=OUTPUT, lw=5, label=f"output: {short(motion.output, 24)}"),
-        Line2D([], [], color=GROUND, lw=3, alpha=0.6, label="ground"),
-    ]
-    for place, colour in zip(frame.moving, (*_ends_colours(motion), *_point_colours(frame)), strict=True):
-        keys.append(Line2D([], [], color=colour, lw=1.1, label=f"path of {frame.names[place]}"))
-    return [*keys, Line2D([], [], color="#404040", lw=0.9, ls=(0, (7, 2, 1.5, 2)), label="joint axis")]
-
-
-def chain_keys(linkage: Loop, ends: tuple[str, str]) -> list[Line2D]:
-    """The legend's entries of any loop: its links and the kinds of its joints."""
-    colours, _ = chain_colours(linkage, ends)
-    names = [f"input: {short(ends[0], 24)}", f"output: {short(ends[1], 24)}"]
-    keys = [Line2D([], [], color=c, lw=5, label=name) for c, name in zip((INPUT, OUTPUT), names, strict=True)]
+def keys(frame: Skeleton, ends: tuple[str, str]) -> list[Line2D]:
+    """The legend's entries: the links, the kinds of joints, and the paths where there are several poses."""
+    colours, _ = link_colours(frame.linkage, ends)
+    links = [(INPUT, f"input: {short(ends[0], 24)}"), (OUTPUT, f"output: {short(ends[1], 24)}")]
     if COUPLER in colours:
-        keys.append(Line2D([], [], color=COUPLER, lw=5, label="other moving links"))
-    keys.append(Line2D([], [], color=GROUND, lw=4, alpha=0.6, label="ground"))
+        links.append((COUPLER, "coupler" if colours.count(COUPLER) == 1 else "other moving links"))
+    found = [Line2D([], [], color=colour, lw=5, label=name) for colour, name in links]
+    found.append(Line2D([], [], color=GROUND, lw=4, alpha=0.6, label="ground"))
     for letter, kind in KINDS.items():
-        if letter in linkage.kind:
+        if letter in frame.linkage.kind:
             mark = kind.shape
             style = {
                 "cylinder": {"marker": "s", "ms": 7},
@@ -375,5 +280,12 @@ def chain_keys(linkage: Loop, ends: tuple[str, str]) -> list[Line2D]:
                 "plate": {"marker": "D", "ms": 7, "mfc": "white", "mew": 1.6},
             }
             look = style.get(mark) or ({"marker": "P", "ms": 8} if mark == "arm" else _mark(mark, JOINT))
-            keys.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=kind.legend))
-    return keys
+            found.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=kind.legend))
+    names = {}
+    for place, colour in paths(frame, ends) if len(frame.places) > 1 else ():
+        line = frame.places[:, place]
+        extent = np.ptp(line[~np.isnan(line).any(axis=1)], axis=0).max()
+        if place in frame.points or extent > SAME * frame.span:
+            name = "paths of the joints" if colour == PATH else f"path of {frame.names[place]}"
+            names[name] = Line2D([], [], color=colour, lw=0.8 if colour == PATH else 1.4, label=name)
+    return found + list(names.values())

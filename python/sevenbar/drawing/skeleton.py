@@ -1,8 +1,7 @@
-"""The linkage in space: the places of its joints, links and points along a circuit."""
+"""The linkage as it is drawn: places along its links, marks of its joints, and named points, pose by pose."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,149 +12,39 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.geometry import Loop, Point
-from sevenbar.kinematics.motion import Circuit, Integers, Motion
-from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.motion import Circuit, Motion
+from sevenbar.kinematics.poses import at_row, frames_along, frames_of, walk
 
-#: Places of the pose: the two centres and the two balls; further named points come after them.
-A0, A, B, B0 = 0, 1, 2, 3
-
-
-#: The places between which each link lies.
-LINK_ENDS = {1: (A0, A), 2: (A, B), 3: (B, B0), 4: (B0, A0)}
-
-
-@dataclass(frozen=True, eq=False)
-class Walk:
-    """A circuit as it is walked; closed by its first row, a turn on, unless a law drives.
-
-    `rows` index the circuit; `input`, `output` [rad] and `time` [s] run on over the closure, each (n,).
-    `passes` are the stretches between input dead centres, both ends included; `ways` has a factor for the
-    velocities of each: -1 where the input goes back, against its speed, else 1.
-    """
-
-    rows: Integers
-    input: Floats
-    output: Floats
-    time: Floats
-    passes: tuple[slice, ...]
-    ways: tuple[float, ...]
-
-
-def walk(motion: Motion, circuit: Circuit) -> Walk:
-    """The rows of a circuit in the order of its motion."""
-    count = len(circuit.time)
-    starts = [0, *(np.flatnonzero(np.diff(circuit.branch)) + 1), count]
-    rows = np.arange(count)
-    if motion.law is not None or count < 2 or not circuit.closed:
-        passes = tuple(slice(a, b) for a, b in pairwise(starts))
-        ways = _ways(motion, circuit.input, passes)
-        return Walk(rows, circuit.input, circuit.output, circuit.time, passes, ways)
-    # one that turns back on the way is walked as it rises
-    way = circuit.turns * math.copysign(math.tau, motion.speed if circuit.goes_round else 1.0)
-    gained = 0.0 if circuit.output_range is not None else _turns_gained(circuit.output)
-    last = circuit.input[0] + way
-    period = circuit.time[-1] + abs(last - circuit.input[-1]) / abs(motion.speed)
-    inputs = np.append(circuit.input, last)
-    passes = tuple(slice(a, b + 1) for a, b in pairwise(starts))
-    return Walk(
-        np.append(rows, 0),
-        inputs,
-        np.append(circuit.output, circuit.output[0] + gained),
-        np.append(circuit.time, period),
-        passes,
-        _ways(motion, inputs, passes),
-    )
-
-
-def _ways(motion: Motion, inputs: Floats, passes: Sequence[slice]) -> tuple[float, ...]:
-    if motion.law is not None or len(passes) < 2:
-        return (1.0,) * len(passes)
-    rises = (float(inputs[part][-1] - inputs[part][0]) for part in passes)
-    return tuple(math.copysign(1.0, rise * motion.speed) for rise in rises)
-
-
-def _turns_gained(angles: Floats) -> float:
-    """The whole turns [rad] between the first row of a closed circuit and the first again; 0 if unknown."""
-    ahead = float(2 * angles[-1] - angles[-2] - angles[0])
-    return round(ahead / math.tau) * math.tau if math.isfinite(ahead) else 0.0
-
-
-def along(motion: Motion, circuit: Circuit, path: Walk, column: int) -> Floats:
-    """A column [rad, or length] of a circuit along its walk; a turn runs on over the closure, (n,)."""
-    if column == circuit.output_column:
-        return path.output
-    values: Floats = circuit.q[path.rows, column]
-    if len(path.rows) > len(circuit.time) and motion.linkage.column_kinds[column] == "turn":
-        values[-1] += _turns_gained(circuit.q[:, column])
-    return values
+#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate reaches past what slides
+#: on it, as shares of the linkage's extent.
+AXIS, CYLINDER, PLATE = 0.075, 0.032, 0.04
 
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """The places of a linkage along a walk, in the report frame [length].
+    """The places of a loop in poses, in the report frame [length]: its joints and links, then named points.
 
-    `places` (n, 4 + k, 3): A0, A, B, B0 and k further named points, `names` of each; `axes` (2, 3) unit
-    vectors along the joints at A0 and B0; `stays` the chains of places that tie further points to links.
+    `places` (n, k, 3), `names` of each; `links` holds the places along each link, the ground's last; `marks`
+    what is drawn of each joint: its number, a word and the places it joins. `joints` are the places of the
+    joints, `points` those of the named points, `stays` the places that tie each point to its link. `extent`
+    [length] is what the sizes of the marks are shares of. `reach` is how far joints slide across their axes,
+    least and most (2,) by the joint's number.
     """
 
+    linkage: Loop
     places: Floats
     names: tuple[str, ...]
-    axes: Floats
-    stays: tuple[tuple[int, int, int], ...]
-
-    def pose(self, row: float) -> Floats:
-        """The places (4 + k, 3) at a row, between two rows on the straight line between them."""
-        low = min(int(row), len(self.places) - 1)
-        high, share = min(low + 1, len(self.places) - 1), row - low
-        between: Floats = (1 - share) * self.places[low] + share * self.places[high]
-        return self.places[low] if share == 0 else between
-
-    @property
-    def solid(self) -> int:
-        """How many places, from the first on, a pose cannot do without."""
-        return 4
-
-    @property
-    def standing(self) -> tuple[int, ...]:
-        """The named places that stand still."""
-        return (A0, B0)
-
-    def lines(self, pose: Floats, screen: Floats) -> list[Floats]:
-        """The lines (2, 2) of a pose, as seen on the screen, that labels should keep off."""
-        seen = pose @ screen.T
-        lines = [seen[[a, b]] for a, b in LINK_ENDS.values()]
-        for centre, axis in zip((A0, B0), self.axes @ screen.T * self.span / 6, strict=True):
-            lines.append(np.stack([seen[centre] - axis, seen[centre] + axis]))
-        return lines
-
-    @property
-    def moving(self) -> tuple[int, ...]:
-        """The places whose paths are drawn."""
-        return (A, B, *range(4, len(self.names)))
-
-    @cached_property
-    def span(self) -> float:
-        """The largest extent along x, y or z [length]."""
-        high, low = (one.reduce(one.reduce(self.places, axis=0), axis=0) for one in (np.fmax, np.fmin))
-        return float((high - low).max())
-
-
-@dataclass(frozen=True, eq=False)
-class Chain(Skeleton):
-    """The places of any loop: its joints and links, then named points.
-
-    `axes` (n, 3) are those of the first row, through each joint. `links` holds the places along each link,
-    the ground's last; `marks` what is drawn of each joint: a word and the places it joins. `paths` are the
-    places whose paths are drawn, `points` the named ones among them. `reach` is how far joints slide across
-    their axes, least and most (2,) by the joint's number.
-    """
-
     links: tuple[tuple[int, ...], ...]
     marks: tuple[tuple[int, str, tuple[int, ...]], ...]
     joints: tuple[int, ...]
     points: tuple[int, ...]
+    stays: tuple[tuple[int, int, int], ...]
     extent: float
     reach: Mapping[int, tuple[Floats, Floats]]
+
+    def pose(self, row: float) -> Floats:
+        """The places (k, 3) at a row, between two rows on the straight line between them."""
+        return at_row(self.places, row)
 
     @property
     def solid(self) -> int:
@@ -164,13 +53,13 @@ class Chain(Skeleton):
 
     @property
     def standing(self) -> tuple[int, ...]:
-        """The named places that stand still."""
+        """The joints that stand still."""
         return (self.joints[0], self.joints[-1])
 
     @property
-    def moving(self) -> tuple[int, ...]:
-        """The places whose paths are drawn."""
-        return (*self.joints[1:-1], *self.points)
+    def inner(self) -> tuple[int, ...]:
+        """The joints between moving links, whose paths are drawn."""
+        return self.joints[1:-1]
 
     def lines(self, pose: Floats, screen: Floats) -> list[Floats]:
         """The lines (2, 2) of a pose, as seen on the screen, that labels should keep off."""
@@ -179,24 +68,21 @@ class Chain(Skeleton):
         ends += [(places[0], places[-1]) for _, _, places in self.marks]
         return [seen[list(pair)] for pair in ends]
 
+    @cached_property
+    def span(self) -> float:
+        """The largest extent along x, y or z [length]."""
+        high, low = (one.reduce(one.reduce(self.places, axis=0), axis=0) for one in (np.fmax, np.fmin))
+        return float((high - low).max())
 
-#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate reaches past what slides
-#: on it, as shares of the linkage's extent.
-AXIS, CYLINDER, PLATE = 0.075, 0.032, 0.04
 
+def skeleton_of(
+    linkage: Loop, frames: Floats, points: Sequence[Point] = (), *, like: Skeleton | None = None
+) -> Skeleton:
+    """The places of a loop from the frames (n, moving links, 4, 4) of its links in n poses.
 
-def chain(
-    linkage: Loop,
-    frames: Floats,
-    points: Sequence[tuple[str, int, Floats]] = (),
-    *,
-    like: Chain | None = None,
-) -> Chain:
-    """The places of a loop from the frames (n, moving links, 4, 4) of its links along a walk.
-
-    `points` are named places on links, (n, 3) each. Each joint is drawn where its axis was placed, each
-    link from joint to joint; in Denavit-Hartenberg rows along the offset, then along the common normal.
-    `like` is that of the whole motion where the frames show only a part of it.
+    Each joint is drawn where its axis was placed, each link from joint to joint; in Denavit-Hartenberg rows
+    along the offset, then along the common normal. `like` is that of the whole motion where the
+    frames show only a part of it.
     """
     rows, count = len(frames), len(linkage.joints)
     after = np.concatenate([frames, np.broadcast_to(linkage.ground, (rows, 1, 4, 4))], axis=1)
@@ -268,26 +154,26 @@ def chain(
         links.append((start, *inner, end))
     solid = len(places)
     named = [""] * solid
+    letters = {1: "A", 2: "B"} if linkage.kind == "RSSR" else {}  # those of the paper
     for i, joint in enumerate(linkage.joints):
-        named[feet[i][1]] = short(joint.name, 24)
-    for name, _, place in points:
-        add(place)
-        named.append(short(name, 24))
+        named[feet[i][1]] = short(letters.get(i, joint.name), 24)
+    for point in points:
+        place = linkage.point_frames[point.link - 1] @ (*point.at, 1.0)
+        add((after[:, point.link - 1] @ place if point.link < count else place)[..., :3])
+        named.append(short(point.name, 24))
     own = tuple(range(solid, len(places)))
-    stays = tuple(
-        (links[link - 1][0], place, links[link - 1][-1])
-        for place, (_, link, _) in zip(own, points, strict=True)
-    )
-    joints = tuple(foot for _, foot in feet)
-    return Chain(
+    return Skeleton(
+        linkage,
         np.stack(places, axis=1),
         tuple(named),
-        after[0, :, :3, 2],
-        stays,
         links=tuple(links),
         marks=tuple(marks),
-        joints=joints,
+        joints=tuple(foot for _, foot in feet),
         points=own,
+        stays=tuple(
+            (links[point.link - 1][0], place, links[point.link - 1][-1])
+            for place, point in zip(own, points, strict=True)
+        ),
         extent=span,
         reach=reach,
     )
@@ -311,91 +197,27 @@ def _arc_between(centre: Floats, start: Floats, end: Floats) -> list[Floats]:
     return [centre + chord / np.where(n > 1e-9, n, 1.0) for chord, n in zip(chords, lengths, strict=True)]
 
 
-def frames_of(linkage: Loop, q: Floats) -> Floats:
-    """The frames (n, moving links, 4, 4) of the links in the report frame, from joint values (n, columns)."""
-    now = np.broadcast_to(linkage.base, (len(q), 4, 4))
-    found = []
-    for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
-        found.append(now @ joint.motion(q[:, own]))
-        now = found[-1] @ link
-    return np.stack(found, axis=1)
-
-
-def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
-    """The frames (n, moving links, 4, 4) of the links along rows of a circuit."""
-    frames = np.tile(np.eye(4), (len(rows), len(linkage.links), 1, 1))
-    for i in range(len(linkage.links)):
-        x, y, z = (float(value) for value in inverse(linkage.point_frames[i])[:3, 3])
-        frames[:, i, :3, 3] = circuit.point(i + 1, (x, y, z)).position[rows]
-        frames[:, i, :3, :3] = circuit.link_motion(i + 1).rotation[rows]
-    return frames
-
-
 def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
     """The places of the linkage along the walk of a circuit."""
-    linkage: Loop = motion.linkage
-    if linkage.kind != "RSSR":
-        rows = walk(motion, circuit).rows
-        poses = frames_of(linkage, circuit.q[rows])
-        # there a ball's turns have no value, but the links a place
-        lost = np.flatnonzero(circuit.status[rows] == "turns-undefined")
-        if lost.size:
-            poses[lost] = frames_along(linkage, circuit, rows[lost])
-        if np.isnan(poses).any(axis=(1, 2, 3)).all():
-            raise _nothing(circuit)
-        return chain(
-            linkage,
-            poses,
-            [(p.name, p.link, circuit.point(p.link, p.at).position[rows]) for p in linkage.points],
+    frames = frames_along(motion.linkage, circuit, walk(circuit).rows)
+    if np.isnan(frames).any(axis=(1, 2, 3)).all():
+        raise RequestError(
+            f"circuit: circuit {circuit.index} has no pose at the inputs of the law; nothing to draw"
         )
-    rows = walk(motion, circuit).rows
-    traces = [circuit.point(point.link, point.at).position[rows] for point in linkage.points]
-    solved = np.flatnonzero(~np.isnan(traces[0]).any(axis=1) & ~np.isnan(traces[1]).any(axis=1))
-    if solved.size == 0:
-        raise _nothing(circuit)
-    frames = (linkage.base, linkage.ground)
-    axes = np.stack([frame[:3, 2] for frame in frames])
-    centres = []
-    for frame, axis, trace in zip(frames, axes, traces, strict=False):
-        arm = trace[solved[0]] - frame[:3, 3]
-        centres.append(np.broadcast_to(frame[:3, 3] + (arm @ axis) * axis, trace.shape))
-    places = np.stack([centres[0], traces[0], traces[1], centres[1], *traces[2:]], axis=1)
-    names = ("A₀", "A", "B", "B₀", *(short(point.name, 24) for point in linkage.points[2:]))
-    ends = [LINK_ENDS[point.link] for point in linkage.points[2:]]
-    return Skeleton(places, names, axes, tuple((a, 4 + i, b) for i, (a, b) in enumerate(ends)))
+    return skeleton_of(motion.linkage, frames, motion.linkage.added_points)
 
 
-def _nothing(circuit: Circuit) -> RequestError:
-    return RequestError(
-        f"circuit: circuit {circuit.index} has no pose at the inputs of the law; nothing to draw"
-    )
+def places_of(q: Floats, frame: Skeleton) -> Floats:
+    """The places (n, k, 3) of poses given by joint values (n, columns), in the order of those of `frame`."""
+    linkage = frame.linkage
+    return skeleton_of(linkage, frames_of(linkage, q), linkage.added_points, like=frame).places
+
+
+def one_pose(frame: Skeleton, row: int) -> Skeleton:
+    """The places of one row alone."""
+    return replace(frame, places=frame.places[row : row + 1])
 
 
 def short(text: str, width: int) -> str:
     """The text, cut to so many letters."""
     return text if len(text) <= width else text[: width - 1] + "…"
-
-
-def places_of(linkage: Loop, q: Floats, frame: Skeleton) -> Floats:
-    """The places (n, k, 3) of poses given by joint values (n, columns), in the order of those of `frame`."""
-    frames = frames_of(linkage, q)
-    points = [(point.name, point.link, _carried(linkage, frames, point)) for point in linkage.points]
-    if isinstance(frame, Chain):
-        return chain(linkage, frames, points, like=frame).places
-    traces = [trace for _, _, trace in points]
-    centres = [np.broadcast_to(frame.pose(0)[centre], traces[0].shape) for centre in (A0, B0)]
-    return np.stack([centres[0], traces[0], traces[1], centres[1], *traces[2:]], axis=1)
-
-
-def _carried(linkage: Loop, frames: Floats, point: Point) -> Floats:
-    """Where a point of a link is (n, 3) in poses given by the frames of the links."""
-    place = linkage.point_frames[point.link - 1] @ np.array([*point.at, 1.0])
-    if point.link > len(linkage.links):
-        return np.broadcast_to(place[:3], (len(frames), 3))
-    moved: Floats = (frames[:, point.link - 1] @ place)[:, :3]
-    return moved
-
-
-def one_pose(frame: Chain, row: int) -> Chain:
-    """The places of one row alone."""
-    return replace(frame, places=frame.places[row : row + 1])

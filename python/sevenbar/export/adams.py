@@ -17,7 +17,7 @@ from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.joints import Step
-from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.rigid import about, inverse
 from sevenbar.kinematics.rigid import pose as matrix
 from sevenbar.text.units import LENGTHS
 
@@ -324,8 +324,7 @@ class _Commands:
         turn = frame[:3, :3]
         first = math.atan2(turn[0, 2], -turn[1, 2]) if math.hypot(turn[0, 2], turn[1, 2]) > 1e-12 else 0.0
         # what is left after the first, so that the three belong together where it is not defined
-        cosine, sine = math.cos(first), math.sin(first)
-        turn = np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]]) @ turn
+        turn = about(2, -first) @ turn
         second = math.atan2(-turn[1, 2], turn[2, 2])
         third = math.atan2(-turn[0, 1], turn[0, 0])
         location = ", ".join(map(_number, self.scale * frame[:3, 3]))

@@ -9,7 +9,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, OutputError
-from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid, across
+from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
+from sevenbar.kinematics.rigid import perpendicular
 from sevenbar.text.units import LENGTHS
 
 
@@ -56,7 +57,7 @@ def _primitive(piece: Solid, scale: float, part: Part) -> Any:
         corner = piece.start - piece.width / 2 * (piece.side + other)
         plane = _plane(library, scale * corner, piece.side, along)
         return library.Solid.make_box(scale * piece.width, scale * piece.width, scale * length, plane)
-    plane = _plane(library, scale * piece.start, across(along), along)
+    plane = _plane(library, scale * piece.start, perpendicular(along), along)
     return library.Solid.make_cylinder(scale * piece.radius, scale * length, plane)
 
 
@@ -73,10 +74,10 @@ def _free_of_arms(ball: Ball, part: Part) -> tuple[Floats, Floats]:
         return np.eye(3)[0], np.eye(3)[2]
     seam = -np.sum(arms[:2], axis=0)
     if np.linalg.norm(seam) < 1e-3:
-        seam = across(arms[0])
+        seam = perpendicular(arms[0])
     pole = np.cross(arms[0], seam)
     if np.linalg.norm(pole) < 1e-3:
-        pole = across(seam / np.linalg.norm(seam))
+        pole = perpendicular(seam)
     return seam, pole
 
 

@@ -13,10 +13,12 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import GROUND, JOINT, chain_colours
+from sevenbar.drawing.scene import GROUND, JOINT, link_colours
 from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.export.pose import Pose, shortest_link, size_of
-from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.rigid import inverse, perpendicular
+from sevenbar.kinematics.rigid import pose as matrix
+from sevenbar.kinematics.rigid import unit as unit_vector
 
 #: Sizes as shares of the height of a hub. A hole is wider than its shaft by what a fit would never be, so
 #: that no two parts touch.
@@ -75,18 +77,9 @@ def length_of(solid: Rod | Bar) -> float:
 def frame_of(solid: Rod | Bar) -> Floats:
     """The frame (4, 4) in the middle of a rod or a bar: z along it, x along a bar's side."""
     along = (solid.end - solid.start) / length_of(solid)
-    side = solid.side if isinstance(solid, Bar) else across(along)
-    frame = np.eye(4)
-    frame[:3, :3] = np.stack([side, np.cross(along, side), along], axis=1)
-    frame[:3, 3] = (solid.start + solid.end) / 2
-    return frame
-
-
-def across(axis: Floats) -> Floats:
-    """A unit vector at right angles to an axis."""
-    way = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    unit: Floats = way / np.linalg.norm(way)
-    return unit
+    side = solid.side if isinstance(solid, Bar) else perpendicular(along)
+    turn = np.stack([side, np.cross(along, side), along], axis=1)
+    return matrix(turn, (solid.start + solid.end) / 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +227,7 @@ class _Build:
                     continue
                 off = way - (way @ outward) * outward
                 length = float(np.linalg.norm(off))
-                off = off / length if length > 1e-3 * float(np.linalg.norm(way)) else across(outward)
+                off = off / length if length > 1e-3 * float(np.linalg.norm(way)) else perpendicular(outward)
                 places.insert(len(places) - 1 if at_end else 1, here + ELBOW * unit * off)
         return np.array(places)
 
@@ -346,11 +339,8 @@ def _universal(
         build.hub(middle, way, True, None)
         pins.append(Rod(pose.near[i, :3, 3], middle + 0.46 * unit * way, SHAFT * unit))
         middles.append(middle)
-    square = np.cross(axes[0], axes[1])
-    square /= np.linalg.norm(square)
-    frame = np.eye(4)
-    frame[:3, :3] = np.stack([square, np.cross(axes[0], square), axes[0]], axis=1)
-    frame[:3, 3] = centre
+    square = unit_vector(np.cross(*axes))
+    frame = matrix(np.stack([square, np.cross(axes[0], square), axes[0]], axis=1), centre)
     cross = Part("", 0, (*pins, Ball(centre, 1.5 * SHAFT * unit)), (), JOINT)
     return frame, cross, (middles[0], middles[1])
 
@@ -409,7 +399,7 @@ def _moved(part: Part, frame: Floats) -> Part:
 
 def _link_colours(pose: Pose) -> list[str]:
     """The figures' colours of the moving links; neighbours of one colour are told apart by a lighter one."""
-    colours, _ = chain_colours(pose.linkage, (pose.motion.input, pose.motion.output))
+    colours, _ = link_colours(pose.linkage, (pose.motion.input, pose.motion.output))
     for k in range(1, len(colours)):
         if colours[k] == colours[k - 1]:
             lighter = [round(0.55 * c + 0.45 * 255) for c in bytes.fromhex(colours[k][1:])]

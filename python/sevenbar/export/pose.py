@@ -9,10 +9,11 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import Chain, chain, frames_along
+from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Circuit, Law, Motion, Solvable, chosen_circuit
+from sevenbar.kinematics.poses import frames_along
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
 SAMPLED = 12
@@ -37,7 +38,7 @@ class Pose:
     near: Floats
     far: Floats
     travel: Floats
-    places: Chain
+    places: Skeleton
 
     @property
     def linkage(self) -> Solvable:
@@ -95,13 +96,13 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
         near=near,
         far=far,
         travel=_travel(linkage, np.vstack([chosen.q, q])),
-        places=chain(linkage, frames),
+        places=skeleton_of(linkage, frames),
     )
 
 
 def size_of(pose: Pose) -> float:
     """The size [length] that drawn parts are shares of: the extent of all places along the circuit."""
-    return max(pose.places.span, chain(pose.linkage, pose.others[:, :-1]).span)
+    return max(pose.places.span, skeleton_of(pose.linkage, pose.others[:, :-1]).span)
 
 
 def _with_ground(frames: Floats) -> Floats:

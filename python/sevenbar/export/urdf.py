@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as Xml
@@ -13,6 +12,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
+from sevenbar.kinematics.rigid import zyx_turns
 from sevenbar.text.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the next link's.
@@ -171,13 +171,7 @@ def _geometry(visual: Xml.Element, solid: Solid, scale: float) -> None:
 
 def _origin(element: Xml.Element, frame: Floats, scale: float) -> None:
     """The frame as URDF writes it: turns about fixed x, y and z, so `Rz(yaw) Ry(pitch) Rx(roll)`."""
-    turn = frame[:3, :3]
-    yaw = math.atan2(turn[1, 0], turn[0, 0])
-    # what is left after the yaw, so that the three belong together where the yaw is not defined
-    cosine, sine = math.cos(yaw), math.sin(yaw)
-    turn = np.array([[cosine, sine, 0], [-sine, cosine, 0], [0, 0, 1]]) @ turn
-    pitch = math.atan2(-turn[2, 0], turn[0, 0])
-    roll = math.atan2(-turn[1, 2], turn[1, 1])
+    yaw, pitch, roll = zyx_turns(frame[:3, :3])
     xyz = " ".join(_number(x) for x in scale * frame[:3, 3])
     Xml.SubElement(element, "origin", xyz=xyz, rpy=" ".join(map(_number, (roll, pitch, yaw))))
 

@@ -125,6 +125,7 @@ def circuit_from(
         output_column=output_column,
         output_turns=linkage.column_kinds[output_column] == "turn",
         size=size,
+        speed=speed if law is None else math.nan,
         _point=partial(point, order, status),
         _frames=linkage.point_frames,
     )

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z, column_names
-from sevenbar.kinematics.rigid import inverse, slides_along, turns_about
+from sevenbar.kinematics.rigid import about, inverse, pose
 
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, joints as drawn.
 Form = Literal["rssr", "rows", "drawn"]
@@ -62,14 +62,17 @@ class Joint:
 
     def before(self, step: Step) -> Floats:
         """The fixed transform (4, 4) before a step."""
-        return turns_about(X, np.array([self.angle]))[0] if step.tilted else np.eye(4)
+        return pose(about(X, self.angle)) if step.tilted else np.eye(4)
 
     def motion(self, q: Floats) -> Floats:
         """The motion Z (n, 4, 4) of the link after the joint for the values of its columns (n, columns)."""
         moved = np.tile(np.eye(4), (len(q), 1, 1))
         for step, values in self.steps(q):
-            moves = turns_about if step.freedom == "turn" else slides_along
-            moved = moved @ self.before(step) @ moves(step.axis, values)
+            if step.freedom == "turn":
+                own = pose(about(step.axis, values))
+            else:
+                own = pose(np.eye(3), values[:, None] * np.eye(3)[step.axis])
+            moved = moved @ self.before(step) @ own
         return moved
 
     def slid(self, q: Floats) -> Floats:
@@ -155,6 +158,11 @@ class Loop:
     def column_kinds(self) -> tuple[Freedom, ...]:
         """What each column is: an angle [rad] or a length."""
         return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
+
+    @property
+    def added_points(self) -> tuple[Point, ...]:
+        """The points that a person has added: all but A and B of an RSSR, which come first."""
+        return self.points[2:] if self.kind == "RSSR" else self.points
 
     def drivable(self, without: int | None = None) -> list[str]:
         """The columns that may drive or be driven: all but those of balls, and but one."""

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.rigid import axial
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -312,6 +313,8 @@ class Circuit:
     output_turns: bool
     #: The size of the linkage [length].
     size: float
+    #: d(input)/dt [rad/s, or length/s]; NaN where a law drives.
+    speed: float
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
 
@@ -387,7 +390,7 @@ class Circuit:
         turn, rate, second = axes("position"), axes("velocity"), axes("acceleration")
         back = np.swapaxes(turn, -1, -2)
         spin = rate @ back
-        return LinkMotion(turn, _axial(spin), _axial(second @ back + rate @ np.swapaxes(rate, -1, -2)))
+        return LinkMotion(turn, axial(spin), axial(second @ back + rate @ np.swapaxes(rate, -1, -2)))
 
     def _frame(self, link: object) -> Floats:
         count = len(self._frames)
@@ -410,12 +413,6 @@ class LinkMotion:
     rotation: Floats
     velocity: Floats
     acceleration: Floats
-
-
-def _axial(matrices: Floats) -> Floats:
-    """The vectors w of the skew parts of matrices (n, 3, 3)."""
-    odd = 0.5 * (matrices - np.swapaxes(matrices, -1, -2))
-    return np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)
 
 
 class Solvable(Loop):

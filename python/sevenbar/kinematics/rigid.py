@@ -1,6 +1,14 @@
-"""Rigid motions as matrices."""
+"""Rigid motions and rotations as matrices, and the other ways to write a rotation.
+
+Matrices act on columns: `T_ab` takes coordinates in b to coordinates in a. Leading axes `...` are kept: a
+stack of motions is handled as one.
+
+Source: Murray, Li and Sastry, "A mathematical introduction to robotic manipulation", chapter 2.
+"""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import numpy.typing as npt
@@ -8,34 +16,104 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 
 
-def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike) -> Floats:
-    """The homogeneous matrix (4, 4) with these columns of axes and this origin."""
-    matrix = np.eye(4)
-    matrix[:3, :3] = rotation
-    matrix[:3, 3] = origin
+def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
+    """The rigid motion (..., 4, 4) with this rotation (..., 3, 3) and this origin (..., 3) [length]."""
+    turn, place = np.asarray(rotation, dtype=np.float64), np.asarray(origin, dtype=np.float64)
+    matrix = np.zeros((*np.broadcast_shapes(turn.shape[:-2], place.shape[:-1]), 4, 4))
+    matrix[..., :3, :3], matrix[..., :3, 3], matrix[..., 3, 3] = turn, place, 1.0
     return matrix
 
 
-def inverse(matrix: Floats) -> Floats:
-    """The inverse of a rigid motion."""
-    rotation = matrix[:3, :3].T
-    return pose(rotation, -rotation @ matrix[:3, 3])
+def inverse(motion: Floats) -> Floats:
+    """The inverse (..., 4, 4) of a rigid motion (..., 4, 4)."""
+    back = np.swapaxes(motion[..., :3, :3], -1, -2)
+    return pose(back, -(back @ motion[..., :3, 3:])[..., 0])
 
 
-def turns_about(axis: int, angle: Floats) -> Floats:
-    """Rotations (n, 4, 4) about x, y or z by angles (n,)."""
-    matrices = np.tile(np.eye(4), (len(angle), 1, 1))
-    a, b = (axis + 1) % 3, (axis + 2) % 3
-    matrices[:, a, a] = matrices[:, b, b] = np.cos(angle)
-    matrices[:, b, a], matrices[:, a, b] = np.sin(angle), -np.sin(angle)
-    return matrices
+def about(axis: int, angle: npt.ArrayLike) -> Floats:
+    """The rotations (..., 3, 3) about x, y or z (`axis` 0, 1, 2) by angles (...) [rad].
+
+    Quarter turns are exact: a cosine or sine of which only rounding is left is 0.
+    """
+    angles = np.asarray(angle, dtype=np.float64)
+    rounding = np.finfo(float).eps * np.abs(angles)
+    cosine, sine = (np.where(np.abs(v) < rounding, 0.0, v) for v in (np.cos(angles), np.sin(angles)))
+    matrix = np.zeros((*angles.shape, 3, 3))
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    matrix[..., axis, axis] = 1.0
+    matrix[..., first, first] = matrix[..., second, second] = cosine
+    matrix[..., second, first], matrix[..., first, second] = sine, -sine
+    return matrix
 
 
-def slides_along(axis: int, distance: Floats) -> Floats:
-    """Translations (n, 4, 4) along x, y or z by distances (n,)."""
-    matrices = np.tile(np.eye(4), (len(distance), 1, 1))
-    matrices[:, axis, 3] = distance
-    return matrices
+def unit(vector: npt.ArrayLike) -> Floats:
+    """The unit vector (3,) along a vector (3,) that is not zero."""
+    direction = np.asarray(vector, dtype=np.float64)
+    return np.asarray(direction / math.hypot(*direction))
+
+
+def perpendicular(vector: Floats) -> Floats:
+    """A unit vector (3,) at right angles to a vector (3,) that is not zero."""
+    return unit(np.cross(vector, np.eye(3)[np.argmin(np.abs(vector))]))
+
+
+def axial(matrices: Floats) -> Floats:
+    """The vectors w (..., 3) of the skew parts of matrices (..., 3, 3): `w x v = (M - M^T) v / 2`."""
+    odd = 0.5 * (matrices - np.swapaxes(matrices, -1, -2))
+    return np.stack([odd[..., 2, 1], odd[..., 0, 2], odd[..., 1, 0]], axis=-1)
+
+
+def rotation_vector(rotation: Floats) -> Floats:
+    """The axis of a rotation (3, 3) times its angle [rad], (3,); of half a turn one of the two."""
+    skew, cosine = axial(rotation), (float(np.trace(rotation)) - 1) / 2
+    sine = math.hypot(*skew)
+    angle = math.atan2(sine, cosine)
+    if sine > 1e-6:
+        return np.asarray(skew / sine * angle)
+    if cosine > 0:
+        return skew
+    # half a turn: the axis is the column that is longest in R + 1
+    columns = rotation + np.eye(3)
+    return unit(columns[:, int(np.linalg.norm(columns, axis=0).argmax())]) * angle
+
+
+def quaternion(rotation: Floats) -> Floats:
+    """The unit quaternion (w, x, y, z), w >= 0, of a rotation (3, 3).
+
+    It is the eigenvector of a symmetric matrix that belongs to the greatest eigenvalue, well conditioned
+    for every rotation.
+    """
+    r = rotation
+    matrix = np.diag(
+        [r[0, 0] + r[1, 1] + r[2, 2], *(2 * np.diag(r) - np.trace(r))],
+    )
+    matrix[0, 1:] = matrix[1:, 0] = 2 * axial(r)
+    matrix[1:, 1:] += (r + r.T) * (1 - np.eye(3))
+    vector: Floats = np.linalg.eigh(matrix)[1][:, -1]
+    return vector if vector[0] >= 0 else -vector
+
+
+def rotation_of(quaternion: Floats) -> Floats:
+    """The rotations (..., 3, 3) of unit quaternions (w, x, y, z), (..., 4)."""
+    w, vector = quaternion[..., 0, None, None], quaternion[..., 1:]
+    x, y, z = np.moveaxis(vector, -1, 0)
+    zero = np.zeros_like(x)
+    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
+    return np.asarray(np.eye(3) + 2 * (w * cross + cross @ cross))
+
+
+def zyx_turns(rotation: Floats) -> Floats:
+    """The turns (..., 3) [rad] about z, y and x that make rotations (..., 3, 3): `Rz(a) Ry(b) Rx(c)`.
+
+    The turn about y is within a quarter; where it is one, the turn about z is not defined, and the three
+    still make the rotation.
+    """
+    first = np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0])
+    # what is left after the first, so that the three belong together where it is not defined
+    rest = about(2, -first) @ rotation
+    second = np.arctan2(-rest[..., 2, 0], rest[..., 0, 0])
+    third = np.arctan2(-rest[..., 1, 2], rest[..., 1, 1])
+    return np.stack([first, second, third], axis=-1)
 
 
 def axis_to_z(axis: int) -> Floats:

@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.rigid import perpendicular, pose
 from sevenbar.simulation.engine import Progress, Record, imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
 from sevenbar.simulation.prototype import GROUND, GYRATION, Body, Connection, Prototype, SpinRule
@@ -218,8 +218,8 @@ class _Assembly:
         self.system.AddObject(
             self.items.ObjectJointGeneric(
                 markerNumbers=[
-                    self._marker(rule.before, pose(_axes_with(rule.axis_before, 0), np.zeros(3))),
-                    self._marker(rule.after, pose(_axes_with(rule.axis_after, 1), np.zeros(3))),
+                    self._marker(rule.before, pose(_axes_with(rule.axis_before, 0))),
+                    self._marker(rule.after, pose(_axes_with(rule.axis_after, 1))),
                 ],
                 constrainedAxes=[0, 0, 0, 0, 0, 1],
             )
@@ -252,8 +252,7 @@ class _Assembly:
 
 def _axes_with(axis: Floats, place: int) -> Floats:
     """A rotation matrix with this unit vector as its column `place`."""
-    second = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    second /= np.linalg.norm(second)
+    second = perpendicular(axis)
     columns = [axis, second, np.cross(axis, second)]
     return np.column_stack(columns[-place:] + columns[:-place])
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Joint, Loop
+from sevenbar.kinematics.rigid import axial, zyx_turns
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +99,7 @@ def joint_values(linkage: Loop, bodies: Bodies) -> JointValues:
             columns += _universal(joint, turn, before, bodies, i, spin, spin_rate)
         if joint.row.is_ball:
             nothing = np.full(rows, np.nan)
-            columns += [(value, nothing, nothing) for value in _ball(turn)]
+            columns += [(value, nothing, nothing) for value in zyx_turns(turn).T]
         parts += columns
         gap, tilt = _apart(joint, turn, local, columns[0][0])
         gaps.append(gap)
@@ -164,15 +165,6 @@ def _universal(
     return [(first, rates[0], seconds[0]), (second, rates[1], seconds[1])]
 
 
-def _ball(turn: Floats) -> list[Floats]:
-    """The turns about z, then y, then x that make a rotation (n, 3, 3)."""
-    return [
-        np.arctan2(turn[:, 1, 0], turn[:, 0, 0]),
-        np.arctan2(-turn[:, 2, 0], np.hypot(turn[:, 0, 0], turn[:, 1, 0])),
-        np.arctan2(turn[:, 2, 1], turn[:, 2, 2]),
-    ]
-
-
 def _apart(joint: Joint, turn: Floats, local: Floats, angle: Floats) -> tuple[Floats, Floats]:
     """How far apart the sides of a joint stand, and how far askew, in what the joint holds."""
     row, free = joint.row, joint.row.free
@@ -188,5 +180,4 @@ def _apart(joint: Joint, turn: Floats, local: Floats, angle: Floats) -> tuple[Fl
         return gap, np.abs(turn[:, 2, 2] - math.cos(joint.angle)) / math.sin(joint.angle)
     if any(free[3:]):
         return gap, np.hypot(turn[:, 0, 2], turn[:, 1, 2])
-    odd = 0.5 * (turn - np.swapaxes(turn, 1, 2))
-    return gap, np.linalg.norm(odd[:, [2, 0, 1], [1, 2, 0]], axis=1)
+    return gap, np.linalg.norm(axial(turn), axis=1)

@@ -17,7 +17,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.rigid import inverse, quaternion
 from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 
@@ -221,7 +221,7 @@ class _Tree:
             # of the body against its parent, at the start and where the two frames of the joint agree
             fixed, moved = (before, after) if way > 0 else (after, before)
             turn_matrix = frame[:3, :3] @ fixed[:3, :3].T @ moved[:3, :3] @ frame[:3, :3].T
-            self._state.qpos += list(_quaternion(turn_matrix))
+            self._state.qpos += list(quaternion(turn_matrix))
             own, other = (joint.after, joint.before) if way > 0 else (joint.before, joint.after)
             rotation = self._model.placed(own)[:3, :3]
             self._state.qvel += list(rotation.T @ (self._spin(own) - self._spin(other)))
@@ -260,7 +260,7 @@ class _Tree:
     def _place(self, frame: Floats) -> dict[str, str]:
         return {
             "pos": _numbers(frame[:3, 3] * self._metre),
-            "quat": _numbers(_quaternion(frame[:3, :3])),
+            "quat": _numbers(quaternion(frame[:3, :3])),
         }
 
 
@@ -281,19 +281,3 @@ def _middle(model: Prototype) -> Floats:
 def _numbers(values: object) -> str:
     # a zero without its sign
     return " ".join(f"{float(value) + 0.0:.17g}" for value in np.asarray(values, dtype=float).reshape(-1))
-
-
-def _quaternion(rotation: Floats) -> Floats:
-    """The quaternion (w, x, y, z) of a rotation matrix, from the eigenvector that is best conditioned."""
-    r = rotation
-    # the symmetric matrix whose greatest eigenvalue's vector is the quaternion
-    matrix = np.array(
-        [
-            [r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-            [r[2, 1] - r[1, 2], r[0, 0] - r[1, 1] - r[2, 2], r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
-            [r[0, 2] - r[2, 0], r[0, 1] + r[1, 0], r[1, 1] - r[0, 0] - r[2, 2], r[1, 2] + r[2, 1]],
-            [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[1, 2] + r[2, 1], r[2, 2] - r[0, 0] - r[1, 1]],
-        ]
-    )
-    vector: Floats = np.linalg.eigh(matrix)[1][:, -1]
-    return vector if vector[0] >= 0 else -vector

@@ -12,11 +12,11 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import frames_along
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.kinematics.joints import KINDS, JointKind
 from sevenbar.kinematics.motion import Circuit, Solvable
-from sevenbar.kinematics.rigid import inverse, turns_about
+from sevenbar.kinematics.poses import frames_along
+from sevenbar.kinematics.rigid import about, inverse, pose
 
 #: The number of the ground among the bodies.
 GROUND = -1
@@ -170,7 +170,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             arm = np.zeros(3) if carrier is None else start[:3, 3] - carrier.frame[:3, 3]
             carried = np.zeros(3) if carrier is None else carrier.spin
             velocity = np.zeros(3) if carrier is None else carrier.velocity + np.cross(carried, arm)
-            cross, spin = start @ turns_about(step.axis, q)[0], carried + paces[0] * start[:3, step.axis]
+            cross, spin = start @ pose(about(step.axis, q[0])), carried + paces[0] * start[:3, step.axis]
             bodies.append(Body(f"{joint.name}_cross", 0, cross, velocity, spin))
             after = len(bodies) - 1
             connections.append(

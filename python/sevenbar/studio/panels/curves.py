@@ -51,7 +51,7 @@ class CurvesPanel:
             self._drawn = drawn
             wanted = [self._offered[name] for name in picked]
             self._panels = panels(
-                view.motion,
+                self._session.views,
                 wanted,
                 view.circuit.index,
                 over=OVER[self._over.value],

@@ -10,7 +10,7 @@ from sevenbar.studio.local_server import LocalServer
 from sevenbar.studio.panels.transport import CYCLE
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.verdict import facts_html
-from sevenbar.studio.state.view import View
+from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
 from sevenbar.studio.svg.quantities import quantities
 
@@ -23,7 +23,7 @@ def page(view: View) -> str:
     scene = escape(_scene(view), quote=True)
     motion = view.motion
     curves = "".join(
-        panel.html for panel in panels(motion, quantities(motion)[:3], view.circuit.index, over="input")
+        panel.html for panel in panels(views_of(motion), quantities(motion)[:3], view.circuit.index)
     )
     title = escape(f"{view.linkage.name}: {view.circuit.motion_type}")
     return f"""<!doctype html>
@@ -50,7 +50,7 @@ def _scene(view: View) -> str:
     try:
         stage = Stage(server.scene)
         stage.frame_view(view.frame.places)
-        stage.set(view.linkage, view.frame, (view.motion.input, view.motion.output))
+        stage.set(view.frame, (view.motion.input, view.motion.output))
         place, target = stage.look()
         server.initial_camera.fov = FIELD
         server.initial_camera.position, server.initial_camera.look_at = place, target

@@ -100,11 +100,10 @@ class Scenery:
         fresh = self._looked_at is not self._session.draft.text
         if fresh:
             # of every circuit, so that none is out of the picture when it is chosen
-            places = [View(view.motion, circuit).frame.places.reshape(-1, 3) for circuit in view.motion]
-            every = np.concatenate(places)
+            every = np.concatenate([each.frame.places.reshape(-1, 3) for each in self._session.views])
             self._everything = every[np.isfinite(every).all(axis=1)]
             self.stage.frame_view(self._everything)
-        self.stage.set(view.linkage, view.frame, (view.motion.input, view.motion.output))
+        self.stage.set(view.frame, (view.motion.input, view.motion.output))
         self.stage.pose(view.frame.pose(self._session.row))
         self._drawn["pose"] = self._session.row
         self.stage.grey(grey)
@@ -129,7 +128,7 @@ class Scenery:
                 shown = self._session.mode(modes)
                 others = [mode for i, mode in enumerate(modes) if i != shown]
                 q = np.array([each.joints(row) for each, row in others])
-                places = list(places_of(view.linkage, q, view.frame)) if others else []
+                places = list(places_of(q, view.frame)) if others else []
                 colours = [CIRCUIT_COLOURS[each.circuit.index % len(CIRCUIT_COLOURS)] for each, _ in others]
                 self.stage.ghosts(list(zip(places, colours, strict=True)))
             case _:

@@ -9,6 +9,7 @@ from typing import Any
 
 import viser
 
+from sevenbar.kinematics.poses import at_row
 from sevenbar.reporting.report import joint_value
 from sevenbar.reporting.summary import joint_text
 from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
@@ -151,10 +152,10 @@ def _shown_speed(view: View) -> float:
 def _reading(session: Session, view: View) -> str:
     """Where the linkage stands: input, output, time and mode."""
     circuit = view.circuit
-    second = float(view.along(view.path.output, session.row))
+    second = float(at_row(view.path.output, session.row))
     way = ""
     if not circuit.goes_round:
-        way = " rising" if view.way[int(session.row)] * view.motion.speed > 0 else " falling"
+        way = " rising" if view.path.sign[int(session.row)] * view.motion.speed > 0 else " falling"
     modes = session.modes()
     lines = [
         f"input {view.input_text(session.row)}{way}",

@@ -1,15 +1,11 @@
-"""How a linkage's places hang together: links, joints and their axes, for the RSSR and all others alike."""
+"""How a linkage's places hang together: links, joints and their axes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
 
-import numpy as np
-
-from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import A0, AXIS, B0, LINK_ENDS, Chain, Skeleton
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.kinematics.joints import JointKind
 
 #: Two places, from and to.
@@ -35,17 +31,13 @@ class JointPlaces:
     spin: Pair
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Layout:
-    """Places along each link, the ground's last, and of each joint; named places; and places that never move.
-
-    Indices from `count` on count `fixed` (m, 3): places that the frame does not have.
-    """
+    """Places along each link, the ground's last, and of each joint; `count` is how many the frame has."""
 
     links: tuple[tuple[int, ...], ...]
     joints: tuple[JointPlaces, ...]
     count: int
-    fixed: Floats
 
     def rigid(self, link: int) -> list[Pair]:
         """Pairs of places that keep their distance and turn with a link."""
@@ -60,31 +52,13 @@ class Layout:
         return [pair for pair in found if pair != NOWHERE]
 
 
-def layout(linkage: Loop, frame: Skeleton) -> Layout:
-    """The layout of a linkage from its frame: for the RSSR the axes stand as fixed places."""
-    if isinstance(frame, Chain):
-        return _of_chain(linkage, frame)
-    count = frame.places.shape[1]
-    middles = frame.pose(0)[[A0, B0]]
-    half = AXIS * frame.span * frame.axes
-    fixed = np.stack([middles - half, middles + half], axis=1).reshape(-1, 3)
-    axes: tuple[Pair, Pair] = (count, count + 1), (count + 2, count + 3)
-    ends = [LINK_ENDS[link] for link in (1, 2, 3, 4)]
+def layout(frame: Skeleton) -> Layout:
+    """The layout of the linkage of a frame."""
     joints = []
-    for i, joint in enumerate(linkage.joints):
-        own = {0: (axes[0],), 3: (axes[1],)}.get(i, ())
-        joints.append(
-            JointPlaces(joint.row, 0.0, ends[i - 1][1], ends[i][0], own, own[0] if own else NOWHERE)
-        )
-    return Layout(tuple(ends), tuple(joints), count, fixed)
-
-
-def _of_chain(linkage: Loop, frame: Chain) -> Layout:
-    joints = []
-    for i, joint in enumerate(linkage.joints):
+    for i, joint in enumerate(frame.linkage.joints):
         marks = [(word, (places[0], places[-1])) for j, word, places in frame.marks if j == i]
         axes = tuple(pair for word, pair in marks if word == "axis")
         spin = next((pair for word, pair in marks if word == "cylinder"), NOWHERE)
         near, far = frame.links[i - 1][-1], frame.links[i][0]
         joints.append(JointPlaces(joint.row, joint.pitch, near, far, axes, spin))
-    return Layout(frame.links, tuple(joints), frame.places.shape[1], np.empty((0, 3)))
+    return Layout(frame.links, tuple(joints), frame.places.shape[1])

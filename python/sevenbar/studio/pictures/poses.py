@@ -20,7 +20,7 @@ POINT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class SolidPlan:
     """The solids of a linkage: what each is, and the places that say where it stands.
 
     A solid lies along the way between two places `joins`, turned about if that goes against `guide`; its
@@ -56,10 +56,10 @@ class Plan:
         """The colours (N, 3) of a shape's solids."""
         return self.colours[self.shapes[shape]]
 
-    def moving(self) -> Plan:
+    def moving(self) -> SolidPlan:
         """The plan of the moving links and joints alone."""
         kept = {shape: self.moves[rows] for shape, rows in self.shapes.items()}
-        return Plan(
+        return SolidPlan(
             slices({shape: int(rows.sum()) for shape, rows in kept.items() if rows.any()}),
             self.places[:, self.moves],
             self.share[self.moves],
@@ -85,7 +85,7 @@ def slices(counts: dict[str, int]) -> dict[str, slice]:
     return found
 
 
-def poses(plan: Plan, places: Floats) -> Poses:
+def poses(plan: SolidPlan, places: Floats) -> Poses:
     """Where the solids of each shape stand in a pose, places (..., k, 3); any leading axes are kept.
 
     What stands on a place that is NaN gets the scale 0, and so do solids of no length.

@@ -31,7 +31,7 @@ def mesh(shape: str) -> Mesh:
     """
     match shape:
         case "cylinder":
-            return _lathe([[(0, -0.5), (1, -0.5)], [(1, -0.5), (1, 0.5)], [(1, 0.5), (0, 0.5)]])
+            return _lathe(_rod(1.0))
         case "cone":
             return _lathe([[(0, -0.5), (1, -0.5)], [(1, -0.5), (0, 0.5)]])
         case "ball":
@@ -41,9 +41,9 @@ def mesh(shape: str) -> Mesh:
             outer, inner = _arc(1.0, -math.pi / 2, mouth), _arc(1.0 - WALL, mouth, -math.pi / 2)
             return _lathe([outer, [outer[-1], inner[0]], inner])
         case "box":
-            return _prism([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+            return _faceted(_lathe(_rod(math.sqrt(0.5)), sides=4, start=math.pi / 4))
         case "hexagon":
-            return _prism([(math.cos(k * math.pi / 3), math.sin(k * math.pi / 3)) for k in range(6)])
+            return _faceted(_lathe(_rod(1.0), sides=6))
         case "thread":
             return _thread(1.0)
         case "left thread":
@@ -58,53 +58,35 @@ def _arc(radius: float, start: float, end: float) -> list[tuple[float, float]]:
     return [(radius * math.cos(a), radius * math.sin(a)) for a in latitudes]
 
 
-def _lathe(runs: Sequence[Sequence[tuple[float, float]]]) -> Mesh:
+def _rod(radius: float, rings: int = 2) -> list[list[tuple[float, float]]]:
+    """The outline of a rod: bottom, side, top."""
+    side = [(radius, float(height)) for height in np.linspace(-0.5, 0.5, rings)]
+    return [[(0, -0.5), side[0]], side, [side[-1], (0, 0.5)]]
+
+
+def _lathe(runs: Sequence[Sequence[tuple[float, float]]], sides: int = ROUND, start: float = 0.0) -> Mesh:
     """What runs of (radius, height) sweep about z, the solid to their left; creased between runs."""
-    turn = np.linspace(0, math.tau, ROUND, endpoint=False)
-    corners, faces, count = [], [], 0
-    for run in runs:
-        for radius, height in run:
-            corners.append(
-                np.stack([radius * np.cos(turn), radius * np.sin(turn), 0 * turn + height], axis=1)
-            )
-        faces.append(count + _quilt(len(run)))
-        count += len(run) * ROUND
-    return np.concatenate(corners), np.concatenate(faces)
+    turn = start + np.linspace(0, math.tau, sides, endpoint=False)
+    radius, height = np.concatenate(runs).T[:, :, None]
+    corners = np.stack([radius * np.cos(turn), radius * np.sin(turn), height + 0 * turn], axis=-1)
+    # the lower ring of each band, not across the creases
+    lasts = np.cumsum([len(run) for run in runs]) - 1
+    low = sides * np.delete(np.arange(len(radius)), lasts)[:, None]
+    here, following = np.arange(sides), np.roll(np.arange(sides), -1)
+    a, b, c, d = low + here, low + following, low + sides + following, low + sides + here
+    return corners.reshape(-1, 3), np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
 
 
-def _quilt(rows: int) -> npt.NDArray[np.int64]:
-    """The triangles between rings of corners, one ring above the other."""
-    ring = np.arange(ROUND)
-    following = (ring + 1) % ROUND
-    low = np.arange(rows - 1)[:, None] * ROUND
-    a, b, c, d = low + ring, low + following, low + ROUND + following, low + ROUND + ring
-    return np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
-
-
-def _prism(outline: Sequence[tuple[float, float]]) -> Mesh:
-    """The prism over a convex outline, with sharp edges."""
-    flat = np.array(outline)
-    count = len(flat)
-    low = np.column_stack([flat, np.full(count, -0.5)])
-    high = np.column_stack([flat, np.full(count, 0.5)])
-    after = np.roll(np.arange(count), -1)
-    corners = [low[::-1], high, *(np.stack([low[i], low[k], high[k], high[i]]) for i, k in enumerate(after))]
-    fan = np.array([(0, i, i + 1) for i in range(1, count - 1)])
-    square = np.array([(0, 1, 2), (0, 2, 3)])
-    faces = [fan, fan + count, *(square + 2 * count + 4 * i for i in range(count))]
-    return np.concatenate(corners), np.concatenate(faces)
+def _faceted(mesh: Mesh) -> Mesh:
+    """A mesh with sharp edges: each triangle has corners of its own."""
+    corners, faces = mesh
+    return corners[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3)
 
 
 def _thread(hand: float) -> Mesh:
     """A rod with a thread; right-handed for `hand` 1, left-handed for -1."""
-    turn = np.linspace(0, math.tau, ROUND, endpoint=False)
-    height = np.linspace(-0.5, 0.5, 8 * TURNS + 1)[:, None]
-    phase = (height * TURNS - hand * turn / math.tau) % 1.0
+    corners, faces = _lathe(_rod(1.0, 8 * TURNS + 1))
+    x, y, height = corners.T
+    phase = (height * TURNS - hand * np.arctan2(y, x) / math.tau) % 1.0
     radius = 1.0 - DEPTH * np.clip(1.5 - 4.0 * np.abs(phase - 0.5), 0.0, 1.0)
-    rings = np.stack([radius * np.cos(turn), radius * np.sin(turn), height + 0 * turn], axis=-1)
-    low, high = np.tile([0, 0, -0.5], (ROUND, 1)), np.tile([0, 0, 0.5], (ROUND, 1))
-    ends = [low, rings[0], rings[-1], high]
-    corners = [rings.reshape(-1, 3), *ends]
-    count = rings.shape[0] * ROUND
-    faces = [_quilt(len(rings)), count + _quilt(2), count + 2 * ROUND + _quilt(2)]
-    return np.concatenate(corners), np.concatenate(faces)
+    return np.column_stack([radius * x, radius * y, height]), faces

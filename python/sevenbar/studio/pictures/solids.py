@@ -11,14 +11,14 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import GROUND, JOINT, POINT_COLOURS, chain_colours
+from sevenbar.drawing.scene import GROUND, JOINT, POINT_COLOURS, link_colours
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
-from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, slices, turns
+from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, slices, turns
 from sevenbar.studio.pictures.shapes import TURNS
 
-__all__ = ["Plan", "Poses", "plan", "poses", "rgb"]
+__all__ = ["Poses", "SolidPlan", "plan", "poses", "rgb"]
 
 #: The measure of all thicknesses, as a share of the linkage's extent.
 UNIT = 0.02
@@ -64,7 +64,7 @@ class _Solids:
     """Solids as they are collected, by shape."""
 
     layout: Layout
-    fixed: list[Floats]
+    fixed: list[Floats] = field(default_factory=list)
     rows: dict[str, list[tuple[object, ...]]] = field(default_factory=dict)
 
     def anchor(self, place: Floats) -> int:
@@ -92,22 +92,18 @@ class _Solids:
         self.rows.setdefault(shape, []).append(row)
 
 
-def plan(linkage: Loop, frame: Skeleton, ends: tuple[str, str], size: float) -> Plan:
-    """The solids of a linkage along a circuit, from the columns of input and output and its extent [length].
+def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
+    """The solids of a linkage along a circuit, coloured by the columns of input and output.
 
     Thicknesses are shares of the extent, less where a link is short. Rails reach over the whole of the
     frame's motion. The frame needs a row without NaN.
     """
-    where = layout(linkage, frame)
-    solids = _Solids(where, list(where.fixed))
+    where, size = layout(frame), frame.span
+    solids = _Solids(where)
     solved = ~np.isnan(frame.places.sum(axis=(1, 2)))
     every = frame.places if solved.all() else frame.places[solved]
-    if len(where.fixed):
-        every = np.concatenate(
-            [every, np.broadcast_to(where.fixed, (len(every), *where.fixed.shape))], axis=1
-        )
     unit = _unit(where, every[0], size)
-    links, joints = chain_colours(linkage, ends)
+    links, joints = link_colours(frame.linkage, ends)
     links.append(GROUND)
     joints = [OTHER_JOINT if colour == JOINT else colour for colour in joints]
     for way, colour in zip(where.links, links, strict=True):
@@ -140,11 +136,11 @@ def _unit(where: Layout, pose: Floats, size: float) -> float:
     return UNIT * size * min(1.0, max(THINNEST, SHORTEST * shortest / (UNIT * size)))
 
 
-def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> Plan:
+def _made(solids: _Solids, frame: Skeleton, pose: Floats, size: float) -> SolidPlan:
     rows = [row for shape in solids.rows.values() for row in shape]
     places, share, shift, length, twist, sides, colours, moves = zip(*rows, strict=True)
     where = solids.layout
-    return Plan(
+    return SolidPlan(
         slices({shape: len(found) for shape, found in solids.rows.items()}),
         np.array(places).T.copy(),
         np.array(share),
@@ -317,8 +313,7 @@ def _add_foot(solids: _Solids, place: Floats, outward: Floats, wide: float, unit
     pair = solids.anchor(place), solids.anchor(back)
     solids.add("box", pair, wide * unit, GROUND, moves=False)
     # in the plate's own axes, as `poses` turns it
-    w, x, y, z = turns(outward, np.zeros(3))
-    across = np.array([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
+    across = rotation_of(turns(outward, np.zeros(3)))[:, 0]
     sideways = solids.anchor(np.zeros(3)), solids.anchor(np.cross(outward, across))
     for share in np.linspace(-0.5, 0.5 - LEAN, STROKES):
         start = back + share * wide * unit * across

@@ -9,11 +9,11 @@ import numpy as np
 from viser import GridHandle, LineSegmentsHandle, SceneApi
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import PATH, POINT_COLOURS, chain_colours, view
-from sevenbar.drawing.skeleton import A, Chain, Skeleton
-from sevenbar.kinematics.geometry import Loop
+from sevenbar.drawing.scene import PATH, directions, paths, view
+from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
-from sevenbar.studio.pictures.poses import Colours, Plan, Poses, poses, stretched
+from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, stretched
 from sevenbar.studio.pictures.solids import plan, rgb
 
 #: Where an axis line has its dashes and the dots between them, as shares of its length.
@@ -24,7 +24,7 @@ DASHES = np.array(
 OVERHANG = 0.07
 #: Thicknesses of lines [pixels].
 AXIS_LINE, JOINT_PATH, POINT_PATH = 1.4, 1.8, 2.8
-#: How much white is in the path of A or B.
+#: How much white is in the path of a joint that has its link's colour.
 PALE = 0.4
 #: Opacity of ghosts, and the most there are.
 GHOST, MOST_GHOSTS = 0.2, 16
@@ -68,8 +68,8 @@ class Stage:
         self._lines: dict[str, LineSegmentsHandle] = {}
         self._path_colours: dict[str, Colours] = {}
         self._grid: GridHandle | None = None
-        self._plan: Plan | None = None
-        self._moving: Plan | None = None
+        self._plan: SolidPlan | None = None
+        self._moving: SolidPlan | None = None
         self._frame: Skeleton | None = None
         self._places: Floats | None = None
         scene.set_up_direction("+z")
@@ -118,16 +118,9 @@ class Stage:
         """
         if self._frame is None:
             return np.array([2.0, -2.0, 1.5]), np.zeros(3)
-        elevation, azimuth = (math.radians(angle) for angle in view(self._frame))
-        back = np.array(
-            [
-                math.cos(elevation) * math.cos(azimuth),
-                math.cos(elevation) * math.sin(azimuth),
-                math.sin(elevation),
-            ]
-        )
-        right = np.array([-math.sin(azimuth), math.cos(azimuth), 0.0])
-        axes = np.stack([right, np.cross(back, right), back])
+        right, above = directions(*view(self._frame))
+        back = np.cross(right, above)
+        axes = np.stack([right, above, back])
         every = self._drawn() if also is None else np.concatenate([self._drawn(), also])
         seen = self.in_scene(every) @ axes.T
         middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
@@ -144,35 +137,25 @@ class Stage:
         every = self._frame.places
         drawn = [every.reshape(-1, 3)]
         for turn, middle, scale in poses(self._plan, every[:: max(1, len(every) // 24)]).values():
-            w, x, y, z = np.moveaxis(turn, -1, 0)
-            along = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
-            half = along * scale[..., 2:] / 2
+            half = rotation_of(turn)[..., 2] * scale[..., 2:] / 2
             shown = scale[..., 2] > 0
             drawn += [(middle - half)[shown], (middle + half)[shown]]
         places = np.concatenate(drawn)
         return places[np.isfinite(places).all(axis=1)]
 
-    def set(self, linkage: Loop, frame: Skeleton, ends: tuple[str, str], paths: bool = True) -> None:
+    def set(self, frame: Skeleton, ends: tuple[str, str]) -> None:
         """Takes another linkage or circuit, by its frame and the columns of input and output.
 
-        Its paths are drawn at once, save with `paths` False; its solids, axes and names by the `pose` that
-        must follow.
+        Its paths are drawn at once, its solids, axes and names by the `pose` that must follow.
         """
         self._size = frame.span
-        self._plan = plan(linkage, frame, ends, self._size)
+        self._plan = plan(frame, ends)
         self._moving, self._frame = self._plan.moving(), frame
         self._places, self._fresh = None, True
-        colours = chain_colours(linkage, ends)[0]
-        joints, points = [], []
-        for place in frame.moving if paths else ():
-            if place >= frame.solid:
-                points.append((place, rgb(POINT_COLOURS[(place - frame.solid) % len(POINT_COLOURS)])))
-            elif isinstance(frame, Chain):
-                joints.append((place, rgb(PATH)))
-            else:
-                joints.append((place, rgb(colours[0 if place == A else 2], PALE)))
+        drawn, count = paths(frame, ends), len(frame.points)
+        joints = [(place, rgb(colour, 0.0 if colour == PATH else PALE)) for place, colour in drawn[count:]]
         self._draw_path("joints", joints, JOINT_PATH)
-        self._draw_path("points", points, POINT_PATH)
+        self._draw_path("points", [(place, rgb(colour)) for place, colour in drawn[:count]], POINT_PATH)
 
     def clear(self) -> None:
         """Takes everything out of the scene, but for the floor."""
@@ -270,7 +253,7 @@ class Stage:
         for name, colours in self._path_colours.items():
             self._lines[name].colors = self._shade(colours)
 
-    def _colours(self, shown: Plan) -> dict[str, Colours]:
+    def _colours(self, shown: SolidPlan) -> dict[str, Colours]:
         return {shape: self._shade(shown.colours_of(shape)) for shape in shown.shapes}
 
     def _shade(self, colours: Colours) -> Colours:

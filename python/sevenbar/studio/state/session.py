@@ -11,7 +11,7 @@ from sevenbar.description.draft import Draft, Place
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.motion import Motion
 from sevenbar.reporting.summary import meaning
-from sevenbar.studio.state.view import View, modes_at, nearest
+from sevenbar.studio.state.view import View, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
 SAMPLES = 360
@@ -25,13 +25,14 @@ class Session:
     """A description that is shaped, and the last motion it gave.
 
     `draft` is always a valid description. `problem` says why it has no motion, and is empty where it has one;
-    `view` then shows the last one that moved, and is `None` only where there never was one. `row` is the
-    place on the view's path.
+    `view` then shows the last one that moved, and is `None` only where there never was one. `views` are those
+    of all circuits of the motion on view; `row` is the place on the view's path.
     """
 
     def __init__(self, text: str, source: str) -> None:
         """Raises `DescriptionError` for a text that describes no linkage."""
         self.view: View | None = None
+        self.views: tuple[View, ...] = ()
         self.row, self.forwards = 0.0, True
         self.past: list[Draft] = []
         self.future: list[Draft] = []
@@ -63,10 +64,11 @@ class Session:
             self.problem = f"{motion.motion_type}: {meaning(motion) or 'it closes along no circuit'}"
         elif any(np.isnan(circuit.input).any() for circuit in motion):
             self.problem = "its dimensions differ so much in size that its motion is lost in rounding"
-        elif self.view is None:
-            self.view, self.row = View(motion, motion.circuits[0]), 0.0
         else:
-            self.view, self.row = nearest(motion, self.view, self.row)
+            self.views = views_of(motion)
+            self.view, self.row = (
+                (self.views[0], 0.0) if self.view is None else nearest(self.views, self.view, self.row)
+            )
 
     def change(self, place: Place, value: object) -> None:
         """Gives a number of the description another value.
@@ -138,9 +140,8 @@ class Session:
         """Shows another circuit, at the same input where it gets there."""
         if self.view is None or circuit == self.view.circuit.index:
             return
-        motion = self.view.motion
         met = [mode for mode in self.modes() if mode[0].circuit.index == circuit]
-        self.view, self.row = met[0] if met else (View(motion, motion.circuits[circuit]), 0.0)
+        self.view, self.row = met[0] if met else (self.views[circuit], 0.0)
 
     def next_mode(self) -> None:
         """Shows the next mode at the same input."""
@@ -151,14 +152,8 @@ class Session:
             self.view, self.row = modes[(self.mode(modes) + 1) % len(modes)]
 
     def modes(self) -> list[tuple[View, float]]:
-        """All modes at the input on view: views and rows of their paths; the circuit on view by its own."""
-        if self.view is None:
-            return []
-        value = self.view.input_at(self.row)
-        return [
-            (self.view if view.circuit is self.view.circuit else view, row)
-            for view, row in modes_at(self.view.motion, value)
-        ]
+        """All modes at the input on view: views and rows of their paths."""
+        return [] if self.view is None else modes_at(self.views, self.view.input_at(self.row))
 
     def mode(self, modes: list[tuple[View, float]]) -> int:
         """Which of the modes at the input on view is on view."""

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import Skeleton, Walk, along, skeleton, walk
+from sevenbar.drawing.figure import shown_value
+from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Circuit, Motion, Trace
+from sevenbar.kinematics.poses import Walk, along, at_row, walk
 from sevenbar.reporting.summary import joint_text
 
 #: Inputs [rad, or parts of the linkage's size] nearer to a limit are at it.
@@ -26,7 +29,7 @@ COURSE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Pass:
+class Stretch:
     """A stretch of a path: its first row, the input on its rows, and whether it stands still at either end.
 
     Near a dead centre the joints move as the root of what is left of the input. So a place between two rows
@@ -89,23 +92,21 @@ class View:
         """The linkage that moves."""
         return self.motion.linkage
 
-    @cached_property
+    @property
     def path(self) -> Walk:
         """The circuit's rows in the order of its motion."""
-        return walk(self.motion, self.circuit)
+        return walk(self.circuit)
 
     @cached_property
     def frame(self) -> Skeleton:
         """The places of joints and points along the path."""
         return skeleton(self.motion, self.circuit)
 
-    @cached_property
-    def way(self) -> Floats:
-        """The sign of the input's motion on each row of the path; rates belong to a rising input."""
-        sign = np.ones(len(self.path.rows))
-        for way, part in zip(self.path.ways, self.path.passes, strict=True):
-            sign[part] = way
-        return sign
+    @property
+    def shown_input(self) -> Floats:
+        """The input along the path [deg, or length], (n,)."""
+        values: Floats = shown_value(self.motion, self.motion.input, self.path.input)
+        return values
 
     @property
     def period(self) -> float:
@@ -159,14 +160,14 @@ class View:
         return sorted(found)
 
     @cached_property
-    def passes(self) -> tuple[Pass, ...]:
+    def passes(self) -> tuple[Stretch, ...]:
         """The stretches between input dead centres, each with both of its ends."""
         status, past = self.circuit.status[self.path.rows], len(self.path.rows)
         stretches = [
             (part.start, min(part.stop + (not self.circuit.closed), past)) for part in self.path.passes
         ]
         return tuple(
-            Pass(
+            Stretch(
                 start,
                 self.path.input[start:stop],
                 bool(status[start] == "dead-centre"),
@@ -176,7 +177,7 @@ class View:
             if stop - start > 1
         )
 
-    def pass_of(self, row: float) -> Pass:
+    def pass_of(self, row: float) -> Stretch:
         """The pass that holds a row of the path, and goes on from it."""
         return next((part for part in self.passes if part.start <= row < part.last), self.passes[-1])
 
@@ -200,16 +201,9 @@ class View:
             ways.append(float(to_the_end + abs(self.input_at(low) - self.path.input[0])))
         return min(ways, default=math.inf)
 
-    def along(self, values: Floats, row: float) -> Floats:
-        """Values (n, ..) of the path's rows at a row, on the straight line between two."""
-        low = min(int(row), len(values) - 1)
-        high, share = min(low + 1, len(values) - 1), row - low
-        between: Floats = values[low] + share * (values[high] - values[low]) if share else values[low]
-        return between
-
     def joints(self, row: float) -> Floats:
         """The joint values (columns,) at a row."""
-        q = np.array(self.along(self._joints, row))
+        q = np.array(at_row(self._joints, row))
         q[self.circuit.input_column] = self.input_at(row)
         return q
 
@@ -241,54 +235,54 @@ class View:
 
         The velocity is that of the motion as it is seen: turned where the input goes back.
         """
-        trace, rows = self.traces[point], self.path.rows
-        low = min(int(row), len(rows) - 1)
-        sign = self.way[low]
+        trace, path = self.traces[point], self.path
         return (
-            self.along(trace.position[rows], row),
-            sign * self.along(trace.velocity[rows], row),
-            self.along(trace.acceleration[rows], row),
+            at_row(trace.position[path.rows], row),
+            path.sign[min(int(row), len(path.rows) - 1)] * at_row(trace.velocity[path.rows], row),
+            at_row(trace.acceleration[path.rows], row),
         )
 
     @cached_property
     def _joints(self) -> Floats:
         """Joint values (n, columns) along the path; in its closing row a turn on, where the joints are."""
         columns = range(len(self.linkage.columns))
-        return np.stack([along(self.motion, self.circuit, self.path, column) for column in columns], axis=1)
+        return np.stack([along(self.linkage, self.circuit, column) for column in columns], axis=1)
 
 
 def own_points(view: View) -> range:
     """The places of the points that a person has added, among those of the linkage: the last ones."""
     count = len(view.linkage.points)
-    given = 2 if view.linkage.kind == "RSSR" else 0
-    return range(given, count)
+    return range(count - len(view.linkage.added_points), count)
 
 
-def modes_at(motion: Motion, value: float) -> list[tuple[View, float]]:
-    """Where the circuits of a motion meet a value of the input: each a view and a row of its path.
+def views_of(motion: Motion) -> tuple[View, ...]:
+    """A view of each circuit of a motion, in their order."""
+    return tuple(View(motion, circuit) for circuit in motion)
+
+
+def modes_at(views: Sequence[View], value: float) -> list[tuple[View, float]]:
+    """Where the views of a motion's circuits meet a value of the input: each with a row of its path.
 
     An angle is met in every turn. Two passes of a circuit that rocks are two modes.
     """
-    views = [View(motion, circuit) for circuit in motion]
     return [(view, row) for view in views for row in view.rows_at(value)]
 
 
-def nearest(motion: Motion, view: View, row: float) -> tuple[View, float]:
-    """The mode of a motion that goes on the pose of another view, of a linkage little different.
+def nearest(views: Sequence[View], view: View, row: float) -> tuple[View, float]:
+    """The mode of a motion, by its views, that goes on the pose of another, of a linkage little different.
 
     It is one at the same input, unless only a circuit that does not get there any more is alike. Near a dead
     centre, and where circuits come close, two poses are alike that move in other ways: of them it is the one
     that moves alike. Turns of balls are left out: they say little of the pose, and of a coupler that spins
     idly nothing.
     """
-    measure = _Measure(motion)
+    measure = _Measure(views[0].motion)
     q, course = view.joints(row), measure.course(view, row)
 
     def unlike(other: View, at: float) -> float:
         bent = float(np.linalg.norm(measure.course(other, at) - course))
         return float(measure.apart(other.joints(at), q)) + COURSE * bent
 
-    views = [View(motion, circuit) for circuit in motion]
     value = float(q[measure.input])
     here = [(unlike(other, at), i, at) for i, other in enumerate(views) for at in other.rows_at(value)]
     gaps = [measure.apart(other.circuit.q, q) for other in views]

@@ -13,9 +13,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import CIRCUIT_COLOURS, input_label, shown_value, slides, told_range
 from sevenbar.drawing.plot import inputs_between, place_of
-from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.motion import Extremes, Motion, chosen_circuit
-from sevenbar.studio.svg.axis import Axis, axis
+from sevenbar.kinematics.motion import Extremes, Motion
+from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.picture import (
     GROUND,
@@ -32,7 +31,8 @@ from sevenbar.studio.svg.picture import (
     stroke,
     words,
 )
-from sevenbar.studio.svg.quantities import Quantity, Walked
+from sevenbar.studio.svg.quantities import Quantity
+from sevenbar.studio.svg.scale import Scale, scale
 
 #: What stands along the axis below.
 Over = Literal["input", "time"]
@@ -54,23 +54,23 @@ Span = tuple[float, float]
 class Curve:
     """The `values` of a circuit over what is `across`, along its walk, in the units shown, (n,)."""
 
-    walked: Walked
+    view: View
     across: Floats
     values: Floats
 
     @property
     def colour(self) -> str:
         """The circuit's colour, as in all figures."""
-        return CIRCUIT_COLOURS[self.walked.circuit.index % len(CIRCUIT_COLOURS)]
+        return CIRCUIT_COLOURS[self.view.circuit.index % len(CIRCUIT_COLOURS)]
 
     @property
     def passes(self) -> tuple[slice, ...]:
         """The rows of each pass between input dead centres."""
-        return self.walked.path.passes
+        return self.view.path.passes
 
     def told(self, kind: str) -> Span | None:
         """The range worth showing, without endless rates at input dead centres; `None` without values."""
-        spans = (told_range(self.walked.circuit, self.values[part], kind) for part in self.passes)
+        spans = (told_range(self.view.circuit, self.values[part], kind) for part in self.passes)
         return _union([span for span in spans if span is not None])
 
     def lines(self, frame: Frame, x: Floats, y: Floats, most: int) -> str:
@@ -82,7 +82,7 @@ class Curve:
             rows = np.arange(part.start, part.stop)
             if step > 1:
                 rows = np.append(rows[:-1:step], rows[-1:])
-            inputs = self.walked.path.input[part]
+            inputs = self.view.path.input[part]
             falls = len(self.passes) > 1 and inputs[-1] < inputs[0]
             look = ' stroke-dasharray="50 30"' if falls else ""
             drawn.append(f'<path d="{stroke(x[rows] - left, y[rows] - top)}"{look}/>')
@@ -90,7 +90,7 @@ class Curve:
 
 
 def panels(
-    motion: Motion,
+    views: Sequence[View],
     picked: Sequence[Quantity],
     circuit: int = 0,
     *,
@@ -100,25 +100,19 @@ def panels(
 ) -> tuple[Panel, ...]:
     """A panel for each quantity: every circuit over the input, or over the time of the chosen one's cycle.
 
-    `circuit` is the index in `motion.circuits` of the one drawn strong; `width` and `height` [px] are those
-    of one picture. Without circuits, or values, a frame says so. Raises `RequestError` for a circuit that
-    does not exist.
+    `views` are those of all circuits of a motion, `circuit` is the index of the one drawn strong; `width` and
+    `height` [px] are those of one picture. Without values a frame says so.
     """
-    if over not in ("input", "time"):
-        raise RequestError(f"over: {shown(over)} is not offered; give input or time")
+    motion = views[circuit].motion
     labelled = over == "input" and motion.limits.size > 0
     frame = Frame(width, height, LABELLED if labelled else MARGINS[1])
-    if not motion.circuits:
-        return tuple(_empty(frame, quantity, f"{motion.motion_type}: nothing to draw") for quantity in picked)
-    chosen_circuit(motion, circuit)
-    walked = [Walked.of(motion, each) for each in motion.circuits]
-    across = [each.input if over == "input" else each.path.time for each in walked]
+    across = [each.shown_input if over == "input" else each.path.time for each in views]
     reach = _reach(motion, across if over == "input" else [across[circuit]], over)
     made = []
     for quantity in picked:
         curves = [
             Curve(each, places, _bounded(quantity.values(each)))
-            for each, places in zip(walked, across, strict=True)
+            for each, places in zip(views, across, strict=True)
         ]
         told = curves[circuit].told(quantity.kind)
         if told is None or reach is None:
@@ -138,17 +132,17 @@ def _panel(
     over: Over,
 ) -> Panel:
     own = curves[circuit]
-    motion = own.walked.motion
+    motion = own.view.motion
     left, top, right, bottom = frame.box
     wide, tall = right - left, bottom - top
     label = input_label(motion) if over == "input" else "time [s]"
     name, _, unit = label.removesuffix("]").rpartition(" [")
-    below = axis(*reach, max(2, wide // 50), degrees=unit == "deg")
+    below = scale(*reach, max(2, wide // 50), degrees=unit == "deg")
     spans = [each.told(quantity.kind) for each in curves if each is not own]
     everything = _union([told, *(span for span in spans if span is not None)]) or told
-    least = max(FLAT * quantity.natural(own.walked), 1e-9 * max(map(abs, told)))
+    least = max(FLAT * quantity.natural(own.view), 1e-9 * max(map(abs, told)))
     low, high = _shown_range(quantity, told, everything, least)
-    beside = axis(low, high, max(2, tall // 18), degrees=quantity.unit == "deg")
+    beside = scale(low, high, max(2, tall // 18), degrees=quantity.unit == "deg")
     places = [(frame.x(below, each.across), frame.y(beside, each.values)) for each in curves]
     x, y = places[circuit]
     faint = [
@@ -160,7 +154,7 @@ def _panel(
         f'<rect width="{frame.width}" height="{frame.height}" fill="{GROUND}"/>',
         head(frame, quantity.name, beside.unit(quantity.unit), _keys(quantity, own), own.colour),
         grid(frame, below, beside, name, unit),
-        _limits(own.walked, frame, below, unit) if over == "input" else "",
+        _limits(own.view, frame, below, unit) if over == "input" else "",
         f'<svg x="{left}" y="{top}" width="{wide}" height="{tall}" viewBox="0 0 {wide}0 {tall}0" '
         'fill="none" stroke-linejoin="round">',
         f'<g stroke-width="12">{"".join(faint)}</g>',
@@ -230,18 +224,18 @@ def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) 
 
 def _keys(quantity: Quantity, own: Curve) -> list[tuple[str, str]]:
     """Short words, with their dashes, that tell the passes apart and that rates are cut."""
-    keys = [("axis cut", "")] if quantity.order and own.walked.circuit.turns_back else []
-    if len(own.passes) > 1 and own.walked.motion.law is None:
+    keys = [("axis cut", "")] if quantity.order and own.view.circuit.turns_back else []
+    if len(own.passes) > 1 and own.view.motion.law is None:
         keys += [("rising", "20 0"), ("falling", "5 3")]
     return keys
 
 
-def _limits(walked: Walked, frame: Frame, below: Axis, unit: str) -> str:
+def _limits(view: View, frame: Frame, below: Scale, unit: str) -> str:
     """Dashed lines with values at input limits, paler for other circuits; dotted ones at change points."""
-    motion = walked.motion
+    motion = view.motion
     left, top, _, bottom = frame.box
     own = shown_value(
-        motion, motion.input, np.array([d.input for d in walked.circuit.dead_centres if d.kind == "input"])
+        motion, motion.input, np.array([d.input for d in view.circuit.dead_centres if d.kind == "input"])
     )
     parts: list[str] = []
     free = 0.0
@@ -269,14 +263,14 @@ def _pale(colour: str) -> str:
     return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
 
 
-def _marks(quantity: Quantity, own: Curve, frame: Frame, below: Axis, beside: Axis) -> str:
+def _marks(quantity: Quantity, own: Curve, frame: Frame, below: Scale, beside: Scale) -> str:
     """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
-    motion, circuit = own.walked.motion, own.walked.circuit
+    motion, circuit = own.view.motion, own.view.circuit
     extremes: Extremes | None = getattr(circuit, quantity.kind)
     if quantity.column != circuit.output_column or extremes is None:
         return ""
     period = math.inf if slides(motion, motion.input) else 360.0
-    inputs = own.walked.input
+    inputs = own.view.shown_input
     lines = [(inputs[part], own.across[part], own.values[part]) for part in own.passes]
     parts: list[str] = []
     for word, value, at in (
@@ -284,7 +278,7 @@ def _marks(quantity: Quantity, own: Curve, frame: Frame, below: Axis, beside: Ax
         ("highest", extremes.highest, extremes.highest_at),
     ):
         if quantity.order == 0:
-            value = shown_value(motion, motion.output, value) + quantity.shift(own.walked)
+            value = shown_value(motion, motion.output, value) + quantity.shift(own.view)
         across = place_of(lines, value, shown_value(motion, motion.input, at), period)
         x, y = float(frame.x(below, np.array(across))), float(frame.y(beside, np.array(value)))
         _, top, _, bottom = frame.box

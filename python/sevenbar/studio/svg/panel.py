@@ -6,8 +6,9 @@ import math
 from dataclasses import dataclass
 
 from sevenbar.arrays import Floats
-from sevenbar.studio.svg.axis import Axis
+from sevenbar.kinematics.poses import at_row
 from sevenbar.studio.svg.picture import FONT, GROUND, HALO, INK, Frame, breadth, words
+from sevenbar.studio.svg.scale import Scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +23,7 @@ class Panel:
     x: Floats
     y: Floats
     values: Floats
-    scale: Axis | None = None
+    scale: Scale | None = None
     unit: str = ""
     colour: str = INK
 
@@ -42,7 +43,8 @@ class Panel:
     def _cursor(self, row: float) -> list[str]:
         if self.scale is None or not math.isfinite(row):
             return []
-        x, y, value = (_between(column, row) for column in (self.x, self.y, self.values))
+        row = min(max(row, 0.0), len(self.x) - 1.0)
+        x, y, value = (float(at_row(column, row)) for column in (self.x, self.y, self.values))
         left, top, right, bottom = self.frame.box
         if not left - 0.01 <= x <= right + 0.01:
             return []
@@ -57,12 +59,3 @@ class Panel:
         aside, anchor = (x + 8, "start") if x + 8 + breadth(told, bold=True) <= right else (x - 8, "end")
         line = inside - 7 if inside - 7 - FONT > top else min(inside + 7 + FONT, bottom - 3)
         return [*parts, words(self.frame, aside, line, told, anchor=anchor, bold=True, look=HALO)]
-
-
-def _between(values: Floats, row: float) -> float:
-    """A value at a row, between two rows on the straight line between them."""
-    last = len(values) - 1
-    row = min(max(row, 0.0), float(last))
-    low = min(int(row), last)
-    share = row - low
-    return float(values[low] if not share else (1 - share) * values[low] + share * values[low + 1])

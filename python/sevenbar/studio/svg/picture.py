@@ -11,7 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import short
-from sevenbar.studio.svg.axis import Axis
+from sevenbar.studio.svg.scale import Scale
 
 GROUND, GRID, ZERO, INK, QUIET = "#ffffff", "#e8eaed", "#b4b9c0", "#2b3038", "#6b727c"
 
@@ -44,12 +44,12 @@ class Frame:
         left, _, right, bottom = MARGINS
         return left, self.top, self.width - right, self.height - bottom
 
-    def x(self, scale: Axis, values: Floats) -> Floats:
+    def x(self, scale: Scale, values: Floats) -> Floats:
         """Where values stand along the axis below."""
         left, _, right, _ = self.box
         return left + (right - left) / (scale.high - scale.low) * (values - scale.low)
 
-    def y(self, scale: Axis, values: Floats) -> Floats:
+    def y(self, scale: Scale, values: Floats) -> Floats:
         """Where values stand along the axis at the left."""
         _, top, _, bottom = self.box
         return bottom - (bottom - top) / (scale.high - scale.low) * (values - scale.low)
@@ -103,7 +103,7 @@ def labelled(name: str, unit: str, room: float, *, bold: bool = False) -> str:
     return fitted(name, room - breadth(unit, bold=bold), bold=bold) + unit
 
 
-def grid(frame: Frame, below: Axis, beside: Axis, name: str, unit: str) -> str:
+def grid(frame: Frame, below: Scale, beside: Scale, name: str, unit: str) -> str:
     """Thin lines at the ticks of both axes, their numbers, and the name of the axis below."""
     left, top, right, bottom = frame.box
     across, up = (

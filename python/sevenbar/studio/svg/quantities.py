@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import shown_value, slides
-from sevenbar.drawing.skeleton import Walk, along, walk
-from sevenbar.kinematics.motion import Circuit, Motion, Trace
+from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.poses import along
+from sevenbar.studio.state.view import View
 
 #: What a column has, by the order of its derivative, as the figures call them.
 ORDERS = ("angle", "velocity", "acceleration")
@@ -39,42 +40,39 @@ class Quantity:
         """The word of its order: "angle" (or place), "velocity", "acceleration"."""
         return ORDERS[self.order]
 
-    def values(self, walked: Walked) -> Floats:
-        """The values along the walk of a circuit, in `unit`, (n,); NaN where a row has none.
+    def values(self, view: View) -> Floats:
+        """The values along the walk of a view's circuit, in `unit`, (n,); NaN where a row has none.
 
         Angles start within (-180, 180] and run on; where a rocking input goes back, velocities turn their
         sign. Of a point's velocity and acceleration the size is given.
         """
-        motion, circuit, path = walked.motion, walked.circuit, walked.path
+        circuit, path = view.circuit, view.path
         if self.column is None:
-            trace = walked.trace(self.point or 0)
+            trace = view.traces[self.point or 0]
             vectors = trace.velocity if self.order == 1 else trace.acceleration
             sizes: Floats = np.linalg.norm(vectors, axis=1)[path.rows]
             return sizes
         if self.order == 0:
-            values: Floats = shown_value(
-                motion, motion.linkage.columns[self.column], along(motion, circuit, path, self.column)
-            )
-            return values + self.shift(walked)
-        rates: Floats = (circuit.dq if self.order == 1 else circuit.ddq)[path.rows, self.column]
+            values = along(view.linkage, circuit, self.column)
+            shown: Floats = shown_value(view.motion, circuit.columns[self.column], values)
+            return shown + self.shift(view)
         if self.order == 1:
-            for way, part in zip(path.ways, path.passes, strict=True):
-                if way < 0:
-                    rates[part] *= way
-        return rates
+            return path.velocities(circuit.dq[:, self.column])
+        accelerations: Floats = circuit.ddq[path.rows, self.column]
+        return accelerations
 
-    def shift(self, walked: Walked) -> float:
+    def shift(self, view: View) -> float:
         """The whole turns [deg] that bring the angle's first value into (-180, 180]; 0 for all else."""
-        if self.column is None or self.order or walked.motion.linkage.column_kinds[self.column] == "slide":
+        if self.column is None or self.order or view.linkage.column_kinds[self.column] == "slide":
             return 0.0
-        angles = np.degrees(walked.circuit.q[:, self.column])
+        angles = np.degrees(view.circuit.q[:, self.column])
         known = angles[np.isfinite(angles)]
         # a start at half a turn but for rounding stays at +180
         return -360.0 * math.ceil((float(known[0]) - 180.0 - 1e-6) / 360.0) if known.size else 0.0
 
-    def natural(self, walked: Walked) -> float:
+    def natural(self, view: View) -> float:
         """The size of a value that a designer would call neither small nor large, in `unit`."""
-        motion, size = walked.motion, walked.circuit.size
+        motion, size = view.motion, view.circuit.size
         turn = self.column is not None and motion.linkage.column_kinds[self.column] == "turn"
         if self.order == 0:
             return 90.0 if turn else size
@@ -83,34 +81,6 @@ class Quantity:
             rate /= size
         natural = (1.0 if turn else size) * rate * (rate if self.order == 2 else 1.0)
         return natural if math.isfinite(natural) else 0.0
-
-
-@dataclass(frozen=True, eq=False)
-class Walked:
-    """A circuit with its walk; the traces of its points are made once, for all their quantities."""
-
-    motion: Motion
-    circuit: Circuit
-    path: Walk
-    _traces: dict[int, Trace] = field(default_factory=dict)
-
-    @staticmethod
-    def of(motion: Motion, circuit: Circuit) -> Walked:
-        """A circuit of the motion, walked."""
-        return Walked(motion, circuit, walk(motion, circuit))
-
-    @property
-    def input(self) -> Floats:
-        """The input along the walk [deg, or length], (n,)."""
-        values: Floats = shown_value(self.motion, self.motion.input, self.path.input)
-        return values
-
-    def trace(self, point: int) -> Trace:
-        """The trace of a named point, by its place in the linkage's points."""
-        if point not in self._traces:
-            named = self.motion.linkage.points[point]
-            self._traces[point] = self.circuit.point(named.link, named.at)
-        return self._traces[point]
 
 
 def quantities(motion: Motion) -> tuple[Quantity, ...]:

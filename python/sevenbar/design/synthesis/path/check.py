@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -18,6 +17,7 @@ from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Law
+from sevenbar.kinematics.rigid import rotation_vector
 
 #: How much further off than the solution, in parts of its error and of the path's extent, the points may be
 #: on one pass: more, and the solution lies on several.
@@ -135,27 +135,6 @@ def _standing(placing: Placing, unit: str) -> Mapping[str, float]:
     turn = np.degrees(rotation_vector(placing.rotation))
     names = [f"shift_{letter}_{unit}" for letter in "xyz"] + [f"turn_{letter}_deg" for letter in "xyz"]
     return dict(zip(names, map(float, [*placing.shift, *turn]), strict=True))
-
-
-def rotation_vector(rotation: Floats) -> Floats:
-    """The axis of a rotation (3, 3) times its angle [rad], (3,)."""
-    skew = np.array(
-        [
-            rotation[2, 1] - rotation[1, 2],
-            rotation[0, 2] - rotation[2, 0],
-            rotation[1, 0] - rotation[0, 1],
-        ]
-    )
-    sine, cosine = float(np.linalg.norm(skew)) / 2, (float(np.trace(rotation)) - 1) / 2
-    angle = math.atan2(sine, cosine)
-    if sine > 1e-6:
-        return np.asarray(skew / 2 / sine * angle)
-    if cosine > 0:
-        return np.asarray(skew / 2)
-    # half a turn: the axis is the column that is longest in R + 1
-    columns = rotation + np.eye(3)
-    axis = columns[:, int(np.linalg.norm(columns, axis=0).argmax())]
-    return np.asarray(axis / np.linalg.norm(axis) * angle)
 
 
 def moved(draft: Draft, placing: Placing) -> Draft:

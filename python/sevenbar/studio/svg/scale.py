@@ -21,7 +21,7 @@ EXPONENTS: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
 
 
 @dataclass(frozen=True)
-class Axis:
+class Scale:
     """A range, the step of its ticks, and the power of ten its numbers are written by."""
 
     low: float
@@ -71,7 +71,7 @@ class Axis:
         return f"10{str(self.power).translate(EXPONENTS)} {unit}" if self.power else unit
 
 
-def axis(low: float, high: float, most: int, *, degrees: bool = False) -> Axis:
+def scale(low: float, high: float, most: int, *, degrees: bool = False) -> Scale:
     """The scale of a range (low < high) with at most so many ticks, at round numbers."""
     needed = (high - low) / most
     tens = 10.0 ** math.floor(math.log10(needed))
@@ -79,7 +79,7 @@ def axis(low: float, high: float, most: int, *, degrees: bool = False) -> Axis:
     if degrees and needed > DEGREE_STEPS[0] / 2:
         steps = chain(DEGREE_STEPS, (360.0 * i * 10**k for k in count() for i in (2, 5, 10)))
     # counted as they are drawn: rounding may put one more on an end
-    step = next(step for step in steps if Axis(low, high, step, 0).count <= most)
+    step = next(step for step in steps if Scale(low, high, step, 0).count <= most)
     largest = max(abs(low), abs(high))
     power = 0 if PLAIN[0] <= largest < PLAIN[1] else 3 * math.floor(math.log10(largest) / 3)
-    return Axis(low, high, step, power)
+    return Scale(low, high, step, power)
