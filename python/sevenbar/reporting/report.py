@@ -35,6 +35,7 @@ from sevenbar.reporting.summary import (
     side_lengths,
     summary,
 )
+from sevenbar.text.markdown import table
 from sevenbar.text.units import ANGLES, amount, length_sizes
 
 __all__ = [
@@ -194,9 +195,8 @@ def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
         "\n".join(f"- {name}: {_plain(fact)}" if name else f"  {_plain(fact)}" for name, fact in told.facts)
     )
     for sheet in told.sheets:
-        rule = ["---:" if place in sheet.right else "---" for place in range(len(sheet.heads))]
-        lines = [sheet.heads, rule, *sheet.rows]
-        parts.append("\n".join(f"| {' | '.join(_plain(cell.strip()) for cell in line)} |" for line in lines))
+        heads, *rows = ([_plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
+        parts.append(table(heads, rows, right=sheet.right))
         parts += [sheet.note] if sheet.note else []
     parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
     return "\n\n".join(parts) + "\n"
