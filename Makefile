@@ -25,7 +25,7 @@ export PIP_QUIET := 1
 
 .PHONY: help
 help:  ## This list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: demo
 demo: $(VENV)/.installed  ## Analyse the two papers' linkages; tables and figures into demo/
@@ -108,6 +108,10 @@ bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmark
 .PHONY: accuracy
 accuracy: $(VENV)/.installed-dev  ## Measure how exact every linkage of the gallery is; writes docs/accuracy.md
 	$(BIN)/python -m evidence.accuracy
+
+.PHONY: structure
+structure: $(VENV)/.installed-dev  ## Count lines, and the rooms, floors, arrows and circles of what imports what
+	$(BIN)/python -m evidence.structure
 
 .PHONY: tutorial
 tutorial: $(VENV)/.installed-dev  ## Write the tutorial's outputs and pictures anew
