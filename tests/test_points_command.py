@@ -170,7 +170,7 @@ def test_a_law_lets_a_mass_on_a_rocking_circuit_be_asked_for(tmp_path):
         ),
         (
             ("inertia", "seven_r", "--mass", "P=1", "--gravity", "9.81"),
-            "--gravity: '9.81' is not three numbers; give them as in '0,0,-9.80665'",
+            "--gravity: '9.81' is not an acceleration; give three numbers, as in '0,0,-9.80665'",
         ),
     ],
 )

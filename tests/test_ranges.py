@@ -3,7 +3,7 @@
 import pytest
 
 import sevenbar as sb
-from sevenbar.commands.function import angles, lengths
+from sevenbar.commands.given import angles, lengths
 from sevenbar.commands.path import _bound
 from sevenbar.commands.points import parsed_box, parsed_masses
 from sevenbar.description.draft import Draft
@@ -83,4 +83,4 @@ def test_a_name_given_twice_is_refused() -> None:
 
 
 def test_sides_of_a_box_are_ranges_or_numbers() -> None:
-    assert parsed_box("-200:200,0..50,7") == [(-200, 200), (0, 50), (7, 7)]
+    assert parsed_box("-200:200,0..5cm,7", "mm") == [(-200, 200), (0, 50), (7, 7)]

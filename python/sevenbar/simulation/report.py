@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,13 +15,20 @@ from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
 from sevenbar.drawing.skeleton import short
-from sevenbar.reporting.folder import check_targets, fill_folder, write_columns
+from sevenbar.reporting.files import (
+    Report,
+    columns_file,
+    figure_files,
+    json_file,
+    json_text,
+    text_file,
+    without_nan,
+)
 from sevenbar.reporting.page import Facts, number_table
-from sevenbar.reporting.report import json_text, without_nan
 from sevenbar.simulation.agreement import Difference, Simulation
 
-#: The names of figures that a run may have.
-FIGURES = ("output", "joints", "points")
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def as_dict(run: Simulation) -> dict[str, Any]:
@@ -44,16 +52,6 @@ def as_dict(run: Simulation) -> dict[str, Any]:
         "returned": None if run.returned is None else {"length": run.returned[0], "angle": run.returned[1]},
     }
     return without_nan(told)  # type: ignore[no-any-return]
-
-
-def as_json(run: Simulation) -> str:
-    """What a run comes to as JSON text."""
-    return json_text(as_dict(run))
-
-
-def print_text(run: Simulation, console: Console | None = None) -> None:
-    """Prints the report for people."""
-    (console or Console()).print(text(run))
 
 
 def text(run: Simulation) -> RenderableType:
@@ -108,17 +106,27 @@ def _cells(found: Difference, slide: bool, unit: str) -> tuple[str, ...]:
     )
 
 
-def targets(run_engine: str, folder: Path, figures: Sequence[str], points: bool) -> list[Path]:
-    """The files that `write` makes for an engine, by its name."""
-    names = [f"{run_engine}.json", f"{run_engine}.csv"]
-    names += ["mujoco.xml"] if run_engine == "mujoco" else []
-    names += [
-        f"{run_engine}_{name}.{ending}"
-        for name in FIGURES
-        if points or name != "points"
-        for ending in figures
-    ]
-    return [folder / name for name in names]
+def simulation_report(engine: str, figures: Sequence[str] = ("png",)) -> Report[Simulation]:
+    """How a run of an engine is reported; files have its name, so that both engines share a folder."""
+    name = engine.lower()
+    files = {f"{name}.json": json_file(as_dict), f"{name}.csv": columns_file(columns)}
+    if name == "mujoco":
+        files["mujoco.xml"] = text_file(_mjcf)
+    for stem in ("output", "joints", "points"):
+        files |= figure_files(f"{name}_{stem}", figures, partial(_figure, stem))
+    return Report(text, as_dict, files)
+
+
+def _mjcf(run: Simulation) -> str:
+    from sevenbar.simulation.mjcf import mjcf
+
+    return mjcf(run.model, time_step=run.course.step)
+
+
+def _figure(stem: str, run: Simulation) -> Figure | None:
+    from sevenbar.simulation.figures import FIGURES
+
+    return None if stem == "points" and not run.points else FIGURES[stem](run)
 
 
 def write(
@@ -133,23 +141,17 @@ def write(
     Files are named by the engine, so that both engines share a folder; for MuJoCo its model is added.
     Raises `OutputError` where one of them exists and `force` is not given.
     """
-    from sevenbar.drawing.figure import save
-    from sevenbar.simulation.figures import figures as drawn
-    from sevenbar.simulation.mjcf import mjcf
+    return simulation_report(run.record.engine, figures).write(run, folder, force=force)
 
-    engine = run.record.engine.lower()
-    check_targets(targets(engine, Path(folder), figures, bool(run.points)), force=force)
 
-    def fill(staging: Path) -> None:
-        (staging / f"{engine}.json").write_text(as_json(run) + "\n", encoding="utf-8")
-        write_columns(staging / f"{engine}.csv", columns(run))
-        if engine == "mujoco":
-            (staging / "mujoco.xml").write_text(mjcf(run.model, time_step=run.course.step), encoding="utf-8")
-        for name, figure in drawn(run):
-            for ending in figures:
-                save(figure, staging / f"{engine}_{name}.{ending}")
+def as_json(run: Simulation) -> str:
+    """What a run comes to as JSON text."""
+    return json_text(as_dict(run))
 
-    return fill_folder(Path(folder), fill, force=force)
+
+def print_text(run: Simulation, console: Console | None = None) -> None:
+    """Prints the report for people."""
+    (console or Console()).print(text(run))
 
 
 def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:

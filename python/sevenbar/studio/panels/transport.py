@@ -9,7 +9,7 @@ from typing import Any
 
 import viser
 
-from sevenbar.reporting.report import joint_value
+from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.reporting.summary import joint_text
 from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
 from sevenbar.studio.state.session import Session
