@@ -22,7 +22,7 @@ from sevenbar.design.synthesis.closure import draft_of
 from sevenbar.design.synthesis.files import design_files
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import OutputError, RequestError
-from sevenbar.reporting.files import write_files
+from sevenbar.reporting.files import Report
 
 #: A double-rocker, whose two branches meet at dead centres of the input, and the paper's crank-rocker.
 ROCKER = np.array([300.0, 200.0, 450.0, 500.0, 350.0, 100.0])
@@ -178,7 +178,8 @@ def test_written_designs_open_and_tell_what_they_are_for(tmp_path):
     files = design_files(
         3, (), head=lambda _: head, figure=lambda *_: None, as_dict=lambda found: len(found.candidates)
     )
-    written = write_files(found, files, tmp_path / "out")
+    report = Report(str, vars, files)
+    written = report.write(found, tmp_path / "out")
     # no third one was found
     assert [path.name for path in written] == [
         *("design_1.toml", "design_2.toml", "summary.csv", "summary.json")
@@ -191,5 +192,5 @@ def test_written_designs_open_and_tell_what_they_are_for(tmp_path):
     assert sb.load(written[0]).motion().motion_type == "crank-rocker"
     before = text
     with pytest.raises(OutputError, match="exists already"):
-        write_files(found, files, tmp_path / "out")
+        report.write(found, tmp_path / "out")
     assert written[0].read_text(encoding="utf-8") == before

@@ -122,10 +122,9 @@ def analyze(
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar.reporting.report import motion_report
 
-    formats = figure_formats(figures, out)
+    report = motion_report(figure_formats(figures, out))
     check_law(law, speed)
     loaded = sb.load(linkage)
-    report = motion_report(loaded, formats)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint)
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)

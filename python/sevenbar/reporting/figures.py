@@ -1,20 +1,17 @@
-"""The figures of a motion as files: those that somebody asks for, or those of its report."""
+"""The figures of a motion as files: those that somebody asks for, and those of its report."""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.reporting.files import Files, figure_files, write_files
+from sevenbar.reporting.folder import fill_folder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,12 +21,6 @@ Places = Mapping[str, tuple[int, tuple[float, float, float]]]
 
 #: What can be drawn of a motion.
 KINDS = ("curves", "joints", "modes", "configuration", "point")
-
-
-class _Draw(Protocol):
-    """Draws a motion, and one of its circuits where the figure shows one."""
-
-    def __call__(self, motion: Motion, circuit: int) -> Figure: ...
 
 
 def write_figures(
@@ -44,37 +35,28 @@ def write_figures(
 ) -> list[Path]:
     """Writes figures of these kinds into a folder, all or none; returns their paths.
 
-    `kinds` of `KINDS`; `points` (link, at) by name, for the kind point. Raises `RequestError` for another
-    kind, `OutputError` where one of the files exists and `force` is not given.
+    `kinds` of `KINDS`; `points` (link, at) by name, for the kind point. Raises `OutputError` where one of the
+    files exists and `force` is not given.
     """
-    files: dict[str, Callable[[Motion, Path], object]] = {}
-    for _, stem, draw in _drawings(kinds, points):
-        files |= figure_files(stem, figures, partial(draw, circuit=circuit))
-    return write_files(motion, files, folder, force=force)
+    return fill_folder(
+        Path(folder), lambda staging: _draw(motion, staging, kinds, points, circuit, figures), force=force
+    )
 
 
-def report_figures(linkage: Loop, formats: Sequence[str]) -> Files[Motion]:
-    """The figures of a motion's report, with the first circuit that has a pose.
-
-    They are configuration and motion; but for an RSSR, whose curves show all, also joints, and path_<name>
-    for each named point.
-    """
-    kinds = ["curves", "configuration", *(["joints", "point"] if linkage.kind != "RSSR" else [])]
-    points = {point.name: (point.link, point.at) for point in linkage.points}
-    files: dict[str, Callable[[Motion, Path], object]] = {}
-    for kind, stem, draw in _drawings(kinds, points):
-
-        def drawn(motion: Motion, kind: str = kind, draw: _Draw = draw) -> Figure | None:
-            posed = posed_circuit(motion)
-            if not motion.circuits or (posed is None and kind in ("configuration", "point")):
-                return None
-            # a law that rests leaves no path
-            if kind == "point" and not _moves(motion, posed or 0):
-                return None
-            return draw(motion, posed or 0)
-
-        files |= figure_files(stem, formats, drawn)
-    return files
+def draw_for_report(motion: Motion, folder: Path, formats: Sequence[str]) -> None:
+    """Draws configuration and motion; but for an RSSR, whose curves show all, also joints and points."""
+    if not motion.circuits:
+        return
+    general = motion.linkage.kind != "RSSR"
+    posed = posed_circuit(motion)
+    kinds = ["curves", *(["joints"] if general else [])]
+    if posed is not None:
+        # a law that rests leaves no path
+        inputs = motion.circuits[posed].input
+        moves = np.unique(inputs[np.isfinite(inputs)]).size > 1
+        kinds += ["configuration", *(["point"] if general and moves else [])]
+    points = {point.name: (point.link, point.at) for point in motion.linkage.points}
+    _draw(motion, folder, kinds, points, posed or 0, formats)
 
 
 def posed_circuit(motion: Motion) -> int | None:
@@ -83,44 +65,35 @@ def posed_circuit(motion: Motion) -> int | None:
     return next(posed, None)
 
 
-def _moves(motion: Motion, circuit: int) -> bool:
-    inputs = motion.circuits[circuit].input
-    return np.unique(inputs[np.isfinite(inputs)]).size > 1
+def _draw(
+    motion: Motion, folder: Path, kinds: Sequence[str], points: Places, circuit: int, formats: Sequence[str]
+) -> None:
+    from sevenbar.drawing import plot
 
-
-def _drawings(kinds: Sequence[str], points: Places) -> Iterator[tuple[str, str, _Draw]]:
-    """The figures of these kinds: the kind, the file's name without an ending, and what draws it."""
-    for kind in kinds:
-        if kind not in KINDS:
-            raise RequestError(f"kinds: {shown(kind)} is not a figure; allowed: {', '.join(KINDS)}")
-        if kind == "point":
+    def made() -> Iterator[tuple[str, Figure]]:
+        if "curves" in kinds:
+            yield "motion", plot.curves(motion)
+        if "joints" in kinds:
+            yield "joints", plot.joints(motion)
+        if "configuration" in kinds:
+            yield "configuration", plot.configuration(motion, circuit)
+        if "point" in kinds:
             for name, point in points.items():
-                yield kind, f"path_{_file_name(name)}", partial(_path, name=name, point=point)
-        else:
-            yield kind, "motion" if kind == "curves" else kind, partial(_drawn, kind=kind)
+                yield f"path_{_file_name(name)}", plot.point_path(motion, point, circuit, name=name)
+        if "modes" in kinds:
+            chosen = chosen_circuit(motion, circuit)
+            # a limit is no place to show modes at: there two are one
+            ends = chosen.pass_range(0)
+            value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
+            modes = motion.linkage.assembly_modes(value, input=motion.input)
+            yield (
+                "modes",
+                plot.modes_overview(motion.linkage, modes, input=motion.input, output=motion.output),
+            )
 
-
-def _drawn(motion: Motion, circuit: int, kind: str) -> Figure:
-    from sevenbar.drawing import plot
-
-    if kind == "curves":
-        return plot.curves(motion)
-    if kind == "joints":
-        return plot.joints(motion)
-    if kind == "configuration":
-        return plot.configuration(motion, circuit)
-    chosen = chosen_circuit(motion, circuit)
-    # a limit is no place to show modes at: there two are one
-    ends = chosen.pass_range(0)
-    value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
-    modes = motion.linkage.assembly_modes(value, input=motion.input)
-    return plot.modes_overview(motion.linkage, modes, input=motion.input, output=motion.output)
-
-
-def _path(motion: Motion, circuit: int, name: str, point: tuple[int, tuple[float, float, float]]) -> Figure:
-    from sevenbar.drawing import plot
-
-    return plot.point_path(motion, point, circuit, name=name)
+    for name, figure in made():
+        for ending in formats:
+            plot.save(figure, folder / f"{name}.{ending}")
 
 
 def _file_name(name: str) -> str:

@@ -34,6 +34,8 @@ class Report(Generic[T]):
     text: Callable[[T], RenderableType]
     as_dict: Callable[[T], dict[str, Any]]
     files: Files[T] = field(default_factory=dict)
+    #: draws figures into the folder, whose names the result decides; before the files are written
+    figures: Callable[[T, Path], object] | None = None
 
     def targets(self, folder: Path) -> list[Path]:
         """The files that `write` may write, for a look before long work."""
@@ -48,25 +50,20 @@ class Report(Generic[T]):
         (console or Console()).print(self.text(found))
 
     def write(self, found: T, folder: str | os.PathLike[str], *, force: bool = False) -> list[Path]:
-        """`write_files` of this report's files."""
-        return write_files(found, self.files, folder, force=force)
+        """Writes the files of a result into a folder, all or none; returns their paths.
 
+        The folder is made if need be. All are finished in a folder aside before the first is put in place.
+        Raises `OutputError` where that cannot be done, and where one exists and `force` is not given.
+        """
+        check_targets(self.targets(Path(folder)), force=force)
 
-def write_files(
-    found: T, files: Files[T], folder: str | os.PathLike[str], *, force: bool = False
-) -> list[Path]:
-    """Writes the files of a result into a folder, all or none; returns their paths.
+        def fill(staging: Path) -> None:
+            if self.figures is not None:
+                self.figures(found, staging)
+            for name, write in self.files.items():
+                write(found, staging / name)
 
-    The folder is made if need be. All are finished in a folder aside before the first is put in place. Raises
-    `OutputError` where that cannot be done, and where one of them exists and `force` is not given.
-    """
-    check_targets([Path(folder) / name for name in files], force=force)
-
-    def fill(staging: Path) -> None:
-        for name, write in files.items():
-            write(found, staging / name)
-
-    return fill_folder(Path(folder), fill, force=force)
+        return fill_folder(Path(folder), fill, force=force)
 
 
 def text_file(text: Callable[[T], str]) -> Write[T]:

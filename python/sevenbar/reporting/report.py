@@ -22,7 +22,7 @@ from sevenbar.kinematics.general import left_open
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Circuit, Extremes, Modes, Motion
-from sevenbar.reporting.figures import posed_circuit, report_figures, write_figures
+from sevenbar.reporting.figures import draw_for_report, posed_circuit, write_figures
 from sevenbar.reporting.files import Report, columns_file, json_file, json_text, without_nan
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.summary import (
@@ -225,25 +225,21 @@ def _table(sheet: Sheet) -> Table:
     return table
 
 
-def motion_report(linkage: Loop, figures: Sequence[str] = ("png",)) -> Report[Motion]:
-    """How a motion of a linkage is reported, with the figures in these formats."""
+def motion_report(figures: Sequence[str] = ("png",)) -> Report[Motion]:
+    """How a motion is reported, with the figures in these formats."""
     files = {
         "report.json": json_file(as_dict),
         "motion.csv": columns_file(Motion.columns),
-        **report_figures(linkage, figures),
-        # last, with the pictures that are there
-        "report.md": lambda motion, path: path.write_text(
-            markdown(motion, _pictures(path.parent)), encoding="utf-8"
-        ),
+        "report.md": _write_markdown,
     }
-    return Report(text, as_dict, files)
+    return Report(text, as_dict, files, partial(draw_for_report, formats=figures))
 
 
-def _pictures(folder: Path) -> list[str]:
-    """The pictures that a page shows: a browser shows no PDF in place; of several formats one is enough."""
-    here = [file.name for file in sorted(folder.iterdir()) if file.suffix in (".png", ".svg")]
-    stems = {name.rpartition(".")[0]: name for name in reversed(here)}
-    return [stems[stem] for stem in sorted(stems)]
+def _write_markdown(motion: Motion, path: Path) -> None:
+    # a browser shows no PDF in place; of several formats one is enough
+    shown_here = [file.name for file in sorted(path.parent.iterdir()) if file.suffix in (".png", ".svg")]
+    stems = {name.rpartition(".")[0]: name for name in reversed(shown_here)}
+    path.write_text(markdown(motion, [stems[stem] for stem in sorted(stems)]), encoding="utf-8")
 
 
 def write(
@@ -266,7 +262,7 @@ def write(
         ...     sorted(path.name for path in write(sb.load("rssr").motion(), folder, ["svg"]))
         ['configuration.svg', 'motion.csv', 'motion.svg', 'report.json', 'report.md']
     """
-    return motion_report(motion.linkage, figures).write(motion, folder, force=force)
+    return motion_report(figures).write(motion, folder, force=force)
 
 
 def modes_report(linkage: Loop, column: int) -> Report[Modes]:

@@ -6,21 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, Step
+from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import Heights
-from sevenbar.reporting.files import Report, figure_files, json_file
+from sevenbar.reporting.files import Report, Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, number_table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,19 +153,19 @@ def map_report(
     measures: Sequence[str] = (), figures: Sequence[str] = ("png",), *, size: str = "A4"
 ) -> Report[MapFindings]:
     """How a map with contours of these measures is reported; a figure for the map and for each measure."""
-    files = {"map.json": json_file(as_dict), "boundaries.csv": _write_boundaries}
+    files: dict[str, Write[MapFindings]] = {
+        "map.json": json_file(as_dict),
+        "boundaries.csv": _write_boundaries,
+    }
     if measures:
         files["contours.csv"] = _write_contours
     for place, stem in enumerate(("map", *measures)):
-        files |= figure_files(stem, figures, partial(_sheet, place=place, size=size))
+        files |= figure_files(stem, figures, partial(_sheet, size, place))
     return Report(text, as_dict, files)
 
 
-def _sheet(findings: MapFindings, *, place: int, size: str) -> Figure:
-    """The figure of the map, or at a place above 0 of that measure's contours."""
-    from sevenbar.design.maps.figures import draw
-
-    return draw(findings.map, findings.heights[place - 1] if place else None, size=size)
+def _sheet(size: str, place: int, found: MapFindings) -> Figure:
+    return draw(found.map, found.heights[place - 1] if place else None, size=size)
 
 
 def _write_boundaries(findings: MapFindings, path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -12,6 +12,7 @@ from rich.text import Text
 
 from sevenbar.arrays import Floats
 from sevenbar.design.points.cycle import Cycle, told_input
+from sevenbar.design.points.figures import inertia_figure, least_figure, nearest_figure
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import LeastPoint
 from sevenbar.design.points.nearest import NearestPath
@@ -19,9 +20,6 @@ from sevenbar.design.points.poles import poles_of
 from sevenbar.drawing.figure import slides
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.page import Facts, number_table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: Most inputs that are told; more are a rate that is as great at all of them.
 MOST_TOLD = 6
@@ -258,15 +256,11 @@ def least_report(
             "point.json": json_file(as_dict),
             "rates.csv": columns_file(partial(_rate_columns, name=name)),
             "poles.csv": columns_file(_pole_columns),
-            **figure_files("point", figures, partial(_least_figure, name=name)),
+            **figure_files(
+                "point", figures, lambda found: least_figure(found, poles_of(found.cycle, found.at), name)
+            ),
         },
     )
-
-
-def _least_figure(found: LeastPoint, name: str) -> Figure:
-    from sevenbar.design.points.figures import least_figure
-
-    return least_figure(found, poles_of(found.cycle, found.at), name)
 
 
 def nearest_report(
@@ -280,15 +274,9 @@ def nearest_report(
             "point.toml": text_file(toml),
             "point.json": json_file(as_dict),
             "path.csv": columns_file(_path_columns),
-            **figure_files("point", figures, partial(_nearest_figure, name=name)),
+            **figure_files("point", figures, lambda found: nearest_figure(found, name)),
         },
     )
-
-
-def _nearest_figure(found: NearestPath, name: str) -> Figure:
-    from sevenbar.design.points.figures import nearest_figure
-
-    return nearest_figure(found, name)
 
 
 def inertia_report(figures: Sequence[str] = ("png",)) -> Report[Inertia]:
@@ -299,15 +287,9 @@ def inertia_report(figures: Sequence[str] = ("png",)) -> Report[Inertia]:
         {
             "inertia.json": json_file(as_dict),
             "inertia.csv": columns_file(_inertia_columns),
-            **figure_files("inertia", figures, _inertia_figure),
+            **figure_files("inertia", figures, inertia_figure),
         },
     )
-
-
-def _inertia_figure(found: Inertia) -> Figure:
-    from sevenbar.design.points.figures import inertia_figure
-
-    return inertia_figure(found)
 
 
 def _input_head(cycle: Cycle) -> str:

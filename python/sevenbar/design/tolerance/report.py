@@ -6,13 +6,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
@@ -21,9 +22,6 @@ from sevenbar.design.tolerance.worst import WorstCase
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, number_table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: Dimensions of a corner design that the page names; the JSON has all.
 MOST_NAMED = 8
@@ -141,22 +139,10 @@ def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
             "dimensions.csv": _write_dimensions,
             "deviation.csv": columns_file(_deviation),
             "sensitivities.csv": columns_file(_sensitivities),
-            **figure_files("shares", figures, _shares_figure),
-            **figure_files("deviation", figures, _deviation_figure),
+            **figure_files("shares", figures, lambda found: shares_figure(found.linear)),
+            **figure_files("deviation", figures, lambda found: deviation_figure(found.linear, found.exact)),
         },
     )
-
-
-def _shares_figure(findings: Findings) -> Figure:
-    from sevenbar.design.tolerance.figures import shares_figure
-
-    return shares_figure(findings.linear)
-
-
-def _deviation_figure(findings: Findings) -> Figure:
-    from sevenbar.design.tolerance.figures import deviation_figure
-
-    return deviation_figure(findings.linear, findings.exact)
 
 
 def _write_dimensions(findings: Findings, path: Path) -> None:

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from matplotlib.figure import Figure
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.design.synthesis.candidates import Candidate, tally
 from sevenbar.design.synthesis.files import design_files
+from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
 from sevenbar.design.synthesis.function.generation import Synthesis
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: Columns of the printed table, by their names in `Candidate.columns`, those that a task has not left out.
 PRINTED = {
@@ -98,6 +97,4 @@ def _head(command: str, found: Synthesis) -> list[str]:
 
 
 def _figure(found: Synthesis, candidate: Candidate) -> Figure:
-    from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
-
     return swing_figure(candidate) if found.wish is None else function_figure(candidate, found.wish)

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.design.synthesis.candidates import Candidate
 from sevenbar.design.synthesis.files import design_files
+from sevenbar.design.synthesis.path.figures import path_figure
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: Dimensions below this part of the path's extent are printed as 0.
 TINY = 1e-9
@@ -57,14 +55,14 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
 
 def path_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> Report[PathDesigns]:
     """How at most `count` designs are reported; the heads of their files name the `command`."""
-    files = design_files(count, figures, head=partial(_head, command), figure=_figure, as_dict=as_dict)
+    files = design_files(
+        count,
+        figures,
+        head=partial(_head, command),
+        figure=lambda found, design: path_figure(found.task, design),
+        as_dict=as_dict,
+    )
     return Report(text, as_dict, files)
-
-
-def _figure(found: PathDesigns, candidate: Candidate) -> Figure:
-    from sevenbar.design.synthesis.path.figures import path_figure
-
-    return path_figure(found.task, candidate)
 
 
 def _head(command: str, found: PathDesigns) -> list[str]:
