@@ -20,7 +20,7 @@ from sevenbar.measuring.figures import calibration_figure, comparison_figure, tu
 from sevenbar.measuring.measured import Ends
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, json_text, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table
 
 #: Candidates and notes are told in full in the JSON; of candidates the page has as many.
 MOST_CANDIDATES = 4
@@ -31,10 +31,10 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     ends = comparison.ends
     facts = Facts()
     parts: list[RenderableType] = [Text(comparison.linkage.name, style="bold underline"), facts.grid]
-    speed = f"{ends.input} at {comparison.speed:.6g} {ends.unit('input')}/s, output {ends.output}"
+    drive = drive_text(ends.input, comparison.speed, ends.unit("input"), ends.output)
     if isinstance(comparison, ExtremesComparison):
         facts.add("measured", f"{comparison.source}, lowest and highest values")
-        facts.add("drive", speed)
+        facts.add("drive", drive)
         first, *others = (f"circuit {i} (misfit {per_cent(m)})" for i, m in comparison.misfits)
         facts.add("explained by", first, style="bold")
         if others:
@@ -46,7 +46,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     facts.add(
         "measured", f"{comparison.source}, {rows} rows of {', '.join(_words(ends, comparison.outputs))}"
     )
-    facts.add("drive", speed)
+    facts.add("drive", drive)
     facts.add("explained by", _candidate(chosen.circuit, chosen.branch, chosen.misfit), style="bold")
     others = [
         _candidate(c.circuit, c.branch, c.misfit)
@@ -80,7 +80,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         + ", ".join(_words(ends, calibration.outputs)),
     )
     speed = calibration.before.speed
-    facts.add("drive", f"{ends.input} at {speed:.6g} {ends.unit('input')}/s, output {ends.output}")
+    facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
     facts.add("explained by", f"circuit {chosen.circuit}, branch {chosen.branch}")
     for quantity in calibration.outputs:
         before, after = (

@@ -15,6 +15,7 @@ from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
 from sevenbar.drawing.skeleton import short
+from sevenbar.kinematics.columns import joint_column, point_column
 from sevenbar.reporting.files import (
     Report,
     columns_file,
@@ -24,7 +25,7 @@ from sevenbar.reporting.files import (
     text_file,
     without_nan,
 )
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table
 from sevenbar.simulation.agreement import Difference, Simulation
 
 if TYPE_CHECKING:
@@ -62,9 +63,7 @@ def text(run: Simulation) -> RenderableType:
     facts.add("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))
     facts.add("engine", f"{record.engine} {record.version}: {record.method}")
     slide = linkage.column_kinds[way.circuit.input_column] == "slide"
-    facts.add(
-        "drive", f"{motion.input} at {motion.speed:.6g} {unit if slide else 'rad'}/s, output {motion.output}"
-    )
+    facts.add("drive", drive_text(motion.input, motion.speed, unit if slide else "rad", motion.output))
     facts.add("course", way.told())
     lead = f", after {len(way.lead)} that are not compared" if len(way.lead) else ""
     facts.add("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
@@ -159,26 +158,20 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     linkage, unit = run.linkage, run.linkage.length_unit
     engine = run.record.engine.lower()
     found: dict[str, npt.NDArray[Any]] = {"row": np.arange(len(run.time)), "time_s": run.time}
-    sides = (("sevenbar", run.theory), (engine, run.engine))
+    sides = {"sevenbar": run.theory, engine: run.engine}
     for index, name in enumerate(linkage.columns):
-        slide = linkage.column_kinds[index] == "slide"
-        for who, values in sides:
-            shown = values.q[:, index] if slide else np.degrees(values.q[:, index])
-            found[f"{name}_{who}_{unit if slide else 'deg'}"] = shown
-        own = unit if slide else "rad"
-        for who, values in sides:
-            found[f"{name}_{who}_{own}_s"] = values.dq[:, index]
-        for who, values in sides:
-            found[f"{name}_{who}_{own}_s2"] = values.ddq[:, index]
+        slides = linkage.column_kinds[index] == "slide"
+        for order, quantity in enumerate(("q", "dq", "ddq")):
+            for who, joints in sides.items():
+                head = joint_column(name, slides=slides, order=order, length=unit, angle="deg", who=who)
+                values = getattr(joints, quantity)[:, index]
+                found[head] = np.degrees(values) if head.endswith("_deg") else values
     for name, (engine_point, theory_point) in run.points.items():
-        for letter, suffix, what in (
-            ("", unit, "position"),
-            ("v", f"{unit}_s", "velocity"),
-            ("a", f"{unit}_s2", "acceleration"),
-        ):
-            for axis, direction in enumerate("xyz"):
+        for order, quantity in enumerate(("position", "velocity", "acceleration")):
+            for axis, letter in enumerate("xyz"):
                 for who, point in (("sevenbar", theory_point), (engine, engine_point)):
-                    found[f"{name}_{letter}{direction}_{who}_{suffix}"] = getattr(point, what)[:, axis]
+                    head = point_column(name, letter, order=order, length=unit, who=who)
+                    found[head] = getattr(point, quantity)[:, axis]
     found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
     found["closure_error_rad"] = run.engine.tilt.max(axis=1)
     return found

@@ -18,8 +18,9 @@ from sevenbar.design.points.least import LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import poles_of
 from sevenbar.drawing.figure import slides
+from sevenbar.kinematics.columns import joint_column
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table
 
 #: Most inputs that are told; more are a rate that is as great at all of them.
 MOST_TOLD = 6
@@ -136,9 +137,9 @@ def _title(cycle: Cycle) -> Text:
 def _whose(cycle: Cycle) -> str:
     motion = cycle.motion
     unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
-    drive = "driven by a law" if motion.law is not None else f"at {motion.speed:g} {unit}/s"
+    drive = drive_text(motion.input, None if motion.law is not None else motion.speed, unit)
     branch = f", branch {cycle.branch}" if not cycle.circuit.goes_round else ""
-    return f"circuit {cycle.circuit.index}{branch}, {motion.input} {drive}"
+    return f"circuit {cycle.circuit.index}{branch}, {drive}"
 
 
 def _numbers(values: Sequence[float] | Floats) -> str:
@@ -294,7 +295,10 @@ def inertia_report(figures: Sequence[str] = ("png",)) -> Report[Inertia]:
 
 def _input_head(cycle: Cycle) -> str:
     motion = cycle.motion
-    return f"{motion.input}_{motion.linkage.length_unit if slides(motion, motion.input) else 'deg'}"
+    length = motion.linkage.length_unit
+    return joint_column(
+        motion.input, slides=slides(motion, motion.input), order=0, length=length, angle="deg"
+    )
 
 
 def _told(cycle: Cycle, inputs: Floats) -> Floats:

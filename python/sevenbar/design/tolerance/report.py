@@ -21,7 +21,7 @@ from sevenbar.design.tolerance.words import input_text, plain, told_name, unit_o
 from sevenbar.design.tolerance.worst import WorstCase
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table
 
 #: Dimensions of a corner design that the page names; the JSON has all.
 MOST_NAMED = 8
@@ -45,7 +45,8 @@ def text(findings: Findings) -> RenderableType:
     found = linear.found
     facts = Facts()
     facts.add("told", f"{told_name(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})")
-    facts.add("drive", f"{found.input_name} at {found.speed:.6g} {_speed_unit(linear)}")
+    unit = "rad" if found.loop.columns[found.loop.input].turns else found.linkage.length_unit
+    facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
     facts.add("errors", f"independent, {linear.distribution}{spread}")
     facts.add("worst case", _worst_text(worst))
@@ -204,11 +205,6 @@ def _suffix(linear: Linear) -> str:
 def _per(unit: str, dimension: str) -> str:
     """The unit of a derivative, as columns of tables have it."""
     return f"{unit}_per_{dimension.replace('/', '_') or 'one'}"
-
-
-def _speed_unit(linear: Linear) -> str:
-    found = linear.found
-    return "rad/s" if found.loop.columns[found.loop.input].turns else f"{found.linkage.length_unit}/s"
 
 
 def _worst_text(worst: WorstCase) -> str:
