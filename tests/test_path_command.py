@@ -114,7 +114,7 @@ def test_tables_of_every_naming_hold_the_same_points(tmp_path):
     ("head", "told"),
     [
         ("x,y,z", "column 'x': has no unit; write it as in 'x [mm]'"),
-        ("x [deg],y [mm],z [mm]", "column 'x [deg]': 'deg' is not a unit of a length; give one, as in [mm]"),
+        ("x [deg],y [mm],z [mm]", "column 'x [deg]': 'deg' is not a unit of the x; give one like mm"),
         ("a [mm],b [mm],c [mm]", "no column for x; the columns are 'a [mm]', 'b [mm]', 'c [mm]'"),
         ("Q x [mm],R x [mm],y [mm]", "line 1: 'Q x [mm]' and 'R x [mm]' both hold x"),
         ("", "has no header, so the unit of its numbers is not known"),

@@ -208,12 +208,12 @@ def test_a_path_from_the_tables_of_sevenbar_leads_back_to_its_point(tmp_path):
         ("x,y,z\n1,2,3\n", "column 'x': has no unit; write it as in 'x [mm]'"),
         (
             "x [mm],y [deg],z [mm]\n1,2,3\n",
-            "column 'y [deg]': 'deg' is not a unit of a length; give one, as in [mm]",
+            "column 'y [deg]': 'deg' is not a unit of the y; give one like mm",
         ),
         ("x [mm],y [mm],z [mm]\n1,,3\n4,5,6\n", "line 2: no number in column 'y [mm]' ('')"),
         (
             "x [mm],y [mm],z [mm],theta_1 [mm]\n1,2,3,4\n",
-            "'mm' is not a unit of an angle; give one, as in [deg]",
+            "'mm' is not a unit of the input; give one like deg",
         ),
     ],
 )
