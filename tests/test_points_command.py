@@ -157,7 +157,7 @@ def test_a_law_lets_a_mass_on_a_rocking_circuit_be_asked_for(tmp_path):
         ),
         (
             ("inertia", "seven_r", "--mass", "P"),
-            "--mass: 'P' is no mass; give a point and kilograms, as in P=2.5",
+            "--mass: 'P' is not a mass; give a point and kilograms, as in P=2.5",
         ),
         (("inertia", "seven_r", "--mass", "P=-2"), "mass of P: -2.0 is not a mass; give kilograms > 0"),
         (
@@ -166,7 +166,7 @@ def test_a_law_lets_a_mass_on_a_rocking_circuit_be_asked_for(tmp_path):
         ),
         (
             ("inertia", "seven_r", "--mass", "P=1", "--mass", "P=2"),
-            "--mass: point 'P' is given twice; leave one out",
+            "--mass: 'P' is given twice; leave one out",
         ),
         (
             ("inertia", "seven_r", "--mass", "P=1", "--gravity", "9.81"),

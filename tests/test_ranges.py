@@ -4,7 +4,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.commands.given import angles, lengths
-from sevenbar.commands.path import _bound
+from sevenbar.commands.path import parsed_bounds
 from sevenbar.commands.points import parsed_box, parsed_masses
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import axes_of, split_ranges
@@ -31,7 +31,7 @@ WRITTEN = {
 def test_a_range_means_the_same_in_every_option(text: str) -> None:
     length = DRAFT.dimension("L1")
     along, _ = axes_of(DRAFT, split_ranges([f"L1={text}", "L3=1:2"]))
-    _, bound = _bound(f"L1={text}")
+    bound = parsed_bounds([f"L1={text}"])["L1"]
     _, span = axis_from_text(f"L1={text.replace(':', '..')}")
     swept = axis_of(length, span)
     every = [

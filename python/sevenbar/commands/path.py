@@ -21,8 +21,8 @@ from sevenbar.commands.options import (
     progress_bar,
     words,
 )
-from sevenbar.errors import RequestError, shown
-from sevenbar.text.ranges import split_name, split_range
+from sevenbar.errors import RequestError
+from sevenbar.text.ranges import split_named, split_range
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.limits import Limits
@@ -92,7 +92,7 @@ def path(
         points,
         asked,
         vary=words(vary) if vary is not None else None,
-        bounds=dict(_bound(word) for word in words(bound or [])),
+        bounds=parsed_bounds(words(bound or [])),
         timing=inputs if timing else None,
         phase=phase,
         place=place,
@@ -104,14 +104,14 @@ def path(
     deliver(PathDesigns(task, found, str(wanted), seed), report, out, json=json, force=force)
 
 
-def _bound(word: str) -> tuple[str, tuple[str, str]]:
-    """Name and bounds of words like "L1=100:400" and "L1=10:40cm"."""
-    parts = split_name(word)
-    ends = split_range(parts[1]) if parts else None
-    if parts is None or ends is None:
-        example = "L1=100:400 or L1=10:40cm"
-        raise RequestError(f"--bound: {shown(word)} is not understood; give the two ends, as in {example}")
-    return parts[0], ends
+def parsed_bounds(given: list[str]) -> dict[str, tuple[str, str]]:
+    """The two ends of each dimension, of words like "L1=100:400" and "L1=10:40cm"."""
+    what, hint = "bounds of a dimension", "give the two ends, as in L1=100:400 or L1=10:40cm"
+    found = {name: split_range(text) for name, text in split_named("--bound", given, what, hint).items()}
+    for name, ends in found.items():
+        if ends is None:
+            raise RequestError(f"--bound: {name} has no {what}; {hint}")
+    return {name: ends for name, ends in found.items() if ends is not None}
 
 
 def _limits(transmission: str | None, size: str | None, motion_type: str | None, unit: str) -> Limits:

@@ -24,7 +24,7 @@ from sevenbar.commands.options import (
 from sevenbar.description.draft import Draft
 from sevenbar.description.files import text_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.ranges import finite_number, split_list, split_name, split_range, three_numbers
+from sevenbar.text.ranges import finite_number, split_list, split_named, split_range, three_numbers
 from sevenbar.text.units import amount, sizes_of
 
 if TYPE_CHECKING:
@@ -164,14 +164,12 @@ def parsed_box(text: str, unit: str) -> list[tuple[float, float]]:
 
 def parsed_masses(given: list[str]) -> dict[str, float]:
     """Masses written NAME=KILOGRAMS; `RequestError` for others, and for a point given twice."""
-    found: dict[str, float] = {}
-    for text in given:
-        name, value = split_name(text) or ("", "")
-        kilograms = finite_number(value.removesuffix("kg"))
+    what, hint = "a mass", "give a point and kilograms, as in P=2.5"
+    found = {}
+    for name, text in split_named("--mass", given, what, hint).items():
+        kilograms = finite_number(text.removesuffix("kg"))
         if kilograms is None:
-            raise RequestError(f"--mass: {shown(text)} is no mass; give a point and kilograms, as in P=2.5")
-        if name in found:
-            raise RequestError(f"--mass: point {shown(name)} is given twice; leave one out")
+            raise RequestError(f"--mass: {shown(f'{name}={text}')} is not {what}; {hint}")
         found[name] = kilograms
     return found
 
