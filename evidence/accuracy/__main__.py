@@ -65,8 +65,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--out",
         type=Path,
         metavar="DIR",
-        help="a folder for all files; without, a full run writes accuracy/results.json and docs/accuracy.md, "
-        "any other build/accuracy",
+        help="a folder for all files; without, a full run writes evidence/accuracy/results.json and "
+        "docs/accuracy.md, any other build/accuracy",
     )
     parser.add_argument("--page", type=Path, metavar="JSON", help="measure nothing: the page of kept results")
     given = parser.parse_args(arguments)
