@@ -25,7 +25,7 @@ export PIP_QUIET := 1
 
 .PHONY: help
 help:  ## This list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-9s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: demo
 demo: $(VENV)/.installed  ## Analyse the two papers' linkages; tables and figures into demo/
@@ -103,11 +103,15 @@ oldest: wheel  ## The fast tests with the oldest versions of all dependencies th
 bench: wheel  ## Sevenbar beside its peers, installed one by one: docs/benchmarks.md
 	$(PYTHON) -m venv --clear build/bench
 	build/bench/bin/pip install "$$(ls -t "$(DIST)"/sevenbar-*.whl | head -1)[studio]"
-	build/bench/bin/python -m benches --install $(BENCH)
+	build/bench/bin/python -m evidence.benches --install $(BENCH)
 
 .PHONY: accuracy
 accuracy: $(VENV)/.installed-dev  ## Measure how exact every linkage of the gallery is; writes docs/accuracy.md
-	$(BIN)/python -m accuracy
+	$(BIN)/python -m evidence.accuracy
+
+.PHONY: structure
+structure: $(VENV)/.installed-dev  ## Count lines, and the rooms, floors, arrows and circles of what imports what
+	$(BIN)/python -m evidence.structure
 
 .PHONY: tutorial
 tutorial: $(VENV)/.installed-dev  ## Write the tutorial's outputs and pictures anew
@@ -126,13 +130,13 @@ SEED ?= 1
 AGAIN ?=
 .PHONY: fuzz
 fuzz: $(VENV)/.installed-dev  ## Hard use: LINKAGES, FILES, THREADS, SEED, AGAIN; writes docs/hard-use.md
-	$(BIN)/python -m fuzz run --page --linkages $(LINKAGES) --files $(FILES) --threads $(THREADS) --seed $(SEED) $(if $(AGAIN),--again $(AGAIN))
+	$(BIN)/python -m evidence.fuzz run --page --linkages $(LINKAGES) --files $(FILES) --threads $(THREADS) --seed $(SEED) $(if $(AGAIN),--again $(AGAIN))
 
 .PHONY: clean
 clean:  ## Remove all that these commands made, the environment too
 	rm -rf $(VENV) target build dist demo .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	rm -f python/sevenbar/_core*.so
-	find python tests benches accuracy examples -name __pycache__ -prune -exec rm -rf {} +
+	find python tests evidence examples -name __pycache__ -prune -exec rm -rf {} +
 
 # The environment: each stamp stands for a step that is done and need not be done again.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fuzz.random_linkages import Dimensions
+from evidence.fuzz.random_linkages import Dimensions
 
 #: The real dimensions [mm], where the drawing has 700, 700, 250, 550, 0, 997.497.
 REAL = Dimensions(M=700.0, N=700.0, L1=251.2, L3=548.6, D=0.0, L2=998.1)

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from fuzz.random_linkages import (
+from evidence.fuzz.random_linkages import (
     Dimensions,
     Drawing,
     assembled_square,

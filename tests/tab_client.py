@@ -9,7 +9,7 @@ import viser
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
-from benches.cases.studio_client import CAMERA, unpacked
+from evidence.benches.cases.studio_client import CAMERA, unpacked
 
 
 class TabClient:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy import __main__ as command
-from accuracy import (
+from evidence.accuracy import __main__ as command
+from evidence.accuracy import (
     closed_forms,
     dead_centres,
     extremes,
@@ -23,9 +23,9 @@ from accuracy import (
     published,
     run,
 )
-from accuracy.forty_digits import joint_errors, reference
-from accuracy.quantiles import QUANTITIES, ROUNDING, Row, quantiles, summary
-from accuracy.series import Series, acos, asin, atan2, cos_sin, sqrt
+from evidence.accuracy.forty_digits import joint_errors, reference
+from evidence.accuracy.quantiles import QUANTITIES, ROUNDING, Row, quantiles, summary
+from evidence.accuracy.series import Series, acos, asin, atan2, cos_sin, sqrt
 from sevenbar.description import gallery
 
 ROOT = Path(__file__).parent.parent
@@ -302,7 +302,7 @@ def test_the_page_of_kept_results_goes_where_it_is_asked_for(small: dict, tmp_pa
 
 
 def test_the_kept_page_is_the_one_that_the_kept_results_give() -> None:
-    kept = ROOT / "accuracy" / "results.json"
+    kept = ROOT / "evidence" / "accuracy" / "results.json"
     results = json.loads(kept.read_text(encoding="utf-8"))
     assert kept.stat().st_size < 200_000
     assert sorted(results["rows"]) == sorted(gallery.names())

@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.circumstances import circumstances
-from benches import page, peers
-from benches.cases import CASES, case
-from benches.cases.arm import Arm, normal_form
-from benches.cases.closure import CLOSED, Closure, different
-from benches.cases.loops import drawn, paper, sixteen
-from benches.cases.modes import scored
-from benches.harness import OutOfTimeError, Work, at_most, compare, spread
-from benches.outcome import Outcome, Plot, Series, Table, timed
+from evidence import ROOT
+from evidence.benches import page, peers
+from evidence.benches.cases import CASES, case
+from evidence.benches.cases.arm import Arm, normal_form
+from evidence.benches.cases.closure import CLOSED, Closure, different
+from evidence.benches.cases.loops import drawn, paper, sixteen
+from evidence.benches.cases.modes import scored
+from evidence.benches.harness import OutOfTimeError, Work, at_most, compare, spread
+from evidence.benches.outcome import Outcome, Plot, Series, Table, timed
+from evidence.circumstances import circumstances
 
 
 class Clock:
@@ -131,7 +132,7 @@ def test_a_peer_that_crashes_in_its_import_or_cannot_be_imported_is_told(tmp_pat
 
 
 def test_the_extra_names_the_peers_that_the_cases_ask_for():
-    sources = "".join(path.read_text() for path in (peers.ROOT / "benches" / "cases").glob("*.py"))
+    sources = "".join(path.read_text() for path in (ROOT / "evidence" / "benches" / "cases").glob("*.py"))
     asked = set(re.findall(r'peers\.module\(\s*"([\w-]+)"', sources))
     assert len(asked) >= 7
     assert asked <= set(peers.requirements())
@@ -281,7 +282,7 @@ def test_the_half_turn_of_a_loop_is_no_closure():
 @pytest.mark.slow
 def test_a_quick_look_at_an_array_of_rssrs_agrees_with_numpy_and_tells_of_numba():
     gone = peers.Peer("numba", reason="not installed")
-    from benches.setting import Setting
+    from evidence.benches.setting import Setting
 
     outcome = case("rssr_array").run(Setting(peers.Peers([gone]), quick=True))
     for table in outcome.tables:
@@ -293,8 +294,8 @@ def test_a_quick_look_at_an_array_of_rssrs_agrees_with_numpy_and_tells_of_numba(
 @pytest.mark.slow
 def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
     """Also where its last message comes so late that the page seemed to be at rest before."""
-    from benches.cases import studio
-    from benches.cases.studio_client import updates
+    from evidence.benches.cases import studio
+    from evidence.benches.cases.studio_client import updates
     from sevenbar.description.files import text_of
     from sevenbar.studio import tab as tab_module
     from sevenbar.studio.server import StudioServer
@@ -334,7 +335,7 @@ def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
 
 
 def test_a_dimension_at_which_nothing_moves_is_no_timing():
-    from benches.cases import studio
+    from evidence.benches.cases import studio
 
     dimension = SimpleNamespace(label="L1", value=250.0, place=("rssr", "L1"), key="rssr.L1")
     session = SimpleNamespace(

@@ -10,10 +10,10 @@ import pytest
 from scipy.stats import binom, t
 
 import sevenbar as sb
-from accuracy import reference_rssr
-from accuracy.reference_loops import Loop
-from fuzz.random_linkages import Dimensions
-from fuzz.random_loops import general
+from evidence.accuracy import reference_rssr
+from evidence.accuracy.reference_loops import Loop
+from evidence.fuzz.random_linkages import Dimensions
+from evidence.fuzz.random_loops import general
 from sevenbar.description.gallery import text
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError
 from sevenbar.measuring.calibrate import calibrate

@@ -374,7 +374,7 @@ def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
         (["plot", "rssp", "--point", "C", "--out", "out"], "--point: no point 'C'; this linkage has B"),
         (
             ["plot", "rssp", "--link", "2", "--out", "out"],
-            "--at: missing; a point of a link needs --link and --at",
+            "--at: missing; give --point NAME, or --link with --at",
         ),
         (
             ["plot", "rssp", "--link", "5", "--at", "1,2,3", "--out", "out"],

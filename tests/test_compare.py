@@ -11,8 +11,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import sevenbar as sb
-from accuracy import reference_rssr
-from fuzz.random_linkages import Dimensions
+from evidence.accuracy import reference_rssr
+from evidence.fuzz.random_linkages import Dimensions
 from sevenbar.errors import RequestError
 from sevenbar.measuring.compare import compare, ends_of
 from sevenbar.measuring.extremes import Extent, compare_extremes

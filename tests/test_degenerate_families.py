@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from fuzz.random_loops import SPECIAL, Rows, drawn, rows
+from evidence.fuzz.random_loops import SPECIAL, Rows, drawn, rows
 from sevenbar.reporting.how_found import how_found
 from strategies import wrapped
 from test_sweep_rssr_core import critical

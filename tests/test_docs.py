@@ -154,7 +154,7 @@ def test_the_tables_on_the_engines_are_those_of_today():
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     example, run = (
         subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=True)
-        for command in (["-c", code], ["benches/engines.py"])
+        for command in (["-c", code], ["evidence/benches/engines.py"])
     )
     angle, gap = (float(word) for word in example.stdout.split())
     assert 0 < angle < 1e-3
@@ -184,7 +184,7 @@ def test_the_tables_on_the_seven_r_are_those_of_today():
     page = (ROOT / "docs" / "seven_r.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     printed = ""
-    for command in (["-c", code], ["-m", "accuracy.finite_differences"]):
+    for command in (["-c", code], ["-m", "evidence.accuracy.finite_differences"]):
         run = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=True)
         printed += run.stdout
     rows = [line for line in printed.splitlines() if line.startswith("| ")]

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_loops import Loop
-from fuzz.checks import circuits_are_distinct
-from fuzz.random_linkages import random_rotation
+from evidence.accuracy.reference_loops import Loop
+from evidence.fuzz.checks import circuits_are_distinct
+from evidence.fuzz.random_linkages import random_rotation
 from sevenbar.description.forms import from_description
 from sevenbar.errors import MOST_TOLD, DescriptionError, TableError
 from sevenbar.measuring.measured import Ends, read_measured

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from fuzz import batches, checks, files, loops, messages, page, rssrs, summary, watch, ways
-from fuzz.tally import Finding, Tally
-from fuzz.toml import written
+from evidence.fuzz import batches, checks, files, loops, messages, page, rssrs, summary, watch, ways
+from evidence.fuzz.tally import Finding, Tally
+from evidence.fuzz.toml import written
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError

@@ -17,8 +17,16 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import sevenbar as sb
-from fuzz.random_linkages import random_rotation
-from fuzz.random_loops import Drawn, bennett, compound, drawn, general, planar_four_bar, spherical_four_bar
+from evidence.fuzz.random_linkages import random_rotation
+from evidence.fuzz.random_loops import (
+    Drawn,
+    bennett,
+    compound,
+    drawn,
+    general,
+    planar_four_bar,
+    spherical_four_bar,
+)
 from sevenbar.kinematics.general import GeneralLoop
 from strategies import linkages, wrapped
 

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_loops import Loop
-from fuzz.random_linkages import Dimensions, mixed
-from fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
+from evidence.accuracy.reference_loops import Loop
+from evidence.fuzz.random_linkages import Dimensions, mixed
+from evidence.fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, bennett, drawn, general
 from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 import pytest
 
 import sevenbar as sb
-from fuzz.edges import isolated_pose
+from evidence.fuzz.edges import isolated_pose
 from sevenbar import _core
 
 Floats = npt.NDArray[np.float64]

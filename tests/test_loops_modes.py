@@ -16,8 +16,17 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_loops import ISOLATED, Found, Loop, closed_poses, doubles, missed, nearest, searched
-from fuzz.random_loops import (
+from evidence.accuracy.reference_loops import (
+    ISOLATED,
+    Found,
+    Loop,
+    closed_poses,
+    doubles,
+    missed,
+    nearest,
+    searched,
+)
+from evidence.fuzz.random_loops import (
     OVERCONSTRAINED,
     SPECIAL,
     Case,

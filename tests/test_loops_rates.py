@@ -21,9 +21,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.precise_loops import DIGITS, PreciseLoop
-from accuracy.reference_loops import Loop
-from fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, Drawn, Rows, drawn, general, screws
+from evidence.accuracy.precise_loops import DIGITS, PreciseLoop
+from evidence.accuracy.reference_loops import Loop
+from evidence.fuzz.random_loops import OVERCONSTRAINED, SPECIAL, Case, Drawn, Rows, drawn, general, screws
 
 #: Of velocity, acceleration, jerk where the condition is below `WELL`.
 RELATIVE = (1e-10, 1e-9, 1e-8)

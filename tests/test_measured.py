@@ -126,7 +126,7 @@ HEADER = "time [s],angle [deg]\n"
         ("0 1\n1 2\n",
          "no column for the angle, velocity or acceleration of the output 'rocker'; the file has no header; name them as "
          "in 'angle [deg]', or say which with --column angle=NAME or its number"),
-        ("time,angle\n0,1\n1,2\n", "column 'time' has no unit; write it as in 'time [s]', or give --unit time=s"),
+        ("time,angle\n0,1\n1,2\n", "column 'time': has no unit; write it as in 'time [s]', or give --unit time=s"),
         ("time [s],angle [grad]\n0,1\n1,2\n", "column 'angle [grad]': 'grad' is not a unit known here; give one like deg"),
         ("time [s],angle [mm]\n0,1\n1,2\n", "column 'angle [mm]': 'mm' is not a unit of the angle; give one like deg"),
         ("time [s],angle [deg]\ns,rad\n0,1\n1,2\n",

@@ -145,7 +145,7 @@ def test_a_folder_that_cannot_be_made_leaves_nothing(tmp_path, command):
         ),
         (
             ["compare", "rssr", "bare.csv"],
-            "bare.csv: column 'time' has no unit; write it as in 'time [s]', or give --unit time=s",
+            "bare.csv: column 'time': has no unit; write it as in 'time [s]', or give --unit time=s",
         ),
         (
             ["compare", "rssr", "bare.csv", "--unit", "time=s", "--unit", "rocker=deg"],

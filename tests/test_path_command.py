@@ -64,7 +64,12 @@ def test_a_design_is_written_opens_and_makes_the_path(tmp_path):
         (("--link", 2), "--at: missing; give --point NAME, or --link with --at"),
         (("--link", 2, "--at", "1,2"), "--at: '1,2' is not a place; give three numbers"),
         (("--link", 4, "--at", "1,2,3"), "point: 4 is not a moving link; give 1 to 3, link 4 is the ground"),
-        ((*ASKED, "--bound", "length_1"), "--bound: 'length_1' is not understood; give the two ends"),
+        (
+            (*ASKED, "--bound", "length_1"),
+            "--bound: 'length_1' is not bounds of a dimension; give the two ends",
+        ),
+        ((*ASKED, "--bound", "L1=1:2", "--bound", "L1=1:3"), "--bound: 'L1' is given twice; leave one out"),
+        ((*ASKED, "--bound", "length_1=1"), "--bound: length_1 has no bounds of a dimension; give the two"),
         ((*ASKED, "--bound", "length_1=1:2"), "bounds: 'length_1' is not a dimension that varies"),
         ((*ASKED, "--bound", "P.v=1:2"), "bounds: P.v begins at -55 mm, outside 1:2"),
         ((*ASKED, "--vary", "twist_1"), "vary: twist_1 cannot change alone without opening the loop"),
@@ -114,7 +119,7 @@ def test_tables_of_every_naming_hold_the_same_points(tmp_path):
     ("head", "told"),
     [
         ("x,y,z", "column 'x': has no unit; write it as in 'x [mm]'"),
-        ("x [deg],y [mm],z [mm]", "column 'x [deg]': 'deg' is not a unit of a length; give one, as in [mm]"),
+        ("x [deg],y [mm],z [mm]", "column 'x [deg]': 'deg' is not a unit of the x; give one like mm"),
         ("a [mm],b [mm],c [mm]", "no column for x; the columns are 'a [mm]', 'b [mm]', 'c [mm]'"),
         ("Q x [mm],R x [mm],y [mm]", "line 1: 'Q x [mm]' and 'R x [mm]' both hold x"),
         ("", "has no header, so the unit of its numbers is not known"),

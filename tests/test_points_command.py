@@ -157,7 +157,7 @@ def test_a_law_lets_a_mass_on_a_rocking_circuit_be_asked_for(tmp_path):
         ),
         (
             ("inertia", "seven_r", "--mass", "P"),
-            "--mass: 'P' is no mass; give a point and kilograms, as in P=2.5",
+            "--mass: 'P' is not a mass; give a point and kilograms, as in P=2.5",
         ),
         (("inertia", "seven_r", "--mass", "P=-2"), "mass of P: -2.0 is not a mass; give kilograms > 0"),
         (
@@ -166,11 +166,11 @@ def test_a_law_lets_a_mass_on_a_rocking_circuit_be_asked_for(tmp_path):
         ),
         (
             ("inertia", "seven_r", "--mass", "P=1", "--mass", "P=2"),
-            "--mass: point 'P' is given twice; leave one out",
+            "--mass: 'P' is given twice; leave one out",
         ),
         (
             ("inertia", "seven_r", "--mass", "P=1", "--gravity", "9.81"),
-            "--gravity: '9.81' is not three numbers; give them as in '0,0,-9.80665'",
+            "--gravity: '9.81' is not an acceleration; give three numbers, as in '0,0,-9.80665'",
         ),
     ],
 )
@@ -208,12 +208,12 @@ def test_a_path_from_the_tables_of_sevenbar_leads_back_to_its_point(tmp_path):
         ("x,y,z\n1,2,3\n", "column 'x': has no unit; write it as in 'x [mm]'"),
         (
             "x [mm],y [deg],z [mm]\n1,2,3\n",
-            "column 'y [deg]': 'deg' is not a unit of a length; give one, as in [mm]",
+            "column 'y [deg]': 'deg' is not a unit of the y; give one like mm",
         ),
         ("x [mm],y [mm],z [mm]\n1,,3\n4,5,6\n", "line 2: no number in column 'y [mm]' ('')"),
         (
             "x [mm],y [mm],z [mm],theta_1 [mm]\n1,2,3,4\n",
-            "'mm' is not a unit of an angle; give one, as in [deg]",
+            "'mm' is not a unit of the input; give one like deg",
         ),
     ],
 )

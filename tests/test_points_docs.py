@@ -34,7 +34,7 @@ def test_the_example_prints_what_its_comments_say():
 @pytest.mark.slow
 def test_the_dense_search_of_the_page_is_that_of_today_and_never_beats_the_bound():
     run = subprocess.run(
-        [sys.executable, "benches/least_acceleration.py"],
+        [sys.executable, "evidence/benches/least_acceleration.py"],
         cwd=ROOT,
         capture_output=True,
         text=True,

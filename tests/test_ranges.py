@@ -3,8 +3,8 @@
 import pytest
 
 import sevenbar as sb
-from sevenbar.commands.function import angles, lengths
-from sevenbar.commands.path import _bound
+from sevenbar.commands.given import angles, lengths
+from sevenbar.commands.path import parsed_bounds
 from sevenbar.commands.points import parsed_box, parsed_masses
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import axes_of, split_ranges
@@ -31,7 +31,7 @@ WRITTEN = {
 def test_a_range_means_the_same_in_every_option(text: str) -> None:
     length = DRAFT.dimension("L1")
     along, _ = axes_of(DRAFT, split_ranges([f"L1={text}", "L3=1:2"]))
-    _, bound = _bound(f"L1={text}")
+    bound = parsed_bounds([f"L1={text}"])["L1"]
     _, span = axis_from_text(f"L1={text.replace(':', '..')}")
     swept = axis_of(length, span)
     every = [
@@ -83,4 +83,4 @@ def test_a_name_given_twice_is_refused() -> None:
 
 
 def test_sides_of_a_box_are_ranges_or_numbers() -> None:
-    assert parsed_box("-200:200,0..50,7") == [(-200, 200), (0, 50), (7, 7)]
+    assert parsed_box("-200:200,0..5cm,7", "mm") == [(-200, 200), (0, 50), (7, 7)]

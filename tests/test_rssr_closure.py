@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_rssr import Rssr
-from fuzz.random_linkages import Dimensions, Drawing, assembled_square, mixed, short_coupler, skew
+from evidence.accuracy.reference_rssr import Rssr
+from evidence.fuzz.random_linkages import Dimensions, Drawing, assembled_square, mixed, short_coupler, skew
 
 #: Of the size: the closure error that is allowed, and the margin within which rounding decides what is reached.
 CLOSED = 1e-12

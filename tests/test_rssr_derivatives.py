@@ -22,8 +22,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_rssr import DIGITS, PreciseRssr
-from fuzz.random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew
+from evidence.accuracy.reference_rssr import DIGITS, PreciseRssr
+from evidence.fuzz.random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew
 
 ROUNDING = 2.0**-53
 

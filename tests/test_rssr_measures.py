@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import sevenbar as sb
-from fuzz.random_linkages import (
+from evidence.fuzz.random_linkages import (
     Dimensions,
     Drawing,
 )

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_rssr import Course, Rssr
-from fuzz.random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew, square
+from evidence.accuracy.reference_rssr import Course, Rssr
+from evidence.fuzz.random_linkages import Dimensions, Drawing, assembled_square, nearly_parallel, skew, square
 
 TURN = 2 * np.pi
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from fuzz.random_linkages import Dimensions
+from evidence.fuzz.random_linkages import Dimensions
 
 TABLE_1 = json.loads((Path(__file__).parent / "references" / "rssr_table1.json").read_text())
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy import precise_loops, reference_rssr
-from accuracy.precise_loops import PreciseLoop
-from accuracy.reference_loops import Loop
-from fuzz.random_linkages import Dimensions
-from fuzz.random_loops import general, prismatic
+from evidence.accuracy import precise_loops, reference_rssr
+from evidence.accuracy.precise_loops import PreciseLoop
+from evidence.accuracy.reference_loops import Loop
+from evidence.fuzz.random_linkages import Dimensions
+from evidence.fuzz.random_loops import general, prismatic
 from sevenbar.errors import NotCoveredError
 from sevenbar.measuring.sensitivity import RowsClosure, closure_of, followed, response
 

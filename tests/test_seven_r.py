@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_loops import Loop
+from evidence.accuracy.reference_loops import Loop
 
 REFERENCE = json.loads(
     (Path(__file__).parent / "references" / "seven_r_modes.json").read_text(encoding="utf-8")

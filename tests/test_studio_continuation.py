@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_loops import Loop
+from evidence.accuracy.reference_loops import Loop
 from sevenbar.description.draft import Dimension, Draft
 from sevenbar.description.gallery import text
 from sevenbar.errors import SevenbarError

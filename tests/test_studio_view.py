@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy.reference_loops import Loop
+from evidence.accuracy.reference_loops import Loop
 from sevenbar.description.gallery import names, text
 from sevenbar.drawing.skeleton import places_of
 from sevenbar.errors import RequestError

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from fuzz.random_linkages import Dimensions, assembled_square, square
+from evidence.fuzz.random_linkages import Dimensions, assembled_square, square
 from sevenbar import _core
 
 CLASSES = (

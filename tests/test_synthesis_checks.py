@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,11 +17,12 @@ from sevenbar.design.synthesis.candidates import (
     distinct,
     ranked,
     renamed,
-    write,
 )
 from sevenbar.design.synthesis.closure import draft_of
+from sevenbar.design.synthesis.files import design_files
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import OutputError, RequestError
+from sevenbar.reporting.files import Report
 
 #: A double-rocker, whose two branches meet at dead centres of the input, and the paper's crank-rocker.
 ROCKER = np.array([300.0, 200.0, 450.0, 500.0, 350.0, 100.0])
@@ -171,8 +173,17 @@ def test_the_best_stands_first_and_names_follow_the_rank():
 
 def test_written_designs_open_and_tell_what_they_are_for(tmp_path):
     design = judged(CRANK, claim(CRANK, np.linspace(0, 1, 4), 0))
-    written = write([design, design], tmp_path / "out", ["wanted: a test", "made by: a\ncommand"])
-    assert [path.name for path in written] == ["design_1.toml", "design_2.toml", "summary.csv"]
+    found = SimpleNamespace(candidates=[design, design])
+    head = ["wanted: a test", "made by: a\ncommand"]
+    files = design_files(
+        3, (), head=lambda _: head, figure=lambda *_: None, as_dict=lambda found: len(found.candidates)
+    )
+    report = Report(str, vars, files)
+    written = report.write(found, tmp_path / "out")
+    # no third one was found
+    assert [path.name for path in written] == [
+        *("design_1.toml", "design_2.toml", "summary.csv", "summary.json")
+    ]
     text = written[0].read_text(encoding="utf-8")
     assert text.startswith("# wanted: a test\n# made by: a command\n")
     # as the studio opens it
@@ -181,5 +192,5 @@ def test_written_designs_open_and_tell_what_they_are_for(tmp_path):
     assert sb.load(written[0]).motion().motion_type == "crank-rocker"
     before = text
     with pytest.raises(OutputError, match="exists already"):
-        write([design], tmp_path / "out", ["other"])
+        report.write(found, tmp_path / "out")
     assert written[0].read_text(encoding="utf-8") == before

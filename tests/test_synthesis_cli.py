@@ -117,8 +117,11 @@ def test_a_wish_that_cannot_be_met_writes_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("a,b\n0,0\n20,31\n40,50\n", "column 'a': an angle needs its unit"),
-        ("input_deg,output_mm\n0,0\n20,31\n40,50\n", "column 'output_mm': an angle needs its unit"),
+        ("a,b\n0,0\n20,31\n40,50\n", "column 'a': has no unit; write it as in 'a [deg]'"),
+        (
+            "input_deg,output_mm\n0,0\n20,31\n40,50\n",
+            "column 'output_mm': 'mm' is not a unit of the angle; give one like deg",
+        ),
         ("input_deg,output_deg,c\n0,0,0\n20,31,0\n", "3 columns; give two"),
         ("input_deg,output_deg\n0,0\n20,\n40,50\n", "no number in column 'output_deg'"),
     ],

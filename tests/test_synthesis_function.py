@@ -16,7 +16,7 @@ from sevenbar.design.synthesis.closure import NAMES
 from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.fitting import Fit, Point
 from sevenbar.design.synthesis.function.generation import function_generation
-from sevenbar.design.synthesis.function.report import write_synthesis
+from sevenbar.design.synthesis.function.report import synthesis_report
 from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import RequestError
@@ -102,7 +102,7 @@ def test_designs_differ_and_stand_in_the_order_of_their_errors(squared):
 
 @pytest.mark.slow
 def test_files_tell_errors_that_the_ordinary_analysis_finds_again(squared, tmp_path):
-    written = write_synthesis(squared, tmp_path / "out", "a test", ())
+    written = synthesis_report(3, "a test", ()).write(squared, tmp_path / "out")
     names = [path.name for path in written]
     assert names == ["design_1.toml", "design_2.toml", "design_3.toml", "summary.csv", "summary.json"]
     for path in written[:3]:

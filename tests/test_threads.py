@@ -19,8 +19,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from fuzz.random_linkages import assembled_square
-from fuzz.random_loops import general
+from evidence.fuzz.random_linkages import assembled_square
+from evidence.fuzz.random_loops import general
 from sevenbar import _core
 from sevenbar.kinematics.batches import loop_motions
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from accuracy import reference_rssr
-from fuzz.random_linkages import Dimensions
-from fuzz.random_loops import general, prismatic
+from evidence.accuracy import reference_rssr
+from evidence.fuzz.random_linkages import Dimensions
+from evidence.fuzz.random_loops import general, prismatic
 from sevenbar.description.gallery import names
 from sevenbar.design.tolerance.numbers import Numbered
 from sevenbar.design.tolerance.sensitivities import sensitivities

@@ -1,12 +1,13 @@
-"""Tables in Markdown."""
+"""Tables in Markdown, and code in their cells."""
 
 from collections.abc import Iterable, Sequence
 
+from sevenbar.text import markdown
+
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table; bars within a cell are escaped, in code as well, as Markdown's tables want it."""
-    lines = [head, ["---"] * len(head), *([cell.replace("|", "\\|") for cell in row] for row in rows)]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+    """A table with the line that ends it."""
+    return markdown.table(head, rows) + "\n"
 
 
 def code(text: str) -> str:

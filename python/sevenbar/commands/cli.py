@@ -6,6 +6,7 @@ import importlib
 import sys
 import traceback
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -13,22 +14,30 @@ import typer
 import typer.core
 
 import sevenbar as sb
+from sevenbar.commands.deliver import check_out, deliver, tell_written
+from sevenbar.commands.given import check_law, input_column, input_value, law_of, point_of
 from sevenbar.commands.options import (
     Figures,
     Force,
     InputJoint,
+    InputValue,
+    Json,
+    Law,
     OutputJoint,
+    PointLink,
+    PointName,
+    PointPlace,
     Samples,
     Source,
     Speed,
     figure_formats,
-    place_of,
     progress_bar,
-    tell_written,
     words,
 )
 from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.reporting.figures import KINDS, Places, write_figures
 from sevenbar.reporting.folder import check_targets
+from sevenbar.text.ranges import Place
 
 #: Commands that live with what they do, imported when one of them is asked for: a report should not wait for
 #: the studio.
@@ -99,10 +108,7 @@ def analyze(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
-    law: Annotated[
-        Path | None,
-        typer.Option(help="CSV file of an input law: time, value of the input, perhaps its rates."),
-    ] = None,
+    law: Law = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
     ] = None,
@@ -111,39 +117,36 @@ def analyze(
         Path | None, typer.Option(help="Write the moving linkage to this .gif or .mp4.")
     ] = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the report as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
-    from sevenbar.reporting import report
+    from sevenbar.reporting.report import motion_report
 
-    endings = figure_formats(figures, out)
-    if law is not None and speed is not None:
-        raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
+    report = motion_report(figure_formats(figures, out))
+    check_law(law, speed)
     loaded = sb.load(linkage)
-    check_targets(report.certain_targets(out) if out is not None else [], force=force)
-    read = None if law is None else sb.load_law(law, loaded, input=input_joint)
+    check_out(report, out, force=force)
+    read = law_of(law, loaded, input_joint)
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
-    film = None if animate is None else _film(motion, animate, out, force=force)
-    # a film that goes into the report's folder is of the files that appear together
-    inside = film if animate is not None and out is not None and _same_folder(animate.parent, out) else None
-    written = [] if out is None else report.write(motion, out, endings, also=inside, force=force)
-    if animate is not None and film is not None and inside is None:
-        film(animate.parent)
-        written.append(animate)
-    if json:
-        typer.echo(report.as_json(motion))
-        return
-    report.print_text(motion)
-    tell_written(written)
+    elsewhere = []
+    if animate is not None:
+        film = _film(motion, animate, out, force=force)
+        if out is not None and _same_folder(animate.parent, out):
+            # of the files that appear together
+            report = replace(report, files={**report.files, animate.name: film})
+        else:
+            film(motion, animate)
+            elsewhere = [animate]
+    deliver(motion, report, out, json=json, force=force, also=elsewhere)
 
 
-def _film(motion: sb.Motion, file: Path, out: Path | None, *, force: bool) -> Callable[[Path], None]:
-    """What draws the animation into a folder; raises where it cannot be, before anything is written."""
+def _film(
+    motion: sb.Motion, file: Path, out: Path | None, *, force: bool
+) -> Callable[[sb.Motion, Path], object]:
+    """What draws the animation; raises where it cannot be, before anything is written."""
     from sevenbar.drawing.animate import animate, check_ending, check_target
     from sevenbar.kinematics.motion import chosen_circuit
-    from sevenbar.reporting import report
+    from sevenbar.reporting.figures import posed_circuit
 
     if out is not None and _same_folder(file.parent, out):
         # a folder that may still have to be made
@@ -151,11 +154,11 @@ def _film(motion: sb.Motion, file: Path, out: Path | None, *, force: bool) -> Ca
     else:
         check_target(file)
     check_targets([file], force=force)
-    drawn = chosen_circuit(motion, report.posed_circuit(motion) or 0).index
+    drawn = chosen_circuit(motion, posed_circuit(motion) or 0).index
 
-    def draw(folder: Path) -> None:
-        with progress_bar(f"drawing {file.name}") as progress:
-            animate(motion, folder / file.name, circuit=drawn, progress=progress)
+    def draw(motion: sb.Motion, path: Path) -> None:
+        with progress_bar(f"drawing {path.name}") as progress:
+            animate(motion, path, circuit=drawn, progress=progress)
 
     return draw
 
@@ -168,43 +171,26 @@ def _same_folder(folder: Path, other: Path) -> bool:
 @app.command()
 def modes(
     linkage: Source,
-    at: Annotated[
-        str,
-        typer.Option(
-            help="Value of the input: '30deg', '0.5rad', '12mm'; a plain number is in degrees or lengths."
-        ),
-    ] = "0",
+    at: InputValue = "0",
     input_joint: Annotated[
         str | None, typer.Option("--input", help="The joint that is held; the file's input by default.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Draw all modes into this .png, .svg or .pdf.")] = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the modes as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Every assembly mode at one value of the input: each way the loop can be put together."""
-    from sevenbar.reporting import report
+    from sevenbar.reporting.report import modes_report
 
     loaded = sb.load(linkage)
-    column = loaded.column(loaded.drive.joint if input_joint is None else input_joint, "--input")
+    column = input_column(loaded, input_joint)
     check_targets([] if out is None else [out], force=force)
-    found = loaded.assembly_modes(
-        report.joint_value(at, "--at", loaded, column), input=loaded.columns[column]
-    )
+    found = loaded.assembly_modes(input_value("--at", at, loaded, input_joint), input=loaded.columns[column])
     if out is not None:
         from sevenbar.drawing import plot
 
         plot.save(plot.modes_overview(loaded, found, input=loaded.columns[column]), out)
-    if json:
-        typer.echo(report.modes_json(loaded, found, column))
-        return
-    report.print_modes(loaded, found, column)
-    tell_written([] if out is None else [out])
-
-
-#: What `sevenbar plot` can draw.
-KINDS = ("curves", "joints", "modes", "configuration", "point")
+    deliver(found, modes_report(loaded, column), json=json, also=[] if out is None else [out])
 
 
 @app.command("plot")
@@ -214,9 +200,9 @@ def plot_(
     kind: Annotated[
         list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all; may be repeated.")
     ] = None,
-    point: Annotated[str | None, typer.Option(help="A named point of the linkage.")] = None,
-    link: Annotated[int | None, typer.Option(help="The link of a point given by --at.")] = None,
-    at: Annotated[str | None, typer.Option(help="Where on the link, as in '-100,-90,-80'.")] = None,
+    point: PointName = None,
+    link: PointLink = None,
+    at: PointPlace = None,
     circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space.")] = 0,
     samples: Samples = 360,
     input_joint: InputJoint = None,
@@ -226,18 +212,16 @@ def plot_(
     force: Force = False,
 ) -> None:
     """Draw a linkage: curves of the output, all joints, all modes, the linkage in space, a point's path."""
-    from sevenbar.reporting import report
-
-    endings = figure_formats(figures, out)
+    formats = figure_formats(figures, out)
     kinds = _kinds(kind)
     loaded = sb.load(linkage)
-    points = _points(loaded, point, link, at)
+    points = _points(loaded, point_of(point, link, at))
     if "point" in kinds and not points:
         if kind is not None and "point" in kind:
             raise RequestError("--kind: point needs a point; give --link and --at, as the linkage names none")
         kinds.remove("point")
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
-    written = report.write_figures(motion, out, kinds, points, circuit=circuit, figures=endings, force=force)
+    written = write_figures(motion, out, kinds, points, circuit=circuit, figures=formats, force=force)
     tell_written(written, below=False)
 
 
@@ -251,29 +235,21 @@ def _kinds(given: list[str] | None) -> list[str]:
     return list(KINDS) if "all" in kinds else kinds
 
 
-def _points(
-    linkage: sb.Linkage, name: str | None, link: int | None, at: str | None
-) -> dict[str, tuple[int, tuple[float, float, float]]]:
+def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Places:
     """The points to be drawn, by name: the one asked for, else all that the linkage names."""
     named = {point.name: (point.link, point.at) for point in linkage.points}
-    if name is not None:
-        if link is not None or at is not None:
-            raise RequestError("--point: a name or --link with --at, not both; give one of them")
-        if name not in named:
-            known = ", ".join(named) or "none; give --link and --at"
-            raise RequestError(f"--point: no point {shown(name)}; this linkage has {known}")
-        return {name: named[name]}
-    if (link is None) != (at is None):
-        missing = "--at" if at is None else "--link"
-        raise RequestError(f"{missing}: missing; a point of a link needs --link and --at")
-    if link is None or at is None:
+    if asked is None:
         return named
+    if isinstance(asked, str):
+        if asked not in named:
+            known = ", ".join(named) or "none; give --link and --at"
+            raise RequestError(f"--point: no point {shown(asked)}; this linkage has {known}")
+        return {asked: named[asked]}
+    link, (u, v, w) = asked
     count = len(linkage.joints)
     if not 1 <= link <= count:
         raise RequestError(f"--link: {link} is not a link; give 1 to {count}, the last is the ground")
-    place = place_of(at)
-    u, v, w = place
-    return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, place)}
+    return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
 @app.command()

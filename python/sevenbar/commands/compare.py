@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
     Force,
     InputJoint,
+    Json,
     Source,
     Speed,
     figure_formats,
-    tell_written,
     words,
 )
 from sevenbar.errors import RequestError
-from sevenbar.reporting.folder import check_targets
+from sevenbar.kinematics.joint_text import joint_value
 
 if TYPE_CHECKING:
     from sevenbar.measuring.measured import Ends, Measured, MeasuredExtremes
@@ -71,20 +73,18 @@ def compare(
     ] = None,
     figures: Figures = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the comparison as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Compare measured values with the computed motion: differences, and the paper's Table 1."""
-    from sevenbar.measuring import report
     from sevenbar.measuring.compare import Comparison
     from sevenbar.measuring.compare import compare as compared
     from sevenbar.measuring.extremes import ExtremesComparison, compare_extremes
     from sevenbar.measuring.measured import MeasuredExtremes
+    from sevenbar.measuring.report import comparison_report
 
-    endings = figure_formats(figures, out)
+    report = comparison_report(figure_formats(figures, out))
     loaded = sb.load(linkage)
-    check_targets([out / "comparison.json"] if out is not None else [], force=force)
+    check_out(report, out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     found: Comparison | ExtremesComparison
     if isinstance(measured, MeasuredExtremes):
@@ -106,12 +106,7 @@ def compare(
             circuit=circuit,
             branch=branch,
         )
-    written = [] if out is None else report.write_comparison(found, out, endings, force=force)
-    if json:
-        typer.echo(report.comparison_json(found))
-        return
-    report.print_comparison(found)
-    tell_written(written)
+    deliver(found, report, out, json=json, force=force)
 
 
 def calibrate(
@@ -146,20 +141,19 @@ def calibrate(
     ] = None,
     figures: Figures = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the calibration as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Find the dimensions that explain a measured curve, with intervals; a new file (extra 'calibrate')."""
     from sevenbar.description.files import text_of
-    from sevenbar.measuring import report
     from sevenbar.measuring.calibrate import calibrate as calibrated
     from sevenbar.measuring.measured import MeasuredExtremes
+    from sevenbar.measuring.report import calibration_report
     from sevenbar.measuring.rewrite import calibrated_toml
 
-    endings = figure_formats(figures, out)
+    text = text_of(linkage)
+    report = calibration_report(partial(calibrated_toml, text), figure_formats(figures, out))
     loaded = sb.load(linkage)
-    check_targets([out / "calibrated.toml"] if out is not None else [], force=force)
+    check_out(report, out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     if isinstance(measured, MeasuredExtremes):
         raise RequestError(
@@ -178,13 +172,7 @@ def calibrate(
         branch=branch,
         confidence=confidence,
     )
-    toml = calibrated_toml(text_of(linkage), found)
-    written = [] if out is None else report.write_calibration(found, toml, out, endings, force=force)
-    if json:
-        typer.echo(report.calibration_json(found))
-        return
-    report.print_calibration(found)
-    tell_written(written)
+    deliver(found, report, out, json=json, force=force)
 
 
 def _measured(
@@ -206,6 +194,4 @@ def _measured(
 
 
 def _start(linkage: sb.Linkage, input_joint: str, start: str) -> float:
-    from sevenbar.reporting import report
-
-    return report.joint_value(start, "--start", linkage, linkage.columns.index(input_joint))
+    return joint_value(start, "--start", linkage, linkage.columns.index(input_joint))

@@ -8,7 +8,9 @@ from typing import Annotated
 import typer
 
 import sevenbar as sb
-from sevenbar.commands.options import Force, InputJoint, OutputJoint, Samples, Source, Speed, tell_written
+from sevenbar.commands.deliver import tell_written
+from sevenbar.commands.given import input_value
+from sevenbar.commands.options import Force, InputJoint, OutputJoint, Samples, Source, Speed
 from sevenbar.errors import RequestError
 
 
@@ -47,7 +49,6 @@ def export(
     """Write files for other programs: motion, bodies in a pose, models (some: extras 'export', 'cad')."""
     from sevenbar.export import FORMATS, ending_of, format_of
     from sevenbar.export import export as write_export
-    from sevenbar.reporting import report
 
     if out is None:
         if to is None:
@@ -55,10 +56,7 @@ def export(
         out = Path(f"{Path(linkage).stem}{ending_of(to)}")
     format_of(out, to)
     loaded = sb.load(linkage)
-    value = None
-    if at is not None:
-        column = loaded.column(loaded.drive.joint if input_joint is None else input_joint, "--input")
-        value = report.joint_value(at, "--at", loaded, column)
+    value = None if at is None else input_value("--at", at, loaded, input_joint)
     written = write_export(
         loaded.motion(samples, input=input_joint, output=output, speed=speed),
         to,

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import shlex
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sevenbar.commands.options import Figures, Force, figure_formats, tell_written
-from sevenbar.errors import RequestError, shown
-from sevenbar.reporting.folder import check_targets
-from sevenbar.text.ranges import split_range
-from sevenbar.text.units import ANGLES, amount, length_sizes
+from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.given import angle, angles, lengths, numbers
+from sevenbar.commands.options import Figures, Force, Json, figure_formats
+from sevenbar.errors import RequestError
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.function.generation import Synthesis
     from sevenbar.design.synthesis.limits import Limits
+    from sevenbar.reporting.files import Report
 
 Transmission = Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")]
 Size = Annotated[
@@ -32,7 +30,6 @@ Seed = Annotated[int, typer.Option(help="Seed of the search.")]
 Out = Annotated[
     Path | None, typer.Option(help="Folder for design_1.toml, .. with figures, summary.csv and summary.json.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print the designs as one JSON object and nothing else.")]
 
 
 def function(
@@ -64,7 +61,7 @@ def function(
     from sevenbar.design.synthesis.function.generation import function_generation
     from sevenbar.design.synthesis.function.wish import read_pairs
 
-    endings = _before(out, designs, figures, force)
+    report = _before(out, designs, figures, force)
     if (y is None) == (table is None):
         raise RequestError(
             "--y: give a function, as in --y 'x^2', or pairs of angles by --table; one of the two"
@@ -84,7 +81,9 @@ def function(
         count=designs,
         seed=seed_of(seed),
     )
-    _after(found, out, endings, force=force, json=json)
+    # a search that found nothing says why
+    found.required()
+    deliver(found, report, out, json=json, force=force)
 
 
 def swing(
@@ -104,7 +103,7 @@ def swing(
     """RSSR crank-rockers with a swing and a time ratio, that transmit best (extra 'design')."""
     from sevenbar.design.synthesis.function.swing import swing_generation
 
-    endings = _before(out, designs, figures, force)
+    report = _before(out, designs, figures, force)
     found = swing_generation(
         angle("--swing", swing),
         time_ratio,
@@ -112,36 +111,25 @@ def swing(
         count=designs,
         seed=seed_of(seed),
     )
-    _after(found, out, endings, force=force, json=json)
+    # a search that found nothing says why
+    found.required()
+    deliver(found, report, out, json=json, force=force)
 
 
 #: Most designs that one command gives.
 MOST_DESIGNS = 50
 
 
-def _before(out: Path | None, designs: int, figures: list[str] | None, force: bool) -> tuple[str, ...]:
-    """Formats of figures, once the folder was looked at, so that long work is not done in vain."""
-    from sevenbar.design.synthesis.function.report import targets
+def _before(out: Path | None, designs: int, figures: list[str] | None, force: bool) -> Report[Synthesis]:
+    """How the designs are reported, once the folder was looked at, so that long work is not done in vain."""
+    from sevenbar.design.synthesis.function.report import synthesis_report
 
-    endings = figure_formats(figures, out)
+    formats = figure_formats(figures, out)
     if not 1 <= designs <= MOST_DESIGNS:
         raise RequestError(f"--designs: {designs} designs are not offered; give 1 to {MOST_DESIGNS}")
-    check_targets([] if out is None else targets(out, designs, endings), force=force)
-    return endings
-
-
-def _after(found: Synthesis, out: Path | None, endings: tuple[str, ...], *, force: bool, json: bool) -> None:
-    """Writes and prints what was found; `RequestError` where that is nothing."""
-    from sevenbar.design.synthesis.function import report
-
-    found.required()
-    command = shlex.join(["sevenbar", *sys.argv[1:]])
-    written = [] if out is None else report.write_synthesis(found, out, command, endings, force=force)
-    if json:
-        typer.echo(report.as_json(found))
-        return
-    report.print_synthesis(found)
-    tell_written(written)
+    report = synthesis_report(designs, command_line(), formats)
+    check_out(report, out, force=force)
+    return report
 
 
 def _limits(transmission: str, size: str | None, motion_type: str | None) -> Limits:
@@ -156,34 +144,3 @@ def seed_of(seed: int) -> int:
     if seed < 0:
         raise RequestError(f"--seed: {seed} is no seed; give a number >= 0")
     return seed
-
-
-def angle(option: str, text: str) -> float:
-    """The angle [rad] of a text; a plain number is in degrees."""
-    value = amount(text, ANGLES, "deg")
-    if value is None:
-        raise RequestError(f"{option}: {shown(text)} is not an angle; give one as in 30, 30deg or 0.5rad")
-    return value
-
-
-def angles(option: str, text: str) -> tuple[float, float]:
-    """The two angles [rad] of a range like 0:90deg, whose unit may stand at the end only."""
-    return _pair(option, text, ANGLES, "deg", "0:90deg or 30deg:-60deg")
-
-
-def lengths(option: str, text: str, unit: str) -> tuple[float, float]:
-    """The two lengths [unit] of a range like 50:1000 or 5cm:1m, whose unit may stand at the end only."""
-    return _pair(option, text, length_sizes(unit), unit, "50:1000 or 5cm:1m")
-
-
-def numbers(option: str, text: str) -> tuple[float, float]:
-    """The two numbers of a range like 0:1."""
-    return _pair(option, text, {"": 1.0}, "", "0:1 or 1:10")
-
-
-def _pair(option: str, text: str, sizes: dict[str, float], plain: str, example: str) -> tuple[float, float]:
-    if ends := split_range(text):
-        low, high = (amount(end, sizes, plain) for end in ends)
-        if low is not None and high is not None:
-            return low, high
-    raise RequestError(f"{option}: {shown(text)} is not a range; give two values, as in {example}")

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
     Force,
     InputJoint,
+    Json,
     Source,
     figure_formats,
     progress_bar,
-    tell_written,
     words,
 )
 from sevenbar.errors import RequestError, shown
-from sevenbar.reporting.folder import check_targets
 
 if TYPE_CHECKING:
     from sevenbar.design.maps.plane import Take
@@ -50,18 +50,16 @@ def map_(
     figures: Figures = None,
     size: Annotated[str, typer.Option(help="Sheet of the figures: A4, A3, A2 or A1.")] = "A4",
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the map as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Map motion types over two dimensions, with exact boundaries, and contours of any measure."""
-    from sevenbar.design.maps import report
     from sevenbar.design.maps.atlas import motion_map
     from sevenbar.design.maps.figures import sheet
     from sevenbar.design.maps.heights import measure_heights, with_contours
+    from sevenbar.design.maps.report import MapFindings, map_report
     from sevenbar.design.maps.window import split_ranges
 
-    endings = figure_formats(figures, out)
+    formats = figure_formats(figures, out)
     sheet(size)
     ranges, at, which = split_ranges(over or []), _levels(levels), _take(take)
     names = words(measure or [])
@@ -69,16 +67,12 @@ def map_(
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
     chosen = with_contours(names) if names else ()
     loaded = sb.load(linkage)
-    check_targets(report.targets(out, names, endings) if out is not None else [], force=force)
+    report = map_report(names, formats, size=size)
+    check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.name}") as progress:
         found = motion_map(loaded, ranges, grid=grid, input=input_joint, progress=progress)
         heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
-    written = [] if out is None else report.write(found, heights, out, endings, size=size, force=force)
-    if json:
-        typer.echo(report.as_json(found, heights))
-        return
-    report.print_text(found, heights)
-    tell_written(written)
+    deliver(MapFindings(found, heights), report, out, json=json, force=force)
 
 
 def _take(word: str) -> Take:

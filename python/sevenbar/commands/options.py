@@ -1,9 +1,8 @@
-"""What the commands share: arguments and options, and how progress and written files are told."""
+"""What the commands share: arguments and options, and how progress is shown."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
@@ -24,6 +23,19 @@ InputJoint = Annotated[
 OutputJoint = Annotated[
     str | None, typer.Option("--output", help="The joint whose motion is told; the file's by default.")
 ]
+InputValue = Annotated[
+    str,
+    typer.Option(
+        "--at", help="Value of the input: '30deg', '0.5rad', '12mm'; a plain number is in degrees or lengths."
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object and nothing else.")]
+Law = Annotated[
+    Path | None, typer.Option(help="CSV file of an input law: time, value of the input, perhaps its rates.")
+]
+PointName = Annotated[str | None, typer.Option("--point", help="A named point of the linkage.")]
+PointLink = Annotated[int | None, typer.Option("--link", help="The link of a point given by --at.")]
+PointPlace = Annotated[str | None, typer.Option("--at", help="Where on the link, as in '-100,-90,-80'.")]
 Speed = Annotated[str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")]
 
 
@@ -50,17 +62,6 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     if out is None:
         raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
     return endings
-
-
-def place_of(at: str) -> tuple[float, float, float]:
-    """The place that `--at` gives; raises `RequestError` for what is not three numbers."""
-    try:
-        u, v, w = (float(word) for word in at.split(","))
-    except ValueError:
-        u = v = w = math.nan
-    if not all(math.isfinite(value) for value in (u, v, w)):
-        raise RequestError(f"--at: {shown(at)} is not a place; give three numbers, as in '-100,-90,-80'")
-    return u, v, w
 
 
 @contextmanager
@@ -106,9 +107,3 @@ def progress_bar(title: str, *, rate: bool = False) -> Iterator[Callable[[int, i
     finally:
         if task is not None:
             bar.stop()
-
-
-def tell_written(paths: Sequence[Path], *, below: bool = True) -> None:
-    """Names the files that were written, if any; `below` other text, a line is left free."""
-    if paths:
-        typer.echo("\n" * below + "written: " + "\n         ".join(str(path) for path in paths))

@@ -2,39 +2,38 @@
 
 from __future__ import annotations
 
-import shlex
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.given import angle, lengths, point_of
 from sevenbar.commands.options import (
     Figures,
     Force,
+    Json,
+    PointLink,
+    PointName,
+    PointPlace,
     Source,
     figure_formats,
-    place_of,
     progress_bar,
-    tell_written,
     words,
 )
-from sevenbar.errors import RequestError, shown
-from sevenbar.reporting.folder import check_targets
-from sevenbar.text.ranges import split_name, split_range
+from sevenbar.errors import RequestError
+from sevenbar.text.ranges import split_named, split_range
 
 if TYPE_CHECKING:
-    from sevenbar.design.synthesis.candidates import Candidate
     from sevenbar.design.synthesis.limits import Limits
-    from sevenbar.design.synthesis.path.task import PathTask, Where
 
 
 def path(
     linkage: Source,
     wanted: Annotated[Path, typer.Option("--path", help="Table of wanted points in order: x, y, z.")],
-    point: Annotated[str | None, typer.Option(help="A named point of the linkage.")] = None,
-    link: Annotated[int | None, typer.Option(help="The link of a point given by --at.")] = None,
-    at: Annotated[str | None, typer.Option(help="Where on the link, as in '-100,-90,-80'.")] = None,
+    point: PointName = None,
+    link: PointLink = None,
+    at: PointPlace = None,
     vary: Annotated[
         list[str] | None,
         typer.Option(help="A dimension that may change, or a pattern; may be repeated. All by default."),
@@ -65,21 +64,18 @@ def path(
     ] = None,
     figures: Figures = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the designs as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Linkages of a type whose point goes through wanted points in order (extra 'design')."""
     from sevenbar.description.draft import Draft
     from sevenbar.description.files import text_of
     from sevenbar.design.curve_table import read_curve
-    from sevenbar.design.synthesis.function.report import targets
-    from sevenbar.design.synthesis.path import report
     from sevenbar.design.synthesis.path.generation import check_counts, generated, path_task
+    from sevenbar.design.synthesis.path.report import PathDesigns, path_report
 
-    endings = figure_formats(figures, out)
+    report = path_report(designs, command_line(), figure_formats(figures, out))
     draft = Draft.of(text_of(linkage), linkage)
-    check_targets([] if out is None else targets(out, designs, endings), force=force)
+    check_out(report, out, force=force)
     drive = draft.linkage.drive.joint
     points, inputs = read_curve(wanted, draft.linkage, drive, point=point or "")
     if timing and inputs is None:
@@ -88,12 +84,15 @@ def path(
         )
     if phase and not timing:
         raise RequestError("--phase: inputs have no say without --timing; give both, or leave --phase out")
+    asked = point_of(point, link, at)
+    if asked is None:
+        raise RequestError("--point: missing; give --point NAME, or --link with --at")
     task = path_task(
         draft,
         points,
-        _where(point, link, at),
+        asked,
         vary=words(vary) if vary is not None else None,
-        bounds=dict(_bound(word) for word in words(bound or [])),
+        bounds=parsed_bounds(words(bound or [])),
         timing=inputs if timing else None,
         phase=phase,
         place=place,
@@ -102,64 +101,21 @@ def path(
     check_counts(designs, starts, seed)
     with progress_bar("designing") as progress:
         found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
-    written = [] if out is None else _written(task, found, (str(wanted), seed), out, endings, force=force)
-    if json:
-        typer.echo(report.as_json(task, found, str(wanted), seed))
-        return
-    report.print_text(task, found, str(wanted), seed)
-    tell_written(written)
+    deliver(PathDesigns(task, found, str(wanted), seed), report, out, json=json, force=force)
 
 
-def _written(
-    task: PathTask,
-    found: tuple[Candidate, ...],
-    asked: tuple[str, int],
-    out: Path,
-    endings: tuple[str, ...],
-    *,
-    force: bool,
-) -> list[Path]:
-    from sevenbar.design.synthesis.candidates import write
-    from sevenbar.design.synthesis.path.figures import path_figure
-    from sevenbar.design.synthesis.path.report import as_json, head
-    from sevenbar.drawing import plot
-
-    def also(folder: Path) -> None:
-        (folder / "summary.json").write_text(as_json(task, found, *asked) + "\n", encoding="utf-8")
-        for i, candidate in enumerate(found, 1):
-            figure = path_figure(task, candidate)
-            for ending in endings:
-                plot.save(figure, folder / f"design_{i}.{ending}")
-
-    command = shlex.join(["sevenbar", *sys.argv[1:]])
-    return write(found, out, head(task, asked[0], command), also=also, force=force)
-
-
-def _where(name: str | None, link: int | None, at: str | None) -> Where:
-    """The point that was asked for."""
-    if name is not None:
-        if link is not None or at is not None:
-            raise RequestError("--point: a name or --link with --at, not both; give one of them")
-        return name
-    if link is None or at is None:
-        missing = "--point" if link is None and at is None else "--at" if at is None else "--link"
-        raise RequestError(f"{missing}: missing; give --point NAME, or --link with --at")
-    return link, place_of(at)
-
-
-def _bound(word: str) -> tuple[str, tuple[str, str]]:
-    """Name and bounds of words like "L1=100:400" and "L1=10:40cm"."""
-    parts = split_name(word)
-    ends = split_range(parts[1]) if parts else None
-    if parts is None or ends is None:
-        example = "L1=100:400 or L1=10:40cm"
-        raise RequestError(f"--bound: {shown(word)} is not understood; give the two ends, as in {example}")
-    return parts[0], ends
+def parsed_bounds(given: list[str]) -> dict[str, tuple[str, str]]:
+    """The two ends of each dimension, of words like "L1=100:400" and "L1=10:40cm"."""
+    what, hint = "bounds of a dimension", "give the two ends, as in L1=100:400 or L1=10:40cm"
+    found = {name: split_range(text) for name, text in split_named("--bound", given, what, hint).items()}
+    for name, ends in found.items():
+        if ends is None:
+            raise RequestError(f"--bound: {name} has no {what}; {hint}")
+    return {name: ends for name, ends in found.items() if ends is not None}
 
 
 def _limits(transmission: str | None, size: str | None, motion_type: str | None, unit: str) -> Limits:
     """What a design must keep; a size without a unit is in the file's."""
-    from sevenbar.commands.function import angle, lengths
     from sevenbar.design.synthesis.limits import Limits
 
     least = 0.0 if transmission is None else angle("--transmission", transmission)

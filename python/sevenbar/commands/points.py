@@ -2,36 +2,38 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.given import check_law, law_of
 from sevenbar.commands.options import (
     Figures,
     Force,
     InputJoint,
+    Json,
+    Law,
     Samples,
     Source,
     Speed,
     figure_formats,
-    tell_written,
 )
+from sevenbar.description.draft import Draft
+from sevenbar.description.files import text_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.reporting.folder import check_targets
-from sevenbar.text.ranges import split_name, split_range
+from sevenbar.text.ranges import finite_number, split_list, split_named, split_range, three_numbers
+from sevenbar.text.units import amount, sizes_of
 
 if TYPE_CHECKING:
     from sevenbar.design.points.least import LeastPoint
+    from sevenbar.design.points.nearest import NearestPath
     from sevenbar.kinematics.motion import Motion
 
 ChosenCircuit = Annotated[int, typer.Option(help="The circuit whose cycle counts.")]
 ChosenBranch = Annotated[int, typer.Option(help="The pass of a circuit that rocks; it needs a law.")]
-LawFile = Annotated[
-    Path | None, typer.Option(help="CSV file of an input law: time, value of the input, perhaps its rates.")
-]
 
 #: What `--least` offers.
 LEAST = ("acceleration", "velocity", "jerk", "rms")
@@ -56,46 +58,51 @@ def point(
     branch: ChosenBranch = 0,
     input_joint: InputJoint = None,
     speed: Speed = None,
-    law: LawFile = None,
+    law: Law = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for point.toml, point.json, the rows and the figure.")
     ] = None,
     figures: Figures = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print what was found as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Find the point of a link with the least acceleration, or with a wanted path (extra 'design')."""
     from sevenbar.design.curve_table import read_curve
-    from sevenbar.design.points import nearest_path_point, report
+    from sevenbar.design.points import nearest_path_point
+    from sevenbar.design.points.report import least_report, nearest_report
 
-    endings = figure_formats(figures, out)
+    formats = figure_formats(figures, out)
+    check_law(law, speed)
     if least is not None and curve is not None:
         raise RequestError("--least: a path near a curve is looked for with --curve; leave one of them out")
-    sides = parsed_box(box)
     loaded = sb.load(linkage)
-    check_targets([out / "point.toml"] if out is not None else [], force=force)
-    motion = _motion(loaded, 360, input_joint, speed, law)
+    sides = parsed_box(box, loaded.length_unit)
+    called = name or ("nearest_path" if curve is not None else f"least_{least or 'acceleration'}")
+    draft = Draft.of(text_of(linkage), linkage)
+    if out is not None and called in [point.name for point in draft.linkage.points]:
+        raise RequestError(f"--name: {linkage} has a point {shown(called)} already; give another name")
+
+    def toml(found: LeastPoint | NearestPath) -> str:
+        longer = draft.with_point(called, link, found.at.tolist())
+        # a name that no file may have is told here
+        _ = longer.linkage
+        return longer.toml()
+
     if curve is not None:
+        of_curve = nearest_report(toml, called, formats)
+        check_out(of_curve, out, force=force)
+        motion = _motion(loaded, 360, input_joint, speed, law)
         places, inputs = read_curve(curve, motion.linkage, motion.input)
-        called = name or "nearest_path"
         nearest = nearest_path_point(
             motion, link, places, sides, inputs=inputs, circuit=circuit, branch=branch
         )
-        written = []
-        if out is not None:
-            toml = _with_point(linkage, called, link, nearest.at.tolist())
-            written = report.write_nearest(nearest, toml, called, out, endings, force=force)
-        _tell(nearest, written, json=json)
+        deliver(nearest, of_curve, out, json=json, force=force)
         return
+    report = least_report(toml, called, formats)
+    check_out(report, out, force=force)
+    motion = _motion(loaded, 360, input_joint, speed, law)
     found = _least(motion, link, sides, least or "acceleration", circuit, branch)
-    called = name or f"least_{least or 'acceleration'}"
-    written = []
-    if out is not None:
-        toml = _with_point(linkage, called, link, found.at.tolist())
-        written = report.write_least(found, toml, called, out, endings, force=force)
-    _tell(found, written, json=json)
+    deliver(found, report, out, json=json, force=force)
 
 
 def inertia(
@@ -112,43 +119,41 @@ def inertia(
     samples: Samples = 360,
     input_joint: InputJoint = None,
     speed: Speed = None,
-    law: LawFile = None,
+    law: Law = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for inertia.json, inertia.csv and the figure.")
     ] = None,
     figures: Figures = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print what was found as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Inertia forces of masses at points over the cycle, and the torque that the input needs for them."""
     from sevenbar.design.points import inertia as of_masses
-    from sevenbar.design.points import report
+    from sevenbar.design.points.report import inertia_report
 
-    endings = figure_formats(figures, out)
+    report = inertia_report(figure_formats(figures, out))
+    check_law(law, speed)
     masses = parsed_masses(mass)
-    pull = None if gravity is None else _three(gravity, "--gravity", "0,0,-9.80665")
+    pull = None if gravity is None else three_numbers("--gravity", gravity, "an acceleration", "0,0,-9.80665")
     loaded = sb.load(linkage)
-    check_targets([out / "inertia.json"] if out is not None else [], force=force)
+    check_out(report, out, force=force)
     motion = _motion(loaded, samples, input_joint, speed, law)
     found = of_masses(motion, masses, gravity=pull, circuit=circuit, branch=branch)
-    written = [] if out is None else report.write_inertia(found, out, endings, force=force)
-    _tell(found, written, json=json)
+    deliver(found, report, out, json=json, force=force)
 
 
-def parsed_box(text: str) -> list[tuple[float, float]]:
-    """The sides of a box written '-200:200,0:50,7'; a number alone is given. Raises `RequestError`."""
-    sides = []
-    for part in text.split(","):
-        low, high = (_number(end) for end in split_range(part) or (part, part))
-        if not (math.isfinite(low) and math.isfinite(high)):
-            break
-        sides.append((low, high))
-    if len(sides) != 3 or text.count(",") != 2:
+def parsed_box(text: str, unit: str) -> list[tuple[float, float]]:
+    """The sides [unit] of a box like '-200:200,0:5cm,7'; a length alone is given. Raises `RequestError`."""
+    sizes = sizes_of(unit)
+    ends = [
+        amount(end, sizes, unit) for side in split_list(text) for end in split_range(side) or (side, side)
+    ]
+    if len(ends) != 6 or None in ends:
         raise RequestError(
             f"--box: {shown(text)} is no box; give three sides low:high, as in '-200:200,-200:200,0:50'"
         )
+    values = [value for value in ends if value is not None]
+    sides = list(zip(values[::2], values[1::2], strict=True))
     for letter, (low, high) in zip("uvw", sides, strict=True):
         if low > high:
             raise RequestError(
@@ -159,39 +164,20 @@ def parsed_box(text: str) -> list[tuple[float, float]]:
 
 def parsed_masses(given: list[str]) -> dict[str, float]:
     """Masses written NAME=KILOGRAMS; `RequestError` for others, and for a point given twice."""
-    found: dict[str, float] = {}
-    for text in given:
-        name, value = split_name(text) or ("", "")
-        kilograms = _number(value.removesuffix("kg"))
-        if not math.isfinite(kilograms):
-            raise RequestError(f"--mass: {shown(text)} is no mass; give a point and kilograms, as in P=2.5")
-        if name in found:
-            raise RequestError(f"--mass: point {shown(name)} is given twice; leave one out")
+    what, hint = "a mass", "give a point and kilograms, as in P=2.5"
+    found = {}
+    for name, text in split_named("--mass", given, what, hint).items():
+        kilograms = finite_number(text.removesuffix("kg"))
+        if kilograms is None:
+            raise RequestError(f"--mass: {shown(f'{name}={text}')} is not {what}; {hint}")
         found[name] = kilograms
     return found
-
-
-def _number(word: str) -> float:
-    """The number of a text; NaN where it is none."""
-    try:
-        return float(word)
-    except ValueError:
-        return math.nan
-
-
-def _three(text: str, key: str, example: str) -> list[float]:
-    values = [_number(word) for word in text.split(",")]
-    if len(values) != 3 or not all(math.isfinite(value) for value in values):
-        raise RequestError(f"{key}: {shown(text)} is not three numbers; give them as in '{example}'")
-    return values
 
 
 def _motion(
     linkage: sb.Linkage, samples: int, input_joint: str | None, speed: str | None, law: Path | None
 ) -> Motion:
-    if law is not None and speed is not None:
-        raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
-    read = None if law is None else sb.load_law(law, linkage, input=input_joint)
+    read = law_of(law, linkage, input_joint)
     return linkage.motion(samples, input=input_joint, speed=speed, law=read)
 
 
@@ -214,28 +200,3 @@ def _least(
     if least not in finders:
         raise RequestError(f"--least: {shown(least)} is not offered; give one of {', '.join(LEAST)}")
     return finders[least](motion, link, box, circuit=circuit, branch=branch)
-
-
-def _with_point(source: str, name: str, link: int, at: list[float]) -> str:
-    """The file of a linkage with one more point; `RequestError` where it has one of that name."""
-    from sevenbar.description.draft import Draft
-    from sevenbar.description.files import text_of
-
-    draft = Draft.of(text_of(source), source)
-    if name in [point.name for point in draft.linkage.points]:
-        raise RequestError(f"--name: {source} has a point {shown(name)} already; give another name")
-    longer = draft.with_point(name, link, at)
-    # a name that no file may have is told here
-    _ = longer.linkage
-    return longer.toml()
-
-
-def _tell(found: object, written: list[Path], *, json: bool) -> None:
-    from sevenbar.design.points import report
-    from sevenbar.reporting.report import json_text
-
-    if json:
-        typer.echo(json_text(report.as_dict(found)))  # type: ignore[arg-type]
-        return
-    report.print_found(found)  # type: ignore[arg-type]
-    tell_written(written)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-import json as json_module
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
 
-from sevenbar.commands.options import InputJoint, OutputJoint, Source, progress_bar, words
+from sevenbar.commands.deliver import deliver
+from sevenbar.commands.options import InputJoint, Json, OutputJoint, Source, progress_bar, words
 from sevenbar.errors import RequestError
+from sevenbar.reporting.files import Report
 
 if TYPE_CHECKING:
     from sevenbar.sweep.result import Sweep
@@ -56,9 +60,7 @@ def sweep(
         str | None, typer.Option(help="Address of a Dask scheduler, as in tcp://host:8786.")
     ] = None,
     part_size: Annotated[int | None, typer.Option(help="Linkages of a part.")] = None,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the summary as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """Measure many linkages: dimensions over grids, lists and samples, into Parquet (extra 'sweep')."""
     from sevenbar.description.draft import Draft
@@ -98,30 +100,29 @@ def sweep(
         kept = "" if out is None else f"; the finished parts are kept in {out}, --resume goes on with them"
         typer.echo(f"sevenbar: stopped{kept}", err=True)
         raise typer.Exit(130) from None
-    if json:
-        typer.echo(json_module.dumps({**found.description, "totals": asdict(found.totals)}, indent=2))
-        return
-    _print(found)
-    if out is not None:
+    deliver(found, Report(_text, _as_dict), json=json)
+    if out is not None and not json:
         parts = found.description["parts"]
         typer.echo(
             f"\n{'there already' if finished else 'written'}: {out} (sweep.json, {_counted(parts, 'part')})"
         )
 
 
-def _print(found: Sweep) -> None:
-    """Counts by words, ranges of numbers, of all linkages."""
-    from rich.console import Console
-    from rich.table import Table
+def _as_dict(found: Sweep) -> dict[str, Any]:
+    return {**found.description, "totals": asdict(found.totals)}
 
-    totals, console = found.totals, Console(highlight=False)
-    told = found.description
-    sampling = told["sampling"]
+
+def _text(found: Sweep) -> RenderableType:
+    """Counts by words, ranges of numbers, of all linkages."""
+    totals = found.totals
+    sampling = found.description["sampling"]
     seed = "" if sampling["seed"] is None else f", seed {sampling['seed']}"
     linkages, rows = _counted(totals.linkages, "linkage"), _counted(totals.rows, "row")
-    console.print(f"[bold]{linkages}[/bold] ({sampling['method']}{seed}), {rows}")
+    parts: list[RenderableType] = [
+        Text.assemble((linkages, "bold"), f" ({sampling['method']}{seed}), {rows}")
+    ]
     if totals.invalid:
-        console.print(f"no linkage at all: {totals.invalid} (their rows say why, in status)")
+        parts.append(Text(f"no linkage at all: {totals.invalid} (their rows say why, in status)"))
     for name, counts in totals.words.items():
         table = Table("", "count", "share", box=None, pad_edge=False)
         table.columns[0].header = name.replace("_", " ")
@@ -130,8 +131,7 @@ def _print(found: Sweep) -> None:
             column.justify = "right"
         for word, number in sorted(counts.items(), key=lambda pair: (-pair[1], pair[0])):
             table.add_row(word, str(number), f"{100 * number / whole:.3g} %")
-        console.print()
-        console.print(table)
+        parts += [Text(), table]
     if totals.ranges:
         table = Table("measure", "lowest", "linkage", "highest", "linkage", "rows", box=None, pad_edge=False)
         for column in table.columns[1:]:
@@ -142,8 +142,8 @@ def _print(found: Sweep) -> None:
                 continue
             low, high = (f"{value:.6g}" for value in (extent.lowest, extent.highest))
             table.add_row(name, low, str(extent.lowest_at), high, str(extent.highest_at), str(extent.rows))
-        console.print()
-        console.print(table)
+        parts += [Text(), table]
+    return Group(*parts)
 
 
 def _counted(count: int, what: str) -> str:

@@ -8,18 +8,19 @@ from typing import Annotated
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
     Force,
     InputJoint,
+    Json,
     OutputJoint,
     Source,
     Speed,
     figure_formats,
-    tell_written,
 )
 from sevenbar.errors import RequestError, shown
-from sevenbar.reporting.folder import check_targets
+from sevenbar.text.units import amount, sizes_of
 
 
 def tolerance(
@@ -69,12 +70,10 @@ def tolerance(
     ] = None,
     figures: Figures = None,
     force: Force = False,
-    json: Annotated[
-        bool, typer.Option("--json", help="Print the findings as one JSON object and nothing else.")
-    ] = False,
+    json: Json = False,
 ) -> None:
     """What tolerances of the dimensions do to the motion: which matters most, worst case, Monte Carlo."""
-    endings = figure_formats(figures, out)
+    formats = figure_formats(figures, out)
     ways = [
         option
         for option, value in (("--tolerance", given), ("--wanted", wanted), ("--explain", explain))
@@ -86,16 +85,17 @@ def tolerance(
     if explain is not None:
         _explain(loaded, explain, input_joint, output, speed, out, json=json)
         return
-    from sevenbar.design.tolerance import report
     from sevenbar.design.tolerance.inverse import tolerances_for
     from sevenbar.design.tolerance.linear import linear_estimate
+    from sevenbar.design.tolerance.report import Findings, tolerance_report
     from sevenbar.design.tolerance.samples import monte_carlo
     from sevenbar.design.tolerance.sensitivities import sensitivities
     from sevenbar.design.tolerance.tolerances import parsed
     from sevenbar.design.tolerance.worst import worst_case
 
     tolerances = parsed(given or [])
-    check_targets([out / "tolerance.json"] if out is not None else [], force=force)
+    report = tolerance_report(formats)
+    check_out(report, out, force=force)
     found = sensitivities(
         loaded, circuit=circuit, samples=samples, input=input_joint, output=output, speed=speed
     )
@@ -105,28 +105,18 @@ def tolerance(
     else:
         linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
     exact = monte_carlo(found, linear, count, seed=seed) if count != 0 else None
-    told = report.Findings(linear, worst_case(found, linear), exact)
-    written = [] if out is None else report.write(told, out, endings, force=force)
-    if json:
-        typer.echo(report.as_json(told))
-        return
-    report.print_text(told)
-    tell_written(written)
+    deliver(Findings(linear, worst_case(found, linear), exact), report, out, json=json, force=force)
 
 
 def _wanted(text: str, unit: str) -> float:
     """An error [the output's unit] as a person wrote it; an angle alone is in degrees."""
-    from sevenbar.text.units import ANGLES, LENGTHS, amount, length_sizes
-
-    if unit == "rad":
-        value = amount(text, ANGLES, "deg")
-        hint = "0.5deg"
-    elif unit in LENGTHS:
-        value, hint = amount(text, length_sizes(unit), unit), f"0.5{unit}"
-    else:
-        value, hint = amount(text, {unit: 1.0}, unit), f"0.5 {unit}"
+    plain = "deg" if unit == "rad" else unit
+    value = amount(text, sizes_of(unit), plain)
     if value is None or value <= 0:
-        raise RequestError(f"--wanted: {shown(text)} is not an error; give one greater than 0, as in {hint}")
+        raise RequestError(
+            f"--wanted: {shown(text)} is not an error; give one greater than 0, as in "
+            f"0.5{' ' * ('/' in plain)}{plain}"
+        )
     return value
 
 

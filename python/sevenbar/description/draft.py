@@ -15,7 +15,7 @@ from sevenbar.description.forms import from_description
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.kinematics.geometry import Joint
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.text.units import ANGLES, TURNING_SPEEDS, amount, length_sizes
+from sevenbar.text.units import ANGLES, amount, examples_of, sizes_of
 
 #: A place in a description: keys of tables, and counts from 0 in lists.
 Place = tuple[str | int, ...]
@@ -68,29 +68,13 @@ class Dimension:
 
         Raises `RequestError` for a text that is no finite number with a unit that fits.
         """
-        sizes, what, hint = self._sizes
-        value = amount(text, sizes, self.unit)
+        value = amount(text, sizes_of(self.unit), self.unit)
         if value is None:
             comma = " (a decimal point, not a comma)" if "," in text else ""
             given = shown(text.strip())
-            raise RequestError(f"{self.key}: {given} is not a finite {what}; give {hint}{comma}")
+            hint = examples_of(self.unit)
+            raise RequestError(f"{self.key}: {given} is not a finite {self.kind}; give {hint}{comma}")
         return value
-
-    @property
-    def _sizes(self) -> tuple[dict[str, float], str, str]:
-        """Sizes of the units that fit, what a value is, and examples."""
-        length, _, per = self.unit.partition("/")
-        if self.unit == "":
-            return {"": 1.0}, "number", "a number, as in 1.5"
-        if self.unit in ANGLES:
-            sizes = {unit: size / ANGLES[self.unit] for unit, size in ANGLES.items()}
-            return sizes | {self.unit: 1.0}, "angle", "30, 30deg or 0.5rad"
-        if self.unit in TURNING_SPEEDS:
-            return TURNING_SPEEDS, "speed", f"10, 10 {self.unit} or 60 rpm"
-        if per:
-            sizes = {f"{unit}/{per}": size for unit, size in length_sizes(length).items()}
-            return sizes, "speed" if per == "s" else "pitch", f"10 or 10 {self.unit}"
-        return length_sizes(length), "length", f"250 or 250{length}"
 
 
 @dataclass(frozen=True, eq=False)

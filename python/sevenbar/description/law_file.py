@@ -14,7 +14,6 @@ from sevenbar.errors import MissingExtraError
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
 from sevenbar.kinematics.motion import Law
 from sevenbar.text.table import Table, read_table
-from sevenbar.text.units import measured_unit
 
 #: Degree of the spline: its third derivative, the jerk, is still smooth.
 DEGREE = 5
@@ -59,7 +58,10 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
         {places[quantity]: numbers for quantity, numbers in written.items()}, "leave such rows out"
     )
     table.refuse_falling(written["time"], np.arange(len(table.rows)))
-    numbers = {q: written[q] * _size(table, place, linkage.length_unit) for q, place in places.items()}
+    # a time without a unit is in seconds
+    units = {quantity: table.unit(place) for quantity, place in places.items()}
+    sizes = {q: 1.0 if unit is None else unit.size_in(linkage.length_unit) for q, unit in units.items()}
+    numbers = {quantity: written[quantity] * size for quantity, size in sizes.items()}
     t = numbers.pop("time")
     if linkage.column_kinds[column] == "turn":
         _refuse_jumps(table, numbers, places["value"])
@@ -72,7 +74,7 @@ def _places(table: Table, linkage: Linkage, column: int) -> dict[str, int]:
     name, kind = linkage.columns[column], linkage.column_kinds[column]
     owners = [joint.name for joint in linkage.joints for _ in joint.columns]
     heads = [table.name_and_unit(place) for place in range(len(table.names))]
-    units = [measured_unit(unit) for _, unit in heads]
+    units = [table.unit(place) for place in range(len(heads))]
     sorts = {"time": ("time", 0), **{quantity: (kind, order) for order, quantity in enumerate(QUANTITIES)}}
     found = {}
     for quantity, sort in sorts.items():
@@ -109,12 +111,6 @@ def _refuse_what_is_missing(table: Table, found: Mapping[str, int], name: str, k
         higher = next(quantity for quantity in QUANTITIES[gap:] if quantity in found)
         alone = f"{table.labels[found[higher]]} is given without a column of {QUANTITIES[gap]}"
         raise table.wrong(f"{alone}; add that, or leave this out")
-
-
-def _size(table: Table, place: int, length_unit: str) -> float:
-    """What one unit of a column is in seconds, radians or the linkage's length; a bare time is in seconds."""
-    unit = measured_unit(table.name_and_unit(place)[1])
-    return 1.0 if unit is None else unit.size_in(length_unit)
 
 
 def _refuse_jumps(table: Table, numbers: Mapping[str, Floats], place: int) -> None:

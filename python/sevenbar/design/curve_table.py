@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.table import Table, read_table
-from sevenbar.text.units import measured_unit
+from sevenbar.text.table import Table, plain_name, read_table
 
 
 def read_curve(
@@ -32,7 +30,9 @@ def read_curve(
     for letter in "xyz":
         place = _place(table, letter, point, unit)
         if place is not None:
-            numbers[place] = table.numbers(place) * _size(table, place, unit, kind="slide")
+            numbers[place] = table.numbers(place) * table.size(
+                place, ("slide", 0), unit, what=letter, example=unit
+            )
             columns.append(numbers[place])
         elif letter == "z":
             columns.append(np.zeros(len(table.rows)))
@@ -45,17 +45,15 @@ def read_curve(
     place = _input(table, input_joint)
     if place is not None:
         kind = linkage.column_kinds[linkage.columns.index(input_joint)]
-        inputs = numbers[place] = table.numbers(place) * _size(table, place, unit, kind=kind)
+        example = unit if kind == "slide" else "deg"
+        size = table.size(place, (kind, 0), unit, what="input", example=example)
+        inputs = numbers[place] = table.numbers(place) * size
     table.refuse_gaps(numbers, "leave the row out")
     return np.column_stack(columns), inputs
 
 
-def _plain(name: str) -> str:
-    return re.sub(r"[^\w.]+|_", " ", name).lower().strip()
-
-
 def _names(table: Table) -> list[str]:
-    return [_plain(table.name_and_unit(place)[0]) for place in range(len(table.names))]
+    return [plain_name(table.name_and_unit(place)[0]) for place in range(len(table.names))]
 
 
 def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
@@ -66,7 +64,7 @@ def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
         raise table.wrong(
             f"has no header, so the unit of its numbers is not known; write '{example}' above them"
         )
-    for wanted in (_plain(f"{point} {letter}"), letter):
+    for wanted in (plain_name(f"{point} {letter}"), letter):
         if wanted in names:
             return names.index(wanted)
     found = [place for place, name in enumerate(names) if name.endswith(f" {letter}")]
@@ -82,21 +80,9 @@ def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
 def _input(table: Table, joint: str) -> int | None:
     """The column of the input; not that of its velocity, which has its name too."""
     names = _names(table)
-    for wanted in (_plain(joint), "input"):
+    for wanted in (plain_name(joint), "input"):
         for place, name in enumerate(names):
-            unit = measured_unit(table.name_and_unit(place)[1])
+            unit = table.unit(place)
             if name == wanted and (unit is None or unit.order == 0):
                 return place
     return None
-
-
-def _size(table: Table, place: int, length_unit: str, *, kind: str) -> float:
-    """What one of a column's unit is in the length unit, or in radians."""
-    name, written = table.name_and_unit(place)
-    what, example = ("a length", length_unit) if kind == "slide" else ("an angle", "deg")
-    if not written:
-        raise table.wrong(f"has no unit; write it as in '{name} [{example}]'", column=place)
-    unit = measured_unit(written)
-    if unit is None or (unit.kind, unit.order) != (kind, 0):
-        raise table.wrong(f"'{written}' is not a unit of {what}; give one, as in [{example}]", column=place)
-    return unit.size_in(length_unit)

@@ -7,7 +7,6 @@ has them, `q (rows, columns)` with its derivatives, beside a note of units and n
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -24,7 +23,7 @@ Units = Literal["file", "si"]
 
 def write_csv(motion: Motion, path: Path, units: Units) -> None:
     """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
-    write_columns(path, flat_columns(motion, units))
+    write_columns(path, motion.columns(si=units == "si"))
 
 
 def write_parquet(motion: Motion, path: Path, units: Units) -> None:
@@ -34,7 +33,7 @@ def write_parquet(motion: Motion, path: Path, units: Units) -> None:
         from pyarrow import parquet
     except ImportError:
         raise _missing("parquet", "pyarrow") from None
-    columns = {name: np.asarray(values) for name, values in flat_columns(motion, units).items()}
+    columns = {name: np.asarray(values) for name, values in motion.columns(si=units == "si").items()}
     arrays = [
         arrow.array(values.tolist() if values.dtype.kind == "U" else values) for values in columns.values()
     ]
@@ -128,41 +127,6 @@ def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
         "motion_type": motion.motion_type,
         "samples": motion.samples,
     }
-
-
-def flat_columns(motion: Motion, units: Units) -> Mapping[str, Any]:
-    """Every row of every circuit, column by column; each name ends in its unit."""
-    if units == "file":
-        return motion.columns()
-    parts = [_si_columns(motion, circuit) for circuit in motion.circuits]
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-
-
-def _si_columns(motion: Motion, circuit: Circuit) -> dict[str, Any]:
-    arrays = circuit_arrays(motion, circuit, "si")
-    linkage = motion.linkage
-    columns: dict[str, Any] = {
-        "circuit": np.full(len(circuit.time), circuit.index),
-        "branch": arrays["branch"],
-        "sample": np.arange(len(circuit.time)),
-        "status": arrays["status"],
-        "time_s": arrays["time"],
-    }
-    signs = ["m" if kind == "slide" else "rad" for kind in linkage.column_kinds]
-    for array, suffix in (("q", ""), ("dq", "_s"), ("ddq", "_s2"), ("dddq", "_s3")):
-        for k, (name, sign) in enumerate(zip(linkage.columns, signs, strict=True)):
-            columns[f"{name}_{sign}{suffix}"] = arrays[array][:, k]
-    for point in linkage.points:
-        for quantity, letter, suffix in (
-            ("position", "", "m"),
-            ("velocity", "v", "m_s"),
-            ("acceleration", "a", "m_s2"),
-        ):
-            for axis, name in enumerate("xyz"):
-                values = arrays[f"point_{point.name}_{quantity}"][:, axis]
-                columns[f"{point.name}_{letter}{name}_{suffix}"] = values
-    columns["residual_m"] = arrays["residual"]
-    return columns
 
 
 def circuit_arrays(motion: Motion, circuit: Circuit, units: Units) -> dict[str, Any]:

@@ -12,8 +12,10 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import MissingExtraError, RequestError, shown
+from sevenbar.kinematics.columns import joint_column, point_column
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.rigid import axial
+from sevenbar.text.units import LENGTHS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -517,15 +519,16 @@ class Motion:
     def __iter__(self) -> Iterator[Circuit]:
         return iter(self.circuits)
 
-    def columns(self) -> dict[str, npt.NDArray[Any]]:
+    def columns(self, *, si: bool = False) -> dict[str, npt.NDArray[Any]]:
         """Every row of every circuit, column by column; each name ends in its unit.
+
+        Angles are in degrees and lengths in the linkage's unit; with `si` in radians and metres.
 
         >>> import sevenbar as sb
         >>> list(sb.load("planar_4r").motion().columns())[:6]
         ['circuit', 'branch', 'sample', 'status', 'time_s', 'theta_1_deg']
         """
-        unit = self.linkage.length_unit
-        parts = [_circuit_columns(circuit, self.linkage, unit) for circuit in self.circuits]
+        parts = [_circuit_columns(circuit, self.linkage, si) for circuit in self.circuits]
         if not parts:
             return {}
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -541,8 +544,10 @@ class Motion:
         return pd.DataFrame(self.columns())
 
 
-def _circuit_columns(circuit: Circuit, linkage: Loop, unit: str) -> dict[str, npt.NDArray[Any]]:
+def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt.NDArray[Any]]:
     count = len(circuit.time)
+    length, angle = ("m", "rad") if si else (linkage.length_unit, "deg")
+    scale = LENGTHS[linkage.length_unit] if si else 1.0
     columns: dict[str, npt.NDArray[Any]] = {
         "circuit": np.full(count, circuit.index),
         "branch": circuit.branch,
@@ -550,25 +555,19 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, unit: str) -> dict[str, np
         "status": circuit.status,
         "time_s": circuit.time,
     }
-    slides = [kind == "slide" for kind in linkage.column_kinds]
-    for index, (name, slide) in enumerate(zip(circuit.columns, slides, strict=True)):
-        if slide:
-            columns[f"{name}_{unit}"] = circuit.q[:, index]
-        else:
-            columns[f"{name}_deg"] = np.degrees(circuit.q[:, index])
-    for suffix, values in (("s", circuit.dq), ("s2", circuit.ddq), ("s3", circuit.dddq)):
-        for index, (name, slide) in enumerate(zip(circuit.columns, slides, strict=True)):
-            columns[f"{name}_{unit if slide else 'rad'}_{suffix}"] = values[:, index]
+    for order, values in enumerate((circuit.q, circuit.dq, circuit.ddq, circuit.dddq)):
+        for index, (name, kind) in enumerate(zip(circuit.columns, linkage.column_kinds, strict=True)):
+            slides = kind == "slide"
+            column = values[:, index] * scale if slides else values[:, index]
+            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
+            columns[head] = np.degrees(column) if head.endswith("_deg") else column
     for point in linkage.points:
         trace = circuit.point(point.link, point.at)
-        for letter, suffix, values in (
-            ("", unit, trace.position),
-            ("v", f"{unit}_s", trace.velocity),
-            ("a", f"{unit}_s2", trace.acceleration),
-        ):
-            for axis, name in enumerate("xyz"):
-                columns[f"{point.name}_{letter}{name}_{suffix}"] = values[:, axis]
-    columns[f"residual_{unit}"] = circuit.residual
+        for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):
+            for axis, letter in enumerate("xyz"):
+                head = point_column(point.name, letter, order=order, length=length)
+                columns[head] = values[:, axis] * scale
+    columns[f"residual_{length}"] = circuit.residual * scale
     return columns
 
 

@@ -19,8 +19,8 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, TableError, shown, suggestion
 from sevenbar.kinematics.motion import Integers
 from sevenbar.text.ranges import split_name
-from sevenbar.text.table import Table, name_and_unit, read_table, read_text
-from sevenbar.text.units import MeasuredUnit, measured_unit
+from sevenbar.text.table import Table, name_and_unit, plain_name, read_table, read_text, unit_size
+from sevenbar.text.units import MeasuredUnit
 
 #: What the tables hold, as messages say it.
 HELD = "measured values"
@@ -145,7 +145,18 @@ def read_measured(
     table = read_table(file, HELD)
     places = _places(table, ends, columns)
     _refuse_what_is_missing(table, ends, places)
-    sizes = {quantity: _size(table, ends, quantity, place, units) for quantity, place in places.items()}
+    sizes = {
+        q: table.size(
+            place,
+            ends.kind(q),
+            ends.length_unit,
+            what=q,
+            example=ends.example(q),
+            asked=units.get(q, ""),
+            option="--unit",
+        )
+        for q, place in places.items()
+    }
     raw = {quantity: table.numbers(place) for quantity, place in places.items()}
     if not skip_nan:
         table.refuse_gaps({places[q]: raw[q] for q in places}, "leave such rows out with --skip-nan")
@@ -181,17 +192,16 @@ def pairs(given: Iterable[str], option: str) -> dict[str, str]:
 
 def _quantity(name: str, unit: MeasuredUnit | None, ends: Ends) -> str | None:
     """What a column holds, by its name and its unit; `None` where neither tells."""
-    words = re.sub(r"[^\w.]+|_", " ", name).lower().split()
-    plain = " ".join(words)
+    plain = plain_name(name)
     for quantity, joint in (("input", ends.input), ("angle", ends.output)):
-        own = re.sub(r"[^\w.]+|_", " ", joint).lower().strip()
+        own = plain_name(joint)
         if plain == own or plain.startswith(own + " "):
             rest = set(plain[len(own) :].split())
             order = next((i for i in (1, 2) if rest & _WORDS[OUTPUTS[i]]), unit.order if unit else 0)
             if quantity == "input":
                 return "input" if order == 0 else None
             return OUTPUTS[order] if order < len(OUTPUTS) else None
-    found = set(words)
+    found = set(plain.split())
     if plain in _WORDS["time"]:
         return "time"
     if found & _WORDS["input"]:
@@ -213,14 +223,13 @@ def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, i
     candidates: dict[str, list[int]] = {}
     for place, name in enumerate(table.names):
         if name and place not in taken:
-            bare, unit = table.name_and_unit(place)
-            quantity = _quantity(bare, measured_unit(unit), ends)
+            quantity = _quantity(table.name_and_unit(place)[0], table.unit(place), ends)
             if quantity is not None and quantity not in places:
                 candidates.setdefault(quantity, []).append(place)
     for quantity, found in candidates.items():
         if len(found) > 1:
             names = " and ".join(table.labels[place] for place in found[:2])
-            different = len({measured_unit(table.name_and_unit(place)[1]) for place in found}) > 1
+            different = len({table.unit(place) for place in found}) > 1
             raise table.wrong(
                 f"line {table.header_line}: {'mixed units: ' if different else ''}{names} "
                 f"both hold the {quantity}; choose with --column {quantity}=NAME"
@@ -257,32 +266,6 @@ def _refuse_what_is_missing(table: Table, ends: Ends, places: Mapping[str, int])
     )
 
 
-def _size(table: Table, ends: Ends, quantity: str, place: int, units: Mapping[str, str]) -> float:
-    """What one unit of a column is in the units that values come out in."""
-    written, asked = table.name_and_unit(place)[1], units.get(quantity, "")
-    label = table.labels[place]
-    if written and asked and measured_unit(written) != measured_unit(asked):
-        raise table.wrong(
-            f"mixed units: column {label} is in {shown(written)} by its header and in "
-            f"{shown(asked)} by --unit; leave --unit out or mend the header"
-        )
-    if not (written or asked):
-        raise table.wrong(
-            f"column {label} has no unit; write it as in '{quantity} "
-            f"[{ends.example(quantity)}]', or give --unit {quantity}={ends.example(quantity)}"
-        )
-    return unit_size(f"{table.source}: column {label}", ends, quantity, written or asked)
-
-
-def unit_size(where: str, ends: Ends, quantity: str, text: str) -> float:
-    """What a unit is in the one that a quantity comes out in; `TableError` where it does not fit."""
-    unit = measured_unit(text)
-    if unit is None or (unit.kind, unit.order) != ends.kind(quantity):
-        what = "is not a unit known here" if unit is None else f"is not a unit of the {quantity}"
-        raise TableError(f"{where}: {shown(text)} {what}; give one like {ends.example(quantity)}")
-    return unit.size_in(ends.length_unit)
-
-
 def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> MeasuredExtremes | None:
     """A table `quantity, lowest, highest`; `None` where the file has no such header."""
     lines = [
@@ -308,7 +291,8 @@ def _read_extremes(path: Path, ends: Ends, units: Mapping[str, str]) -> Measured
         unit = unit or row.get("unit", "") or units.get(name, "")
         if not unit:
             raise TableError(f"{where}: {name} has no unit; write '{name} [{ends.example(name)}]'")
-        size = unit_size(where, ends, name, unit)
+        example = ends.example(name)
+        size = unit_size(where, unit, ends.kind(name), ends.length_unit, what=name, example=example)
         try:
             low, high = float(row["lowest"]) * size, float(row["highest"]) * size
         except (KeyError, ValueError):

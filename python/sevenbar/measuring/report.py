@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from sevenbar.drawing.figure import save
 from sevenbar.measuring.calibrate import Calibration, Parameter
 from sevenbar.measuring.compare import Comparison, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
 from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns, word
 from sevenbar.measuring.measured import Ends
-from sevenbar.reporting.folder import fill_folder, write_columns, write_csv
-from sevenbar.reporting.page import Facts, number_table
-from sevenbar.reporting.report import json_text
+from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, json_text, text_file
+from sevenbar.reporting.folder import write_columns, write_csv
+from sevenbar.reporting.page import Facts, drive_text, number_table
 
 #: Candidates and notes are told in full in the JSON; of candidates the page has as many.
 MOST_CANDIDATES = 4
@@ -31,10 +31,10 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     ends = comparison.ends
     facts = Facts()
     parts: list[RenderableType] = [Text(comparison.linkage.name, style="bold underline"), facts.grid]
-    speed = f"{ends.input} at {comparison.speed:.6g} {ends.unit('input')}/s, output {ends.output}"
+    drive = drive_text(ends.input, comparison.speed, ends.unit("input"), ends.output)
     if isinstance(comparison, ExtremesComparison):
         facts.add("measured", f"{comparison.source}, lowest and highest values")
-        facts.add("drive", speed)
+        facts.add("drive", drive)
         first, *others = (f"circuit {i} (misfit {per_cent(m)})" for i, m in comparison.misfits)
         facts.add("explained by", first, style="bold")
         if others:
@@ -46,7 +46,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     facts.add(
         "measured", f"{comparison.source}, {rows} rows of {', '.join(_words(ends, comparison.outputs))}"
     )
-    facts.add("drive", speed)
+    facts.add("drive", drive)
     facts.add("explained by", _candidate(chosen.circuit, chosen.branch, chosen.misfit), style="bold")
     others = [
         _candidate(c.circuit, c.branch, c.misfit)
@@ -80,7 +80,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         + ", ".join(_words(ends, calibration.outputs)),
     )
     speed = calibration.before.speed
-    facts.add("drive", f"{ends.input} at {speed:.6g} {ends.unit('input')}/s, output {ends.output}")
+    facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
     facts.add("explained by", f"circuit {chosen.circuit}, branch {chosen.branch}")
     for quantity in calibration.outputs:
         before, after = (
@@ -114,18 +114,8 @@ def untold_sentence(parameter: Parameter, calibration: Calibration) -> str:
     return f"{parameter.name}, held at {at}: changes of {others} would hide a change of it"
 
 
-def print_comparison(comparison: Comparison | ExtremesComparison, console: Console | None = None) -> None:
-    """Prints the comparison for people."""
-    (console or Console()).print(comparison_text(comparison))
-
-
-def print_calibration(calibration: Calibration, console: Console | None = None) -> None:
-    """Prints the calibration for people."""
-    (console or Console()).print(calibration_text(calibration))
-
-
-def comparison_json(comparison: Comparison | ExtremesComparison) -> str:
-    """The comparison as one JSON object; angles in radians."""
+def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, Any]:
+    """The comparison as plain values; angles in radians."""
     ends = comparison.ends
     common = {
         "format": 1,
@@ -146,55 +136,155 @@ def comparison_json(comparison: Comparison | ExtremesComparison) -> str:
     ]
     if isinstance(comparison, ExtremesComparison):
         misfits = [{"circuit": i, "misfit": m} for i, m in comparison.misfits]
-        return json_text(common | {"circuit": comparison.circuit, "candidates": misfits, "table": table})
-    return json_text(
-        common
-        | {
-            "rows": len(comparison.line),
-            "circuit": comparison.chosen.circuit,
-            "branch": comparison.chosen.branch,
-            "aligned": list(comparison.aligned),
-            "phase": comparison.chosen.phase,
-            "offset": comparison.chosen.offset,
-            "candidates": [vars(c) for c in comparison.candidates],
-            "table": table,
-            "differences": {q: vars(comparison.spread(q)) for q in comparison.outputs},
-            "notes": list(comparison.notes),
-        }
+        return common | {"circuit": comparison.circuit, "candidates": misfits, "table": table}
+    return common | {
+        "rows": len(comparison.line),
+        "circuit": comparison.chosen.circuit,
+        "branch": comparison.chosen.branch,
+        "aligned": list(comparison.aligned),
+        "phase": comparison.chosen.phase,
+        "offset": comparison.chosen.offset,
+        "candidates": [vars(c) for c in comparison.candidates],
+        "table": table,
+        "differences": {q: vars(comparison.spread(q)) for q in comparison.outputs},
+        "notes": list(comparison.notes),
+    }
+
+
+def calibration_dict(calibration: Calibration) -> dict[str, Any]:
+    """The calibration as plain values; angles in radians, NaN where there is no interval."""
+    ends = calibration.ends
+    return {
+        "format": 1,
+        "linkage": calibration.linkage.name,
+        "measured": calibration.source,
+        "units": _units(ends),
+        "drive": {"input": ends.input, "output": ends.output, "speed": calibration.before.speed},
+        "rows": len(calibration.line),
+        "circuit": calibration.before.chosen.circuit,
+        "branch": calibration.before.chosen.branch,
+        "confidence": calibration.confidence,
+        "degrees_of_freedom": calibration.freedom,
+        "parameters": [{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
+        "covariance": {
+            "parameters": [p.name for p in calibration.calibrated],
+            "values": calibration.covariance.tolist(),
+        },
+        "noise": dict(calibration.noise),
+        "rms": {
+            q: {
+                "nominal": _rms(calibration.measured[q] - calibration.nominal[q]),
+                "calibrated": _rms(calibration.measured[q] - calibration.computed[q]),
+            }
+            for q in calibration.outputs
+        },
+        "notes": list(calibration.notes),
+    }
+
+
+def comparison_report(figures: Sequence[str] = ("png",)) -> Report[Comparison | ExtremesComparison]:
+    """How a comparison is reported; rows.csv and the figure are of measured rows only."""
+    return Report(
+        comparison_text,
+        comparison_dict,
+        {
+            "comparison.json": json_file(comparison_dict),
+            "table.csv": _write_extents,
+            "rows.csv": _write_compared,
+            **figure_files("comparison", figures, _comparison_figure),
+        },
     )
+
+
+def _write_extents(comparison: Comparison | ExtremesComparison, path: Path) -> None:
+    ends = comparison.ends
+    lines = [
+        (extent.quantity, ends.unit(extent.quantity), *row)
+        for extent in comparison.table
+        for row in extent.rows()
+    ]
+    write_csv(path, ("quantity", "unit", "value", "computed", "measured", "error", "per_cent"), lines)
+
+
+def _write_compared(comparison: Comparison | ExtremesComparison, path: Path) -> None:
+    if isinstance(comparison, Comparison):
+        sides = {"measured": comparison.measured, "computed": comparison.computed}
+        write_columns(path, _rows(comparison.ends, comparison.line, comparison.input, sides))
+
+
+def _comparison_figure(comparison: Comparison | ExtremesComparison) -> Figure | None:
+    return comparison_figure(comparison) if isinstance(comparison, Comparison) else None
+
+
+def calibration_report(
+    toml: Callable[[Calibration], str], figures: Sequence[str] = ("png",)
+) -> Report[Calibration]:
+    """How a calibration is reported; `toml` makes the text of the calibrated linkage's file."""
+    return Report(
+        calibration_text,
+        calibration_dict,
+        {
+            "calibrated.toml": text_file(toml),
+            "calibration.json": json_file(calibration_dict),
+            "parameters.csv": _write_parameters,
+            "rows.csv": columns_file(_calibrated_rows),
+            **figure_files("calibration", figures, calibration_figure),
+        },
+    )
+
+
+def _write_parameters(calibration: Calibration, path: Path) -> None:
+    head = (
+        "parameter",
+        "unit",
+        "status",
+        "nominal",
+        "value",
+        "standard_error",
+        "low",
+        "high",
+        "undone_by",
+    )
+    lines = [
+        (
+            p.name,
+            _parameter_unit(p, calibration.ends),
+            p.status,
+            *(_shown(p, v) for v in (p.nominal, p.value, p.error, p.low, p.high)),
+            " ".join(p.undone_by),
+        )
+        for p in calibration.parameters
+    ]
+    write_csv(path, head, lines)
+
+
+def _calibrated_rows(calibration: Calibration) -> dict[str, Any]:
+    sides = {
+        "measured": calibration.measured,
+        "nominal": calibration.nominal,
+        "calibrated": calibration.computed,
+    }
+    return _rows(calibration.ends, calibration.line, calibration.input, sides)
+
+
+def print_comparison(comparison: Comparison | ExtremesComparison, console: Console | None = None) -> None:
+    """Prints the comparison for people."""
+    (console or Console()).print(comparison_text(comparison))
+
+
+def print_calibration(calibration: Calibration, console: Console | None = None) -> None:
+    """Prints the calibration for people."""
+    (console or Console()).print(calibration_text(calibration))
+
+
+def comparison_json(comparison: Comparison | ExtremesComparison) -> str:
+    """The comparison as one JSON object; angles in radians."""
+    return json_text(comparison_dict(comparison))
 
 
 def calibration_json(calibration: Calibration) -> str:
     """The calibration as one JSON object; angles in radians, null where there is no interval."""
-    ends = calibration.ends
-    return json_text(
-        {
-            "format": 1,
-            "linkage": calibration.linkage.name,
-            "measured": calibration.source,
-            "units": _units(ends),
-            "drive": {"input": ends.input, "output": ends.output, "speed": calibration.before.speed},
-            "rows": len(calibration.line),
-            "circuit": calibration.before.chosen.circuit,
-            "branch": calibration.before.chosen.branch,
-            "confidence": calibration.confidence,
-            "degrees_of_freedom": calibration.freedom,
-            "parameters": [{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
-            "covariance": {
-                "parameters": [p.name for p in calibration.calibrated],
-                "values": calibration.covariance.tolist(),
-            },
-            "noise": dict(calibration.noise),
-            "rms": {
-                q: {
-                    "nominal": _rms(calibration.measured[q] - calibration.nominal[q]),
-                    "calibrated": _rms(calibration.measured[q] - calibration.computed[q]),
-                }
-                for q in calibration.outputs
-            },
-            "notes": list(calibration.notes),
-        }
-    )
+    return json_text(calibration_dict(calibration))
 
 
 def write_comparison(
@@ -205,24 +295,7 @@ def write_comparison(
     force: bool = False,
 ) -> list[Path]:
     """Writes comparison.json, table.csv and, of measured rows, rows.csv and the figure: all or none."""
-
-    def fill(staging: Path) -> None:
-        (staging / "comparison.json").write_text(comparison_json(comparison) + "\n", encoding="utf-8")
-        ends = comparison.ends
-        lines = [
-            (extent.quantity, ends.unit(extent.quantity), *row)
-            for extent in comparison.table
-            for row in extent.rows()
-        ]
-        head = ("quantity", "unit", "value", "computed", "measured", "error", "per_cent")
-        write_csv(staging / "table.csv", head, lines)
-        if isinstance(comparison, Comparison):
-            sides = {"measured": comparison.measured, "computed": comparison.computed}
-            _write_rows(staging / "rows.csv", ends, comparison.line, comparison.input, sides)
-            for ending in figures:
-                save(comparison_figure(comparison), staging / f"comparison.{ending}")
-
-    return fill_folder(folder, fill, force=force)
+    return comparison_report(figures).write(comparison, folder, force=force)
 
 
 def write_calibration(
@@ -234,42 +307,7 @@ def write_calibration(
     force: bool = False,
 ) -> list[Path]:
     """Writes calibrated.toml, calibration.json, parameters.csv, rows.csv and the figure: all or none."""
-
-    def fill(staging: Path) -> None:
-        (staging / "calibrated.toml").write_text(toml, encoding="utf-8")
-        (staging / "calibration.json").write_text(calibration_json(calibration) + "\n", encoding="utf-8")
-        head = (
-            "parameter",
-            "unit",
-            "status",
-            "nominal",
-            "value",
-            "standard_error",
-            "low",
-            "high",
-            "undone_by",
-        )
-        lines = [
-            (
-                p.name,
-                _parameter_unit(p, calibration.ends),
-                p.status,
-                *(_shown(p, v) for v in (p.nominal, p.value, p.error, p.low, p.high)),
-                " ".join(p.undone_by),
-            )
-            for p in calibration.parameters
-        ]
-        write_csv(staging / "parameters.csv", head, lines)
-        sides = {
-            "measured": calibration.measured,
-            "nominal": calibration.nominal,
-            "calibrated": calibration.computed,
-        }
-        _write_rows(staging / "rows.csv", calibration.ends, calibration.line, calibration.input, sides)
-        for ending in figures:
-            save(calibration_figure(calibration), staging / f"calibration.{ending}")
-
-    return fill_folder(folder, fill, force=force)
+    return calibration_report(lambda _: toml, figures).write(calibration, folder, force=force)
 
 
 def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
@@ -364,16 +402,14 @@ def _units(ends: Ends) -> dict[str, str]:
     return {"length": ends.length_unit, "angle": "rad", "time": "s"}
 
 
-def _write_rows(
-    path: Path, ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, Any]]
-) -> None:
+def _rows(ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """A line for each measured row: its line in the file, the input, each quantity on each side."""
     columns = {"line": line, f"input_{_suffix(ends.unit('input'))}": inputs}
     for quantity in next(iter(sides.values())):
         for side, values in sides.items():
             name = f"{word(ends, quantity)}_{side}_{_suffix(ends.unit(quantity))}"
             columns[name] = values[quantity]
-    write_columns(path, columns)
+    return columns
 
 
 def _suffix(unit: str) -> str:

@@ -1,25 +1,20 @@
-"""A folder of files to keep, the figures and the rows of a motion: all of them appear, or none."""
+"""A folder of files to keep: all of them appear, or none; and tables as CSV."""
 
 from __future__ import annotations
 
 import csv
 import os
-import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import OutputError
-from sevenbar.kinematics.motion import Motion
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def check_targets(files: Iterable[Path], *, force: bool) -> None:
@@ -81,65 +76,6 @@ def _undo(made: Sequence[Path], staging: Path | None) -> None:
     for path in made:
         with suppress(OSError):
             path.rmdir()
-
-
-Places = Mapping[str, tuple[int, tuple[float, float, float]]]
-
-
-def write_figures(
-    motion: Motion,
-    folder: str | os.PathLike[str],
-    kinds: Sequence[str],
-    points: Places,
-    *,
-    circuit: int = 0,
-    figures: Sequence[str] = ("png",),
-    force: bool = False,
-) -> list[Path]:
-    """Writes figures of these kinds into a folder, all or none; returns their paths.
-
-    `kinds` of curves, joints, modes, configuration, point; `points` (link, at) by name, for the last. Raises
-    `OutputError` where one of the files exists and `force` is not given.
-    """
-    return fill_folder(
-        Path(folder), lambda staging: draw(motion, staging, kinds, points, circuit, figures), force=force
-    )
-
-
-def draw(
-    motion: Motion, folder: Path, kinds: Sequence[str], points: Places, circuit: int, figures: Sequence[str]
-) -> None:
-    """Draws figures of these kinds into a folder, in each of the formats `figures`."""
-    from sevenbar.drawing import plot
-    from sevenbar.kinematics.motion import chosen_circuit
-
-    def made() -> Iterator[tuple[str, Figure]]:
-        linkage = motion.linkage
-        if "curves" in kinds:
-            yield "motion", plot.curves(motion)
-        if "joints" in kinds:
-            yield "joints", plot.joints(motion)
-        if "configuration" in kinds:
-            yield "configuration", plot.configuration(motion, circuit)
-        if "point" in kinds:
-            for name, (link, at) in points.items():
-                yield f"path_{_file_name(name)}", plot.point_path(motion, (link, at), circuit, name=name)
-        if "modes" in kinds:
-            chosen = chosen_circuit(motion, circuit)
-            # a limit is no place to show modes at: there two are one
-            ends = chosen.pass_range(0)
-            value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
-            modes = linkage.assembly_modes(value, input=motion.input)
-            yield "modes", plot.modes_overview(linkage, modes, input=motion.input, output=motion.output)
-
-    for name, figure in made():
-        for ending in figures:
-            plot.save(figure, folder / f"{name}.{ending}")
-
-
-def _file_name(name: str) -> str:
-    """The name of a point as a part of a file's name."""
-    return re.sub(r"[^\w.-]+", "_", name).strip("_.") or "point"
 
 
 def write_columns(path: Path, columns: Mapping[str, npt.ArrayLike]) -> None:

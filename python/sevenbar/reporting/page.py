@@ -22,6 +22,16 @@ class Facts:
         self.grid.add_row(label, Text(text, style=style))
 
 
+def drive_text(input: str, speed: float | None, unit: str, output: str = "") -> str:
+    """How a linkage is driven, `speed` [unit/s] or `None` for a law, and what is read of it.
+
+    >>> drive_text("crank", 10.0, "rad", "rocker")
+    'crank at 10 rad/s, output rocker'
+    """
+    how = "by a law" if speed is None else f"at {speed:.6g} {unit}/s"
+    return f"{input} {how}" + (f", output {output}" if output else "")
+
+
 def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: Sequence[int] = ()) -> Table:
     """A table with names in its first column and numbers, flush right, in the others but for `words`."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)

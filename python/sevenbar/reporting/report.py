@@ -5,24 +5,24 @@ A report only writes down what the motion holds; it solves nothing.
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rich.box import SIMPLE_HEAD
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Circuit, Extremes, Modes, Motion
-from sevenbar.reporting.folder import draw, fill_folder, write_columns, write_figures
+from sevenbar.reporting.figures import draw_for_report, posed_circuit, write_figures
+from sevenbar.reporting.files import Report, columns_file, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.summary import (
@@ -35,7 +35,7 @@ from sevenbar.reporting.summary import (
     side_lengths,
     summary,
 )
-from sevenbar.text.units import ANGLES, amount, length_sizes
+from sevenbar.text.markdown import table
 
 __all__ = [
     "as_dict",
@@ -147,38 +147,43 @@ def _extremes_dict(extremes: Extremes | None, otherwise: str) -> dict[str, Any]:
     return {"status": "ok", **vars(extremes)}
 
 
-def without_nan(value: Any) -> Any:
-    """Plain values with null in place of each number that is not finite, as JSON needs it."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {key: without_nan(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [without_nan(v) for v in value]
-    return value
-
-
-def json_text(value: Any) -> str:
-    """Plain values as JSON text, null in place of each number that is not finite."""
-    return json.dumps(without_nan(value), indent=2, allow_nan=False)
-
-
 def as_json(motion: Motion) -> str:
     """`as_dict` as JSON text."""
     return json_text(as_dict(motion))
 
 
+class _Page:
+    """A page that is laid out for the width in which it is printed."""
+
+    def __init__(self, parts: Callable[[int], Iterable[RenderableType]]) -> None:
+        self.parts = parts
+
+    def __rich_console__(self, _console: Console, options: ConsoleOptions) -> RenderResult:
+        yield from self.parts(options.max_width)
+
+
+def text(motion: Motion) -> RenderableType:
+    """The report for people, to be printed by rich; angles in degrees."""
+
+    def parts(width: int) -> Iterator[RenderableType]:
+        told = summary(motion, width)
+        facts = Facts()
+        for name, fact in told.facts:
+            facts.add(name, fact, style="bold" if name == "motion type" else "")
+        yield Text(told.title, style="bold underline")
+        yield facts.grid
+        for sheet in told.sheets:
+            yield Text()
+            yield _table(sheet)
+            if sheet.note:
+                yield Text(sheet.note, style="dim")
+
+    return _Page(parts)
+
+
 def print_text(motion: Motion, console: Console | None = None) -> None:
     """Prints the report for people; angles in degrees."""
-    console = console or Console()
-    told = summary(motion, console.width)
-    facts = Facts()
-    for name, fact in told.facts:
-        facts.add(name, fact, style="bold" if name == "motion type" else "")
-    parts: list[RenderableType] = [Text(told.title, style="bold underline"), facts.grid]
-    for sheet in told.sheets:
-        parts += [Text(), _table(sheet), *([Text(sheet.note, style="dim")] if sheet.note else [])]
-    console.print(Group(*parts))
+    (console or Console()).print(text(motion))
 
 
 def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
@@ -194,9 +199,8 @@ def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
         "\n".join(f"- {name}: {_plain(fact)}" if name else f"  {_plain(fact)}" for name, fact in told.facts)
     )
     for sheet in told.sheets:
-        rule = ["---:" if place in sheet.right else "---" for place in range(len(sheet.heads))]
-        lines = [sheet.heads, rule, *sheet.rows]
-        parts.append("\n".join(f"| {' | '.join(_plain(cell.strip()) for cell in line)} |" for line in lines))
+        heads, *rows = ([_plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
+        parts.append(table(heads, rows, right=sheet.right))
         parts += [sheet.note] if sheet.note else []
     parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
     return "\n\n".join(parts) + "\n"
@@ -221,9 +225,21 @@ def _table(sheet: Sheet) -> Table:
     return table
 
 
-def certain_targets(folder: Path) -> list[Path]:
-    """The files that `write` makes of every motion; its figures depend on the motion."""
-    return [folder / name for name in ("report.md", "report.json", "motion.csv")]
+def motion_report(figures: Sequence[str] = ("png",)) -> Report[Motion]:
+    """How a motion is reported, with the figures in these formats."""
+    files = {
+        "report.json": json_file(as_dict),
+        "motion.csv": columns_file(Motion.columns),
+        "report.md": _write_markdown,
+    }
+    return Report(text, as_dict, files, partial(draw_for_report, formats=figures))
+
+
+def _write_markdown(motion: Motion, path: Path) -> None:
+    # a browser shows no PDF in place; of several formats one is enough
+    shown_here = [file.name for file in sorted(path.parent.iterdir()) if file.suffix in (".png", ".svg")]
+    stems = {name.rpartition(".")[0]: name for name in reversed(shown_here)}
+    path.write_text(markdown(motion, [stems[stem] for stem in sorted(stems)]), encoding="utf-8")
 
 
 def write(
@@ -231,15 +247,14 @@ def write(
     folder: str | os.PathLike[str],
     figures: Sequence[str] = ("png",),
     *,
-    also: Callable[[Path], object] | None = None,
     force: bool = False,
 ) -> list[Path]:
     """Writes report.md, report.json, motion.csv and the figures into a folder; returns their paths.
 
     The folder is made if need be. The figures are configuration and motion; but for an RSSR, whose curves
-    tell all, also joints, and path_<name> for each named point. `also` writes more into the folder that it
-    is given. All files are finished in a folder beside it before the first is put in place. Raises
-    `OutputError` where that cannot be done, and where one of them exists and `force` is not given.
+    tell all, also joints, and path_<name> for each named point. All files are finished in a folder beside it
+    before the first is put in place. Raises `OutputError` where that cannot be done, and where one of them
+    exists and `force` is not given.
 
         >>> import tempfile
         >>> import sevenbar as sb
@@ -247,58 +262,26 @@ def write(
         ...     sorted(path.name for path in write(sb.load("rssr").motion(), folder, ["svg"]))
         ['configuration.svg', 'motion.csv', 'motion.svg', 'report.json', 'report.md']
     """
-
-    def fill(staging: Path) -> None:
-        (staging / "report.json").write_text(as_json(motion) + "\n", encoding="utf-8")
-        write_columns(staging / "motion.csv", motion.columns())
-        if motion.circuits:
-            general = motion.linkage.kind != "RSSR"
-            posed = posed_circuit(motion)
-            kinds = ["curves", *(["joints"] if general else [])]
-            if posed is not None:
-                # a law that rests leaves no path
-                inputs = motion.circuits[posed].input
-                moves = np.unique(inputs[np.isfinite(inputs)]).size > 1
-                kinds += ["configuration", *(["point"] if general and moves else [])]
-            points = {point.name: (point.link, point.at) for point in motion.linkage.points}
-            draw(motion, staging, kinds, points, posed or 0, figures)
-        # a browser shows no PDF in place; of several formats one is enough
-        shown_here = [file.name for file in sorted(staging.iterdir()) if file.suffix in (".png", ".svg")]
-        stems = {name.rpartition(".")[0]: name for name in reversed(shown_here)}
-        pictures = [stems[stem] for stem in sorted(stems)]
-        (staging / "report.md").write_text(markdown(motion, pictures), encoding="utf-8")
-        if also is not None:
-            also(staging)
-
-    return fill_folder(Path(folder), fill, force=force)
+    return motion_report(figures).write(motion, folder, force=force)
 
 
-def posed_circuit(motion: Motion) -> int | None:
-    """The first circuit with a pose to draw; `None` where a law leaves the range of all."""
-    posed = (circuit.index for circuit in motion if (circuit.status != "no-solution").any())
-    return next(posed, None)
-
-
-def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
-    """The value of a joint [rad, or length] as people write it: "30deg", "0.5rad", "12mm".
-
-    A plain number is in degrees for a turn and in the length unit for a slide. Raises `RequestError`.
-    """
-    slides = linkage.column_kinds[column] == "slide"
-    plain = linkage.length_unit if slides else "deg"
-    value = amount(text, length_sizes(linkage.length_unit) if slides else ANGLES, plain)
-    if value is None:
-        kind = "slides" if slides else "turns"
-        hint = f"12 or 12{plain}" if slides else "30, 30deg or 0.5rad"
-        raise RequestError(
-            f"{key}: {shown(text)} is no value of {linkage.columns[column]}, which {kind}; give {hint}"
-        )
-    return value
+def modes_report(linkage: Loop, column: int) -> Report[Modes]:
+    """How the assembly modes at a value of a column are reported."""
+    return Report(partial(_modes_text, linkage, column), partial(_modes_dict, linkage, column))
 
 
 def modes_json(linkage: Loop, modes: Modes, column: int) -> str:
     """All assembly modes as JSON text: angles in radians, lengths in the linkage's unit."""
-    report = {
+    return modes_report(linkage, column).json(modes)
+
+
+def print_modes(linkage: Loop, modes: Modes, column: int, console: Console | None = None) -> None:
+    """Prints a table of all assembly modes, one row a mode; angles in degrees."""
+    modes_report(linkage, column).print(modes, console)
+
+
+def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
+    return {
         "format": 1,
         "linkage": {"name": linkage.name, "kind": linkage.kind},
         "units": {"length": linkage.length_unit, "angle": "rad"},
@@ -315,23 +298,21 @@ def modes_json(linkage: Loop, modes: Modes, column: int) -> str:
             for q, residual, status in zip(modes.q, modes.residual, modes.status, strict=True)
         ],
     }
-    return json_text(report)
 
 
-def print_modes(linkage: Loop, modes: Modes, column: int, console: Console | None = None) -> None:
-    """Prints a table of all assembly modes, one row a mode; angles in degrees."""
-    console = console or Console()
-    console.print(Text(linkage.name, style="bold underline"))
-    count = len(modes)
-    value = joint_text(linkage, column, modes.input)
-    console.print(
-        f"{count or 'no'} assembly mode{'s' * (count != 1)} at {linkage.columns[column]} = {value}, "
-        f"{modes.completeness}: {COMPLETE[modes.completeness]}",
-        highlight=False,
-        markup=False,
-    )
-    if modes.misfits.size:
-        console.print(left_open(modes.misfits), highlight=False, markup=False)
-    for sheet in modes_sheets(linkage, modes, console.width) if count else ():
-        console.print()
-        console.print(_table(sheet))
+def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
+    def parts(width: int) -> Iterator[RenderableType]:
+        yield Text(linkage.name, style="bold underline")
+        count = len(modes)
+        value = joint_text(linkage, column, modes.input)
+        yield Text(
+            f"{count or 'no'} assembly mode{'s' * (count != 1)} at {linkage.columns[column]} = {value}, "
+            f"{modes.completeness}: {COMPLETE[modes.completeness]}"
+        )
+        if modes.misfits.size:
+            yield Text(left_open(modes.misfits))
+        for sheet in modes_sheets(linkage, modes, width) if count else ():
+            yield Text()
+            yield _table(sheet)
+
+    return _Page(parts)

@@ -13,6 +13,7 @@ from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Circuit, DeadCentre, Extremes, Modes, Motion, Solvable
 from sevenbar.reporting.how_found import how_found
+from sevenbar.reporting.page import drive_text
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
@@ -126,8 +127,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if numbers:
         told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
         facts.append(("dimensions", f"{told}  [{linkage.length_unit}]"))
-    how = f"at {motion.speed:.6g} {_units(motion)[0]}/s" if motion.law is None else "by a law"
-    facts.append(("drive", f"{motion.input} {how}, output {motion.output}"))
+    speed = motion.speed if motion.law is None else None
+    facts.append(("drive", drive_text(motion.input, speed, _units(motion)[0], motion.output)))
     if motion.law is not None:
         t = motion.law.t
         rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -26,14 +24,6 @@ STRETCHES = 180
 SPAN, FLOOR = 1e-6, 1e-17
 
 _ENGINE, _THEORY = CIRCUIT_COLOURS[:2]
-
-
-def figures(run: Simulation) -> Iterator[tuple[str, Figure]]:
-    """All figures of a run, each with its name: output, joints, and points where the linkage names some."""
-    yield "output", output_figure(run)
-    yield "joints", joints_figure(run)
-    if run.points:
-        yield "points", points_figure(run)
 
 
 def output_figure(run: Simulation) -> Figure:
@@ -187,3 +177,7 @@ def _keys(run: Simulation, colour: str = "") -> list[Line2D]:
         Line2D([], [], ls="", marker="o", ms=4, mfc="white", mec=colour or _ENGINE, label=run.record.engine),
         Line2D([], [], color=_ENGINE, lw=0.9, label=f"{run.record.engine} less Sevenbar"),
     ]
+
+
+#: The figures of a run by their names; of points where the linkage names some.
+FIGURES = {"output": output_figure, "joints": joints_figure, "points": points_figure}

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,13 +15,21 @@ from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
 from sevenbar.drawing.skeleton import short
-from sevenbar.reporting.folder import check_targets, fill_folder, write_columns
-from sevenbar.reporting.page import Facts, number_table
-from sevenbar.reporting.report import json_text, without_nan
+from sevenbar.kinematics.columns import joint_column, point_column
+from sevenbar.reporting.files import (
+    Report,
+    columns_file,
+    figure_files,
+    json_file,
+    json_text,
+    text_file,
+    without_nan,
+)
+from sevenbar.reporting.page import Facts, drive_text, number_table
 from sevenbar.simulation.agreement import Difference, Simulation
 
-#: The names of figures that a run may have.
-FIGURES = ("output", "joints", "points")
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def as_dict(run: Simulation) -> dict[str, Any]:
@@ -46,16 +55,6 @@ def as_dict(run: Simulation) -> dict[str, Any]:
     return without_nan(told)  # type: ignore[no-any-return]
 
 
-def as_json(run: Simulation) -> str:
-    """What a run comes to as JSON text."""
-    return json_text(as_dict(run))
-
-
-def print_text(run: Simulation, console: Console | None = None) -> None:
-    """Prints the report for people."""
-    (console or Console()).print(text(run))
-
-
 def text(run: Simulation) -> RenderableType:
     """The report for people, to be printed by rich."""
     way, record, linkage = run.course, run.record, run.linkage
@@ -64,9 +63,7 @@ def text(run: Simulation) -> RenderableType:
     facts.add("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))
     facts.add("engine", f"{record.engine} {record.version}: {record.method}")
     slide = linkage.column_kinds[way.circuit.input_column] == "slide"
-    facts.add(
-        "drive", f"{motion.input} at {motion.speed:.6g} {unit if slide else 'rad'}/s, output {motion.output}"
-    )
+    facts.add("drive", drive_text(motion.input, motion.speed, unit if slide else "rad", motion.output))
     facts.add("course", way.told())
     lead = f", after {len(way.lead)} that are not compared" if len(way.lead) else ""
     facts.add("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
@@ -108,17 +105,27 @@ def _cells(found: Difference, slide: bool, unit: str) -> tuple[str, ...]:
     )
 
 
-def targets(run_engine: str, folder: Path, figures: Sequence[str], points: bool) -> list[Path]:
-    """The files that `write` makes for an engine, by its name."""
-    names = [f"{run_engine}.json", f"{run_engine}.csv"]
-    names += ["mujoco.xml"] if run_engine == "mujoco" else []
-    names += [
-        f"{run_engine}_{name}.{ending}"
-        for name in FIGURES
-        if points or name != "points"
-        for ending in figures
-    ]
-    return [folder / name for name in names]
+def simulation_report(engine: str, figures: Sequence[str] = ("png",)) -> Report[Simulation]:
+    """How a run of an engine is reported; files have its name, so that both engines share a folder."""
+    name = engine.lower()
+    files = {f"{name}.json": json_file(as_dict), f"{name}.csv": columns_file(columns)}
+    if name == "mujoco":
+        files["mujoco.xml"] = text_file(_mjcf)
+    for stem in ("output", "joints", "points"):
+        files |= figure_files(f"{name}_{stem}", figures, partial(_figure, stem))
+    return Report(text, as_dict, files)
+
+
+def _mjcf(run: Simulation) -> str:
+    from sevenbar.simulation.mjcf import mjcf
+
+    return mjcf(run.model, time_step=run.course.step)
+
+
+def _figure(stem: str, run: Simulation) -> Figure | None:
+    from sevenbar.simulation.figures import FIGURES
+
+    return None if stem == "points" and not run.points else FIGURES[stem](run)
 
 
 def write(
@@ -133,23 +140,17 @@ def write(
     Files are named by the engine, so that both engines share a folder; for MuJoCo its model is added.
     Raises `OutputError` where one of them exists and `force` is not given.
     """
-    from sevenbar.drawing.figure import save
-    from sevenbar.simulation.figures import figures as drawn
-    from sevenbar.simulation.mjcf import mjcf
+    return simulation_report(run.record.engine, figures).write(run, folder, force=force)
 
-    engine = run.record.engine.lower()
-    check_targets(targets(engine, Path(folder), figures, bool(run.points)), force=force)
 
-    def fill(staging: Path) -> None:
-        (staging / f"{engine}.json").write_text(as_json(run) + "\n", encoding="utf-8")
-        write_columns(staging / f"{engine}.csv", columns(run))
-        if engine == "mujoco":
-            (staging / "mujoco.xml").write_text(mjcf(run.model, time_step=run.course.step), encoding="utf-8")
-        for name, figure in drawn(run):
-            for ending in figures:
-                save(figure, staging / f"{engine}_{name}.{ending}")
+def as_json(run: Simulation) -> str:
+    """What a run comes to as JSON text."""
+    return json_text(as_dict(run))
 
-    return fill_folder(Path(folder), fill, force=force)
+
+def print_text(run: Simulation, console: Console | None = None) -> None:
+    """Prints the report for people."""
+    (console or Console()).print(text(run))
 
 
 def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
@@ -157,26 +158,20 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     linkage, unit = run.linkage, run.linkage.length_unit
     engine = run.record.engine.lower()
     found: dict[str, npt.NDArray[Any]] = {"row": np.arange(len(run.time)), "time_s": run.time}
-    sides = (("sevenbar", run.theory), (engine, run.engine))
+    sides = {"sevenbar": run.theory, engine: run.engine}
     for index, name in enumerate(linkage.columns):
-        slide = linkage.column_kinds[index] == "slide"
-        for who, values in sides:
-            shown = values.q[:, index] if slide else np.degrees(values.q[:, index])
-            found[f"{name}_{who}_{unit if slide else 'deg'}"] = shown
-        own = unit if slide else "rad"
-        for who, values in sides:
-            found[f"{name}_{who}_{own}_s"] = values.dq[:, index]
-        for who, values in sides:
-            found[f"{name}_{who}_{own}_s2"] = values.ddq[:, index]
+        slides = linkage.column_kinds[index] == "slide"
+        for order, quantity in enumerate(("q", "dq", "ddq")):
+            for who, joints in sides.items():
+                head = joint_column(name, slides=slides, order=order, length=unit, angle="deg", who=who)
+                values = getattr(joints, quantity)[:, index]
+                found[head] = np.degrees(values) if head.endswith("_deg") else values
     for name, (engine_point, theory_point) in run.points.items():
-        for letter, suffix, what in (
-            ("", unit, "position"),
-            ("v", f"{unit}_s", "velocity"),
-            ("a", f"{unit}_s2", "acceleration"),
-        ):
-            for axis, direction in enumerate("xyz"):
+        for order, quantity in enumerate(("position", "velocity", "acceleration")):
+            for axis, letter in enumerate("xyz"):
                 for who, point in (("sevenbar", theory_point), (engine, engine_point)):
-                    found[f"{name}_{letter}{direction}_{who}_{suffix}"] = getattr(point, what)[:, axis]
+                    head = point_column(name, letter, order=order, length=unit, who=who)
+                    found[head] = getattr(point, quantity)[:, axis]
     found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
     found["closure_error_rad"] = run.engine.tilt.max(axis=1)
     return found

@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Dimension
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import Integers
-from sevenbar.text.ranges import split_grid, split_name, split_range
+from sevenbar.text.ranges import split_grid, split_list, split_name, split_range
 
 #: Most values of one axis that are listed: the sweep's description holds each of them.
 MOST_LISTED = 1_000_000
@@ -188,8 +188,6 @@ def axis_from_text(text: str) -> tuple[str, Grid | Span | list[str]]:
     elif ":" in values:
         if points := split_grid(values):
             return name, Grid(*points)
-    else:
-        listed = [part.strip() for part in values.split(",")]
-        if all(listed):
-            return name, listed
+    elif listed := split_list(values):
+        return name, listed
     raise RequestError(f"over: {shown(text)} is not read; give {name}={FORMS}, as in {name}=200:300:51")

@@ -6,10 +6,14 @@ in a list each value has its own.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.units import split_quantity
+
+#: Three numbers: a place, a direction.
+Place = tuple[float, float, float]
 
 
 def split_name(text: str) -> tuple[str, str] | None:
@@ -71,6 +75,34 @@ def with_common_unit(low: str, high: str) -> tuple[str, str]:
     if first and second and second[1] and not first[1]:
         return f"{low}{second[1]}", high
     return low, high
+
+
+def split_list(text: str) -> list[str]:
+    """The values between commas; none where one is empty.
+
+    >>> split_list("400, 45cm"), split_list("1,")
+    (['400', '45cm'], [])
+    """
+    values = [value.strip() for value in text.split(",")]
+    return values if all(values) else []
+
+
+def three_numbers(option: str, text: str, what: str, example: str) -> Place:
+    """Three numbers parted by commas."""
+    values = [finite_number(word) for word in split_list(text)]
+    if len(values) != 3 or None in values:
+        raise RequestError(f"{option}: {shown(text)} is not {what}; give three numbers, as in '{example}'")
+    x, y, z = (value for value in values if value is not None)
+    return x, y, z
+
+
+def finite_number(text: str) -> float | None:
+    """The number of a text; `None` for what is no finite one."""
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
 
 
 def _parts(text: str) -> list[str]:

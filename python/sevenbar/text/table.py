@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import TableError, shown
-from sevenbar.text.units import is_unit, measured_unit
+from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
 
 #: A table of a million rows has some 50 MB; a larger file [bytes] is a mistake of the name.
 LARGEST_FILE = 200_000_000
@@ -83,6 +83,38 @@ class Table:
             )
         return name, unit or below
 
+    def unit(self, column: int) -> MeasuredUnit | None:
+        """What the unit of a column means; `None` where it has none, or one that is not known."""
+        return measured_unit(self.name_and_unit(column)[1])
+
+    def size(
+        self,
+        column: int,
+        sort: tuple[str, int],
+        length_unit: str,
+        *,
+        what: str,
+        example: str,
+        asked: str = "",
+        option: str = "",
+    ) -> float:
+        """What one of a column's unit is in s, rad or `length_unit`, as often by time.
+
+        `sort` is the kind and the order that the unit must have, `what` and `example` say so in messages;
+        `asked` is the unit of an `option` for it. Raises `TableError` where none is given, or another.
+        """
+        name, written = self.name_and_unit(column)
+        if written and asked and measured_unit(written) != measured_unit(asked):
+            raise self.wrong(
+                f"mixed units: column {self.labels[column]} is in {shown(written)} by its header and in "
+                f"{shown(asked)} by {option}; leave that out or mend the header"
+            )
+        if not (written or asked):
+            give = f", or give {option} {what}={example}" if option else ""
+            raise self.wrong(f"has no unit; write it as in '{name or what} [{example}]'{give}", column=column)
+        where = f"{self.source}: column {self.labels[column]}"
+        return unit_size(where, written or asked, sort, length_unit, what=what, example=example)
+
     def numbers(self, column: int) -> npt.NDArray[np.float64]:
         """The numbers of a column (rows,); NaN where it holds none. Raises `TableError` for other text."""
         return np.array([self._number(row, column) for row in range(len(self.rows))])
@@ -129,6 +161,26 @@ class Table:
             "and keep one run only",
             row=int(rows[i + 1]),
         )
+
+
+def unit_size(
+    where: str, unit: str, sort: tuple[str, int], length_unit: str, *, what: str, example: str
+) -> float:
+    """What a unit is in s, rad or `length_unit`; `TableError` where it is not of the `sort` of `what`."""
+    found = measured_unit(unit)
+    if found is None or (found.kind, found.order) != sort:
+        fault = "known here" if found is None else f"of the {what}"
+        raise TableError(f"{where}: {shown(unit)} is not a unit {fault}; give one like {example}")
+    return found.size_in(length_unit)
+
+
+def plain_name(name: str) -> str:
+    """A column's name for comparing: small letters, words parted by blanks.
+
+    >>> plain_name("Rocker_velocity")
+    'rocker velocity'
+    """
+    return " ".join(re.sub(r"[^\w.]+|_", " ", name).lower().split())
 
 
 def name_and_unit(text: str) -> tuple[str, str]:

@@ -77,6 +77,32 @@ def amount(text: str, sizes: Mapping[str, float], plain: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
+def sizes_of(unit: str) -> dict[str, float]:
+    """The units that measure what "mm", "deg", "mm/turn", "rad/s" or "" does, and their sizes in it.
+
+    >>> sizes_of("mm/turn")["in/turn"], sizes_of("")
+    (25.4, {'': 1.0})
+    """
+    for same in (ANGLES, TURNING_SPEEDS):
+        if unit in same:
+            return {other: size / same[unit] for other, size in same.items()} | {unit: 1.0}
+    length, slash, per = unit.partition("/")
+    if length not in LENGTHS:
+        return {unit: 1.0}
+    return {f"{other}{slash}{per}": size for other, size in length_sizes(length).items()}
+
+
+def examples_of(unit: str) -> str:
+    """What a value in a unit looks like, for messages: "30, 30deg or 0.5rad"."""
+    if unit == "":
+        return "a number, as in 1.5"
+    if unit in ANGLES:
+        return "30, 30deg or 0.5rad"
+    if unit in TURNING_SPEEDS:
+        return f"10, 10 {unit} or 60 rpm"
+    return f"10 or 10 {unit}" if "/" in unit else f"250 or 250{unit}"
+
+
 def split_quantity(text: str) -> tuple[str, str] | None:
     """The number of a text and its unit, empty where there is none; `None` for what begins with no number.
 

@@ -3,23 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console, Group, RenderableType
+from matplotlib.figure import Figure
+from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, Step
+from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import Heights
-from sevenbar.reporting.folder import fill_folder, write_csv
+from sevenbar.reporting.files import Report, Write, figure_files, json_file
+from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, number_table
-from sevenbar.reporting.report import json_text
 
 
-def as_dict(of: Map, heights: Sequence[Heights] = ()) -> dict[str, Any]:
+@dataclass(frozen=True, eq=False)
+class MapFindings:
+    """A map, and the contours of measures on it."""
+
+    map: Map
+    heights: Sequence[Heights] = ()
+
+
+def as_dict(findings: MapFindings) -> dict[str, Any]:
     """The map as plain values; places of lines in the dimensions' units, null where there is none."""
+    of, heights = findings.map, findings.heights
     x, y = of.axes
     design = of.design
     return {
@@ -87,18 +100,9 @@ def _heights_dict(of: Map, heights: Heights) -> dict[str, Any]:
     }
 
 
-def as_json(of: Map, heights: Sequence[Heights] = ()) -> str:
-    """The map as JSON text."""
-    return json_text(as_dict(of, heights))
-
-
-def print_text(of: Map, heights: Sequence[Heights] = (), console: Console | None = None) -> None:
-    """Prints for people what kinds there are, and how far the design is from each change."""
-    (console or Console()).print(text(of, heights))
-
-
-def text(of: Map, heights: Sequence[Heights] = ()) -> RenderableType:
-    """The page for people, to be printed by rich."""
+def text(findings: MapFindings) -> RenderableType:
+    """What kinds there are, and how far the design is from each change, for people."""
+    of, heights = findings.map, findings.heights
     x, y = of.axes
     design = of.design
     facts = Facts()
@@ -145,50 +149,48 @@ def _row(of: Map, step: Step) -> list[str]:
     return [f"{axis.name} {step.way}", f"{by:+.6g}", axis.text(step.value, 9), of.name(step.kind)]
 
 
-def write(
-    of: Map,
-    heights: Sequence[Heights],
-    folder: Path,
-    figures: Sequence[str] = ("png",),
-    *,
-    size: str = "A4",
-    force: bool = False,
-) -> list[Path]:
-    """Writes map.json, boundaries.csv, the map's figure and one of each measure: all or none."""
-
-    def fill(staging: Path) -> None:
-        from sevenbar.design.maps.figures import draw
-        from sevenbar.drawing.figure import save
-
-        (staging / "map.json").write_text(as_json(of, heights) + "\n", encoding="utf-8")
-        columns = [axis.dimension.column for axis in of.axes]
-        lines = [
-            (line.places, (index, of.name(of.kinds[line.left]), of.name(of.kinds[line.right])))
-            for index, line in enumerate(of.boundaries)
-        ]
-        write_csv(staging / "boundaries.csv", ["boundary", "left", "right", *columns], _rows(of, lines))
-        if heights:
-            rows = _rows(of, [(h.places, (i, m, h.level)) for m, i, h in _contours(heights)])
-            write_csv(staging / "contours.csv", ["contour", "measure", "level", *columns], rows)
-        for ending in figures:
-            save(draw(of, size=size), staging / f"map.{ending}")
-            for found in heights:
-                save(draw(of, found, size=size), staging / f"{found.measure.name}.{ending}")
-
-    return fill_folder(folder, fill, force=force)
+def map_report(
+    measures: Sequence[str] = (), figures: Sequence[str] = ("png",), *, size: str = "A4"
+) -> Report[MapFindings]:
+    """How a map with contours of these measures is reported; a figure for the map and for each measure."""
+    files: dict[str, Write[MapFindings]] = {
+        "map.json": json_file(as_dict),
+        "boundaries.csv": _write_boundaries,
+    }
+    if measures:
+        files["contours.csv"] = _write_contours
+    for place, stem in enumerate(("map", *measures)):
+        files |= figure_files(stem, figures, partial(_sheet, size, place))
+    return Report(text, as_dict, files)
 
 
-def _contours(heights: Sequence[Heights]) -> list[tuple[str, int, Any]]:
-    return [(found.measure.name, i, line) for found in heights for i, line in enumerate(found.contours)]
+def _sheet(size: str, place: int, found: MapFindings) -> Figure:
+    return draw(found.map, found.heights[place - 1] if place else None, size=size)
+
+
+def _write_boundaries(findings: MapFindings, path: Path) -> None:
+    of = findings.map
+    lines = [
+        (line.places, (index, of.name(of.kinds[line.left]), of.name(of.kinds[line.right])))
+        for index, line in enumerate(of.boundaries)
+    ]
+    write_csv(path, ["boundary", "left", "right", *_columns(of)], _rows(of, lines))
+
+
+def _write_contours(findings: MapFindings, path: Path) -> None:
+    of = findings.map
+    lines = [
+        (line.places, (i, found.measure.name, line.level))
+        for found in findings.heights
+        for i, line in enumerate(found.contours)
+    ]
+    write_csv(path, ["contour", "measure", "level", *_columns(of)], _rows(of, lines))
+
+
+def _columns(of: Map) -> list[str]:
+    return [axis.dimension.column for axis in of.axes]
 
 
 def _rows(of: Map, lines: Sequence[tuple[Floats, tuple[Any, ...]]]) -> list[list[Any]]:
     """Rows of a table of lines: what each line is, and one after the other its places."""
     return [[*told, *place] for places, told in lines for place in np.asarray(of.values(places)).tolist()]
-
-
-def targets(folder: Path, measures: Sequence[str], figures: Sequence[str]) -> list[Path]:
-    """The files that `write` is going to write."""
-    names = ["map.json", "boundaries.csv", *(["contours.csv"] if measures else [])]
-    names += [f"{stem}.{ending}" for stem in ("map", *measures) for ending in figures]
-    return [folder / name for name in names]

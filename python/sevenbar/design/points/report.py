@@ -2,36 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
-from rich.console import Console, Group, RenderableType
+from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
 from sevenbar.design.points.cycle import Cycle, told_input
+from sevenbar.design.points.figures import inertia_figure, least_figure, nearest_figure
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import LeastPoint
 from sevenbar.design.points.nearest import NearestPath
-from sevenbar.design.points.poles import AccelerationPoles, poles_of
-from sevenbar.drawing.figure import save, slides
-from sevenbar.reporting.folder import fill_folder, write_columns
-from sevenbar.reporting.page import Facts, number_table
-from sevenbar.reporting.report import json_text
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from sevenbar.design.points.poles import poles_of
+from sevenbar.drawing.figure import slides
+from sevenbar.kinematics.columns import joint_column
+from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
+from sevenbar.reporting.page import Facts, drive_text, number_table
 
 #: Most inputs that are told; more are a rate that is as great at all of them.
 MOST_TOLD = 6
-
-
-def print_found(found: LeastPoint | NearestPath | Inertia) -> None:
-    """Prints what was found for people."""
-    text = {LeastPoint: least_text, NearestPath: nearest_text, Inertia: inertia_text}[type(found)]
-    Console().print(text(found))  # type: ignore[operator]
 
 
 def least_text(found: LeastPoint) -> RenderableType:
@@ -145,9 +137,9 @@ def _title(cycle: Cycle) -> Text:
 def _whose(cycle: Cycle) -> str:
     motion = cycle.motion
     unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
-    drive = "driven by a law" if motion.law is not None else f"at {motion.speed:g} {unit}/s"
+    drive = drive_text(motion.input, None if motion.law is not None else motion.speed, unit)
     branch = f", branch {cycle.branch}" if not cycle.circuit.goes_round else ""
-    return f"circuit {cycle.circuit.index}{branch}, {motion.input} {drive}"
+    return f"circuit {cycle.circuit.index}{branch}, {drive}"
 
 
 def _numbers(values: Sequence[float] | Floats) -> str:
@@ -253,80 +245,60 @@ def _inertia_dict(found: Inertia) -> dict[str, Any]:
     }
 
 
-def write_least(
-    found: LeastPoint, toml: str, name: str, folder: Path, endings: Sequence[str], *, force: bool
-) -> list[Path]:
-    """Writes point.toml, point.json, rates.csv, poles.csv and the figure of a least point, all or none."""
-    from sevenbar.design.points.figures import least_figure
-
-    poles = poles_of(found.cycle, found.at)
-
-    def fill(staging: Path) -> None:
-        _begin(found, toml, staging)
-        columns = _row_columns(found.cycle)
-        unit = found.unit.replace("/", "_").replace("^", "")
-        for point, at in [*((p.name, np.array(p.at)) for p in found.before), (name, found.at)]:
-            sizes = np.linalg.norm(found.cycle.rates.of(found.of, at), axis=1)
-            columns[f"{point}_{found.of}_{unit}"] = sizes
-        write_columns(staging / "rates.csv", columns)
-        write_columns(staging / "poles.csv", _pole_columns(poles))
-        _draw(least_figure(found, poles, name), staging, "point", endings)
-
-    return fill_folder(folder, fill, force=force)
+def least_report(
+    toml: Callable[[LeastPoint], str], name: str, figures: Sequence[str] = ("png",)
+) -> Report[LeastPoint]:
+    """How a point of least rate is reported, which has a name in the file that `toml` makes."""
+    return Report(
+        least_text,
+        as_dict,
+        {
+            "point.toml": text_file(toml),
+            "point.json": json_file(as_dict),
+            "rates.csv": columns_file(partial(_rate_columns, name=name)),
+            "poles.csv": columns_file(_pole_columns),
+            **figure_files(
+                "point", figures, lambda found: least_figure(found, poles_of(found.cycle, found.at), name)
+            ),
+        },
+    )
 
 
-def write_nearest(
-    found: NearestPath, toml: str, name: str, folder: Path, endings: Sequence[str], *, force: bool
-) -> list[Path]:
-    """Writes point.toml, point.json, path.csv and the figure of a nearest path, all or none."""
-    from sevenbar.design.points.figures import nearest_figure
-
-    def fill(staging: Path) -> None:
-        _begin(found, toml, staging)
-        unit = found.cycle.motion.linkage.length_unit
-        columns = {_input_head(found.cycle): _told(found.cycle, found.inputs)}
-        for i, letter in enumerate("xyz"):
-            columns[f"wanted_{letter}_{unit}"] = found.wanted[:, i]
-        for i, letter in enumerate("xyz"):
-            columns[f"path_{letter}_{unit}"] = found.path[:, i]
-        columns[f"distance_{unit}"] = found.distances
-        write_columns(staging / "path.csv", columns)
-        _draw(nearest_figure(found, name), staging, "point", endings)
-
-    return fill_folder(folder, fill, force=force)
+def nearest_report(
+    toml: Callable[[NearestPath], str], name: str, figures: Sequence[str] = ("png",)
+) -> Report[NearestPath]:
+    """How a point with a nearest path is reported, which has a name in the file that `toml` makes."""
+    return Report(
+        nearest_text,
+        as_dict,
+        {
+            "point.toml": text_file(toml),
+            "point.json": json_file(as_dict),
+            "path.csv": columns_file(_path_columns),
+            **figure_files("point", figures, lambda found: nearest_figure(found, name)),
+        },
+    )
 
 
-def write_inertia(found: Inertia, folder: Path, endings: Sequence[str], *, force: bool) -> list[Path]:
-    """Writes inertia.json, inertia.csv and the figure, all or none."""
-    from sevenbar.design.points.figures import inertia_figure
-
-    def fill(staging: Path) -> None:
-        (staging / "inertia.json").write_text(json_text(as_dict(found)) + "\n", encoding="utf-8")
-        columns = _row_columns(found.cycle)
-        columns["force_N" if found.slides else "torque_Nm"] = found.torque
-        columns |= {"power_W": found.power, "kinetic_energy_J": found.kinetic}
-        for mass, force in zip(found.masses, found.force, strict=True):
-            for i, letter in enumerate("xyz"):
-                columns[f"{mass.name}_f{letter}_N"] = force[:, i]
-        write_columns(staging / "inertia.csv", columns)
-        _draw(inertia_figure(found), staging, "inertia", endings)
-
-    return fill_folder(folder, fill, force=force)
-
-
-def _begin(found: LeastPoint | NearestPath, toml: str, staging: Path) -> None:
-    (staging / "point.toml").write_text(toml, encoding="utf-8")
-    (staging / "point.json").write_text(json_text(as_dict(found)) + "\n", encoding="utf-8")
-
-
-def _draw(figure: Figure, staging: Path, name: str, endings: Sequence[str]) -> None:
-    for ending in endings:
-        save(figure, staging / f"{name}.{ending}")
+def inertia_report(figures: Sequence[str] = ("png",)) -> Report[Inertia]:
+    """How inertia forces are reported."""
+    return Report(
+        inertia_text,
+        as_dict,
+        {
+            "inertia.json": json_file(as_dict),
+            "inertia.csv": columns_file(_inertia_columns),
+            **figure_files("inertia", figures, inertia_figure),
+        },
+    )
 
 
 def _input_head(cycle: Cycle) -> str:
     motion = cycle.motion
-    return f"{motion.input}_{motion.linkage.length_unit if slides(motion, motion.input) else 'deg'}"
+    length = motion.linkage.length_unit
+    return joint_column(
+        motion.input, slides=slides(motion, motion.input), order=0, length=length, angle="deg"
+    )
 
 
 def _told(cycle: Cycle, inputs: Floats) -> Floats:
@@ -338,7 +310,36 @@ def _row_columns(cycle: Cycle) -> dict[str, Floats]:
     return {"time_s": cycle.rates.time, _input_head(cycle): _told(cycle, cycle.rates.input)}
 
 
-def _pole_columns(poles: AccelerationPoles) -> dict[str, Any]:
+def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
+    columns = _row_columns(found.cycle)
+    unit = found.unit.replace("/", "_").replace("^", "")
+    for point, at in [*((p.name, np.array(p.at)) for p in found.before), (name, found.at)]:
+        sizes = np.linalg.norm(found.cycle.rates.of(found.of, at), axis=1)
+        columns[f"{point}_{found.of}_{unit}"] = sizes
+    return columns
+
+
+def _path_columns(found: NearestPath) -> dict[str, Floats]:
+    unit = found.cycle.motion.linkage.length_unit
+    columns = {_input_head(found.cycle): _told(found.cycle, found.inputs)}
+    for who, places in (("wanted", found.wanted), ("path", found.path)):
+        for i, letter in enumerate("xyz"):
+            columns[f"{who}_{letter}_{unit}"] = places[:, i]
+    return columns | {f"distance_{unit}": found.distances}
+
+
+def _inertia_columns(found: Inertia) -> dict[str, Floats]:
+    columns = _row_columns(found.cycle)
+    columns["force_N" if found.slides else "torque_Nm"] = found.torque
+    columns |= {"power_W": found.power, "kinetic_energy_J": found.kinetic}
+    for mass, force in zip(found.masses, found.force, strict=True):
+        for i, letter in enumerate("xyz"):
+            columns[f"{mass.name}_f{letter}_N"] = force[:, i]
+    return columns
+
+
+def _pole_columns(found: LeastPoint) -> dict[str, Any]:
+    poles = poles_of(found.cycle, found.at)
     unit = poles.cycle.motion.linkage.length_unit
     columns: dict[str, Any] = _row_columns(poles.cycle) | {"status": poles.status}
     for letters, values in (("uvw", poles.at), ("xyz", poles.place)):

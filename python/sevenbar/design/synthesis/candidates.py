@@ -6,20 +6,17 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.description.files import loads
 from sevenbar.design.synthesis.closure import row_of, transmissions
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Circuit, Integers, Motion
-from sevenbar.reporting.folder import fill_folder, write_csv
 
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.
 CHECK_SAMPLES = 720
@@ -352,46 +349,3 @@ def renamed(candidates: Sequence[Candidate], title: str) -> list[Candidate]:
         replace(c, draft=c.draft.with_value(("name",), f"{title}, design {i}"))
         for i, c in enumerate(candidates, 1)
     ]
-
-
-def toml_of(candidate: Candidate, head: Sequence[str]) -> str:
-    """The design as TOML: comments with what was wanted and what it does, then the description."""
-    told = [f"{name} = {_plain(value)}" for name, value in candidate.columns.items() if value is not None]
-    measured = told[: len(told) - sum(d.kind != "speed" for d in candidate.draft.dimensions)]
-    # a name or a command may hold what would end a comment
-    clean = ("".join(c if c.isprintable() else " " for c in line) for line in (*head, "", *measured))
-    lines = [f"# {line}" if line else "#" for line in clean]
-    return "\n".join(lines) + "\n\n" + candidate.draft.toml()
-
-
-def _plain(value: object) -> str:
-    return f"{value:.9g}" if isinstance(value, float) else str(value)
-
-
-def write(
-    candidates: Sequence[Candidate],
-    folder: Path,
-    head: Sequence[str],
-    *,
-    also: Callable[[Path], None] | None = None,
-    force: bool = False,
-) -> list[Path]:
-    """Writes design_1.toml, .. and summary.csv into a folder, all or none; returns their paths.
-
-    `head` are the lines of comment that tell what was wanted; `also` writes more into the folder, figures
-    and the like. Raises `OutputError` for a file that exists without `force`.
-    """
-
-    def fill(staging: Path) -> None:
-        for i, candidate in enumerate(candidates, 1):
-            name = f"design_{i}.toml"
-            text = toml_of(candidate, head)
-            loads(text, name)  # what is written must open
-            (staging / name).write_text(text, encoding="utf-8")
-        rows = [{"design": i, **c.columns} for i, c in enumerate(candidates, 1)]
-        names = list(dict.fromkeys(name for row in rows for name in row))
-        write_csv(staging / "summary.csv", names, ([row.get(name) for name in names] for row in rows))
-        if also is not None:
-            also(staging)
-
-    return fill_folder(folder, fill, force=force)

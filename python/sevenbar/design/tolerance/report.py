@@ -9,19 +9,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console, Group, RenderableType
+from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
 from sevenbar.design.tolerance.words import input_text, plain, told_name, unit_of
 from sevenbar.design.tolerance.worst import WorstCase
-from sevenbar.drawing.figure import save
-from sevenbar.reporting.folder import fill_folder, write_columns, write_csv
-from sevenbar.reporting.page import Facts, number_table
-from sevenbar.reporting.report import json_text
+from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
+from sevenbar.reporting.folder import write_csv
+from sevenbar.reporting.page import Facts, drive_text, number_table
 
 #: Dimensions of a corner design that the page names; the JSON has all.
 MOST_NAMED = 8
@@ -45,7 +45,8 @@ def text(findings: Findings) -> RenderableType:
     found = linear.found
     facts = Facts()
     facts.add("told", f"{told_name(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})")
-    facts.add("drive", f"{found.input_name} at {found.speed:.6g} {_speed_unit(linear)}")
+    unit = "rad" if found.loop.columns[found.loop.input].turns else found.linkage.length_unit
+    facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
     facts.add("errors", f"independent, {linear.distribution}{spread}")
     facts.add("worst case", _worst_text(worst))
@@ -67,13 +68,8 @@ def text(findings: Findings) -> RenderableType:
     return Group(*parts)
 
 
-def print_text(findings: Findings, console: Console | None = None) -> None:
-    """Prints the findings for people."""
-    (console or Console()).print(text(findings))
-
-
-def as_json(findings: Findings) -> str:
-    """The findings as one JSON object: outputs in rad and length, dimensions in the units of the file."""
+def as_dict(findings: Findings) -> dict[str, Any]:
+    """The findings as plain values: outputs in rad and length, dimensions in the units of the file."""
     linear, worst, exact = findings.linear, findings.worst, findings.exact
     found = linear.found
     told: dict[str, Any] = {
@@ -131,74 +127,84 @@ def as_json(findings: Findings) -> str:
             "linear_estimate_holds": exact.holds,
             "verdict": exact.verdict,
         }
-    return json_text(told)
+    return told
 
 
-def write(
-    findings: Findings, folder: Path, figures: Sequence[str] = ("png",), *, force: bool = False
-) -> list[Path]:
-    """Writes tolerance.json, tables (dimensions, deviation, sensitivities), and both figures, or none."""
-    linear, worst, exact = findings.linear, findings.worst, findings.exact
+def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
+    """How findings are reported, with the figures in these formats."""
+    return Report(
+        text,
+        as_dict,
+        {
+            "tolerance.json": json_file(as_dict),
+            "dimensions.csv": _write_dimensions,
+            "deviation.csv": columns_file(_deviation),
+            "sensitivities.csv": columns_file(_sensitivities),
+            **figure_files("shares", figures, lambda found: shares_figure(found.linear)),
+            **figure_files("deviation", figures, lambda found: deviation_figure(found.linear, found.exact)),
+        },
+    )
 
-    def fill(staging: Path) -> None:
-        from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 
-        (staging / "tolerance.json").write_text(as_json(findings) + "\n", encoding="utf-8")
-        unit = unit_of(linear).replace("/", "_").replace("²", "2")
-        head = (
-            "dimension",
-            "unit",
-            "value",
-            "tolerance",
-            "from",
-            f"greatest_effect_{unit}",
-            "share_of_variance",
+def _write_dimensions(findings: Findings, path: Path) -> None:
+    linear = findings.linear
+    head = (
+        "dimension",
+        "unit",
+        "value",
+        "tolerance",
+        "from",
+        f"greatest_effect_{_suffix(linear)}",
+        "share_of_variance",
+    )
+    lines = [
+        (
+            e.dimension.name,
+            e.dimension.unit,
+            e.dimension.value,
+            e.width,
+            e.source,
+            float(plain(linear, e.greatest)),
+            e.share,
         )
-        lines = [
-            (
-                e.dimension.name,
-                e.dimension.unit,
-                e.dimension.value,
-                e.width,
-                e.source,
-                float(plain(linear, e.greatest)),
-                e.share,
-            )
-            for e in linear.effects
-        ]
-        write_csv(staging / "dimensions.csv", head, lines)
-        columns = {
-            "input": linear.input,
-            f"worst_case_{unit}": plain(linear, linear.worst),
-            f"corner_high_{unit}": plain(linear, worst.high),
-            f"corner_low_{unit}": plain(linear, worst.low),
-            f"deviation_{unit}": plain(linear, linear.deviation),
-        }
-        if exact is not None:
-            columns[f"monte_carlo_mean_{unit}"] = plain(linear, exact.mean)
-            columns[f"monte_carlo_deviation_{unit}"] = plain(linear, exact.deviation)
-            for level, quantile in zip(LEVELS, exact.quantiles, strict=True):
-                columns[f"monte_carlo_q{100 * level:g}_{unit}"] = plain(linear, quantile)
-        write_columns(staging / "deviation.csv", columns)
-        slopes = {"input": linear.input}
-        for dimension, column in zip(linear.found.dimensions, linear.slopes.T, strict=True):
-            slopes[f"{dimension.name}_{_per(unit, dimension.unit)}"] = plain(linear, column)
-        write_columns(staging / "sensitivities.csv", slopes)
-        for ending in figures:
-            save(shares_figure(linear), staging / f"shares.{ending}")
-            save(deviation_figure(linear, exact), staging / f"deviation.{ending}")
+        for e in linear.effects
+    ]
+    write_csv(path, head, lines)
 
-    return fill_folder(folder, fill, force=force)
+
+def _deviation(findings: Findings) -> dict[str, Any]:
+    linear, worst, exact = findings.linear, findings.worst, findings.exact
+    unit = _suffix(linear)
+    columns = {
+        "input": linear.input,
+        f"worst_case_{unit}": plain(linear, linear.worst),
+        f"corner_high_{unit}": plain(linear, worst.high),
+        f"corner_low_{unit}": plain(linear, worst.low),
+        f"deviation_{unit}": plain(linear, linear.deviation),
+    }
+    if exact is not None:
+        columns[f"monte_carlo_mean_{unit}"] = plain(linear, exact.mean)
+        columns[f"monte_carlo_deviation_{unit}"] = plain(linear, exact.deviation)
+        for level, quantile in zip(LEVELS, exact.quantiles, strict=True):
+            columns[f"monte_carlo_q{100 * level:g}_{unit}"] = plain(linear, quantile)
+    return columns
+
+
+def _sensitivities(findings: Findings) -> dict[str, Any]:
+    linear = findings.linear
+    slopes = {"input": linear.input}
+    for dimension, column in zip(linear.found.dimensions, linear.slopes.T, strict=True):
+        slopes[f"{dimension.name}_{_per(_suffix(linear), dimension.unit)}"] = plain(linear, column)
+    return slopes
+
+
+def _suffix(linear: Linear) -> str:
+    return unit_of(linear).replace("/", "_").replace("²", "2")
 
 
 def _per(unit: str, dimension: str) -> str:
     """The unit of a derivative, as columns of tables have it."""
     return f"{unit}_per_{dimension.replace('/', '_') or 'one'}"
-
-
-def _speed_unit(linear: Linear) -> str:
-    found = linear.found
-    return "rad/s" if found.loop.columns[found.loop.input].turns else f"{found.linkage.length_unit}/s"
 
 
 def _worst_text(worst: WorstCase) -> str:

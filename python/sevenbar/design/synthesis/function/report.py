@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from pathlib import Path
+from functools import partial
 from typing import Any
 
-from rich.console import Console, Group, RenderableType
+from matplotlib.figure import Figure
+from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.synthesis.candidates import Candidate, tally, write
+from sevenbar.design.synthesis.candidates import Candidate, tally
+from sevenbar.design.synthesis.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
 from sevenbar.design.synthesis.function.generation import Synthesis
-from sevenbar.drawing.figure import save
+from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
 
 #: Columns of the printed table, by their names in `Candidate.columns`, those that a task has not left out.
@@ -32,8 +33,8 @@ PRINTED = {
 OF_SWING = ("error_greatest_deg", "error_rms_deg")
 
 
-def print_synthesis(found: Synthesis, console: Console | None = None) -> None:
-    """Prints the designs for people."""
+def text(found: Synthesis) -> RenderableType:
+    """The designs for people."""
     facts = Facts()
     facts.add("wanted", found.told, "bold")
     facts.add("limits", found.limits.told())
@@ -61,16 +62,11 @@ def print_synthesis(found: Synthesis, console: Console | None = None) -> None:
         Text(),
         dimensions,
     ]
-    (console or Console()).print(Group(*parts))
+    return Group(*parts)
 
 
 def _cell(value: object) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
-
-
-def as_json(found: Synthesis) -> str:
-    """The designs as one JSON object; angles as their names say."""
-    return json.dumps(as_dict(found), indent=2, allow_nan=False)
 
 
 def as_dict(found: Synthesis) -> dict[str, Any]:
@@ -87,31 +83,18 @@ def as_dict(found: Synthesis) -> dict[str, Any]:
     }
 
 
-def targets(folder: Path, count: int, figures: Sequence[str]) -> list[Path]:
-    """The files that a synthesis may write, for a look before long work."""
-    designs = [folder / f"design_{i}.{end}" for i in range(1, count + 1) for end in ("toml", *figures)]
-    return [*designs, folder / "summary.csv", folder / "summary.json"]
+def synthesis_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> Report[Synthesis]:
+    """How at most `count` designs are reported; the heads of their files name the `command`."""
+    files = design_files(count, figures, head=partial(_head, command), figure=_figure, as_dict=as_dict)
+    return Report(text, as_dict, files)
 
 
-def write_synthesis(
-    found: Synthesis, folder: Path, command: str, figures: Sequence[str] = ("png",), *, force: bool = False
-) -> list[Path]:
-    """Writes design_1.toml, .. with a figure each, summary.csv and summary.json: all or none.
-
-    `command` is told in the designs' heads. Raises `OutputError`.
-    """
+def _head(command: str, found: Synthesis) -> list[str]:
     head = [f"wanted: {found.told}", f"limits: {found.limits.told()}", f"made by: {command}"]
     if found.wish is not None:
         head += ["crank = input_zero + reading of the input; rocker = output_zero + reading of the output"]
-
-    def also(staging: Path) -> None:
-        (staging / "summary.json").write_text(as_json(found) + "\n", encoding="utf-8")
-        for i, candidate in enumerate(found.candidates, 1):
-            for ending in figures:
-                save(_figure(found, candidate), staging / f"design_{i}.{ending}")
-
-    return write(found.candidates, folder, head, also=also, force=force)
+    return head
 
 
-def _figure(found: Synthesis, candidate: Candidate) -> Any:
+def _figure(found: Synthesis, candidate: Candidate) -> Figure:
     return swing_figure(candidate) if found.wish is None else function_figure(candidate, found.wish)

@@ -15,7 +15,6 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.synthesis.function.precision import FEWEST, FREE_ZEROS_MOST, chebyshev
 from sevenbar.errors import RequestError
 from sevenbar.text.table import read_table
-from sevenbar.text.units import measured_unit
 
 #: Readings over the range at which a fit looks at the error: between them it rises by less than 1% of it.
 FIT_SAMPLES = 81
@@ -155,11 +154,7 @@ def read_pairs(path: Path) -> tuple[Floats, Floats]:
         raise table.wrong(f"{len(table.names)} columns; give two: readings of the input and of the output")
     columns = []
     for column in (0, 1):
-        unit = measured_unit(table.name_and_unit(column)[1])
-        if unit is None or (unit.kind, unit.order) != ("turn", 0):
-            raise table.wrong(
-                "an angle needs its unit; write it into the header, as in input_deg,output_deg", column=column
-            )
-        columns.append(table.numbers(column) * unit.size)
+        size = table.size(column, ("turn", 0), "m", what="angle", example="deg")
+        columns.append(table.numbers(column) * size)
     table.refuse_gaps(dict(enumerate(columns)), "leave the row out")
     return columns[0], columns[1]

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
-from rich.console import Console, Group, RenderableType
+from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.design.synthesis.candidates import Candidate
+from sevenbar.design.synthesis.files import design_files
+from sevenbar.design.synthesis.path.figures import path_figure
 from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
 
 #: Dimensions below this part of the path's extent are printed as 0.
@@ -18,6 +22,16 @@ TINY = 1e-9
 
 #: Dimensions in a printed table.
 ACROSS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class PathDesigns:
+    """The designs of a task, best first; the `source` of the wanted points and the seed of the search."""
+
+    task: PathTask
+    candidates: Sequence[Candidate]
+    source: str
+    seed: int
 
 
 def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
@@ -39,9 +53,21 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
     ]
 
 
-def head(task: PathTask, source: str, command: str) -> list[str]:
-    """The lines of comment that a design's file begins with."""
-    lines = [f"{label}: {text}" for label, text in _facts(task, source)]
+def path_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> Report[PathDesigns]:
+    """How at most `count` designs are reported; the heads of their files name the `command`."""
+    files = design_files(
+        count,
+        figures,
+        head=partial(_head, command),
+        figure=lambda found, design: path_figure(found.task, design),
+        as_dict=as_dict,
+    )
+    return Report(text, as_dict, files)
+
+
+def _head(command: str, found: PathDesigns) -> list[str]:
+    task = found.task
+    lines = [f"{label}: {text}" for label, text in _facts(task, found.source)]
     if task.place and "joint" not in task.draft.raw:
         lines.append(
             "placed: turned by turn_x, turn_y, turn_z (axis times angle), then shifted, it makes the path"
@@ -49,22 +75,21 @@ def head(task: PathTask, source: str, command: str) -> list[str]:
     return [*lines, f"made by: {command}"]
 
 
-def print_text(
-    task: PathTask, found: Sequence[Candidate], source: str, seed: int, console: Console | None = None
-) -> None:
-    """Prints the designs for people."""
+def text(found: PathDesigns) -> RenderableType:
+    """The designs for people."""
+    task, candidates = found.task, found.candidates
     linkage = task.draft.linkage
     unit = linkage.length_unit
     facts = Facts()
-    for label, text in _facts(task, source):
+    for label, text in _facts(task, found.source):
         facts.add(label, text, "bold" if label == "wanted" else "")
-    facts.add("seed", str(seed))
-    transmits = any(c.transmission_lowest is not None for c in found)
+    facts.add("seed", str(found.seed))
+    transmits = any(c.transmission_lowest is not None for c in candidates)
     heads = [f"greatest\nerror\n[{unit}]", f"RMS\nerror\n[{unit}]"]
     heads += ["least\ntransm.\n[deg]"] if transmits else []
     heads += [f"size\n[{unit}]", "motion type", "circuit"]
     rows = []
-    for i, candidate in enumerate(found, 1):
+    for i, candidate in enumerate(candidates, 1):
         own = candidate.columns
         cells = [own[f"error_greatest_{unit}"], own[f"error_rms_{unit}"]]
         cells += [own["transmission_lowest_deg"]] if transmits else []
@@ -83,11 +108,11 @@ def print_text(
             ["design", *(f"{d.name}\n[{d.unit}]" if d.unit else d.name for d in some)],
             [
                 [str(i), *(_cell(c.draft.dimension(d.name).value, TINY * task.extent) for d in some)]
-                for i, c in enumerate(found, 1)
+                for i, c in enumerate(candidates, 1)
             ],
         )
         parts += [Text(), table]
-    (console or Console()).print(Group(*parts))
+    return Group(*parts)
 
 
 def _cell(value: object, tiny: float = 0.0) -> str:
@@ -99,18 +124,17 @@ def _cell(value: object, tiny: float = 0.0) -> str:
     return "0" if abs(value) < tiny else f"{value:.5g}"
 
 
-def as_json(task: PathTask, found: Sequence[Candidate], source: str, seed: int) -> str:
-    """The designs as one JSON object; what has a unit has it in its name."""
-    unit = task.draft.linkage.length_unit
-    designs: list[dict[str, Any]] = [
+def as_dict(found: PathDesigns) -> dict[str, Any]:
+    """The designs as plain values; what has a unit has it in its name."""
+    task = found.task
+    designs = [
         {
             "design": i,
             "name": candidate.name,
             **candidate.columns,
-            f"errors_{unit}": candidate.claim.errors.tolist(),
+            f"errors_{task.draft.linkage.length_unit}": candidate.claim.errors.tolist(),
             "inputs": candidate.claim.inputs.tolist(),
         }
-        for i, candidate in enumerate(found, 1)
+        for i, candidate in enumerate(found.candidates, 1)
     ]
-    told = dict(_facts(task, source))
-    return json.dumps({"format": 1, **told, "seed": seed, "designs": designs}, indent=2, allow_nan=False)
+    return {"format": 1, **dict(_facts(task, found.source)), "seed": found.seed, "designs": designs}

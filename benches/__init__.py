@@ -1,4 +1,0 @@
-"""Sevenbar beside its peers: the same work in the same process, in turns, on one page.
-
-`python -m benches` runs all cases and writes `results.json` and docs/benchmarks.md, `--only CASE ..` some.
-"""

@@ -1,0 +1,84 @@
+"""What the texts of options mean; a text that means nothing is a `RequestError`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import sevenbar as sb
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.joint_text import joint_value
+from sevenbar.text.ranges import Place, split_range, three_numbers
+from sevenbar.text.units import amount, examples_of, sizes_of
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.motion import Law
+
+
+def check_law(law: Path | None, speed: str | None) -> None:
+    """Refuses a speed beside a law."""
+    if law is not None and speed is not None:
+        raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
+
+
+def law_of(law: Path | None, linkage: sb.Linkage, input_joint: str | None) -> Law | None:
+    """The law of --law, if one is given."""
+    return None if law is None else sb.load_law(law, linkage, input=input_joint)
+
+
+def input_column(linkage: sb.Linkage, input_joint: str | None) -> int:
+    """The column of the joint of --input, the file's by default."""
+    return linkage.column(linkage.drive.joint if input_joint is None else input_joint, "--input")
+
+
+def input_value(option: str, text: str, linkage: sb.Linkage, input_joint: str | None) -> float:
+    """A value [rad, or length] of the joint of --input."""
+    return joint_value(text, option, linkage, input_column(linkage, input_joint))
+
+
+def point_of(name: str | None, link: int | None, at: str | None) -> str | tuple[int, Place] | None:
+    """The point of --point, or of --link with --at; `None` where nothing is given."""
+    if name is not None:
+        if link is not None or at is not None:
+            raise RequestError("--point: a name or --link with --at, not both; give one of them")
+        return name
+    if link is None and at is None:
+        return None
+    if link is None or at is None:
+        missing = "--at" if at is None else "--link"
+        raise RequestError(f"{missing}: missing; give --point NAME, or --link with --at")
+    return link, three_numbers("--at", at, "a place", "-100,-90,-80")
+
+
+def angle(option: str, text: str) -> float:
+    """The angle [rad] of a text; a plain number is in degrees."""
+    value = amount(text, sizes_of("rad"), "deg")
+    if value is None:
+        raise RequestError(f"{option}: {shown(text)} is not an angle; give one as in {examples_of('rad')}")
+    return value
+
+
+def angles(option: str, text: str) -> tuple[float, float]:
+    """The two angles [rad] of a range like 0:90deg, whose unit may stand at the end only."""
+    return _ends(option, text, sizes_of("rad"), "deg", "0:90deg or 30deg:-60deg")
+
+
+def lengths(option: str, text: str, unit: str) -> tuple[float, float]:
+    """The two lengths [unit] of a range like 50:1000 or 5cm:1m, whose unit may stand at the end only."""
+    return _ends(option, text, sizes_of(unit), unit, "50:1000 or 5cm:1m")
+
+
+def numbers(option: str, text: str) -> tuple[float, float]:
+    """The two numbers of a range like 0:1."""
+    return _ends(option, text, sizes_of(""), "", "0:1 or 1:10")
+
+
+def _ends(
+    option: str, text: str, sizes: Mapping[str, float], plain: str, example: str
+) -> tuple[float, float]:
+    if ends := split_range(text):
+        low, high = (amount(end, sizes, plain) for end in ends)
+        if low is not None and high is not None:
+            return low, high
+    raise RequestError(f"{option}: {shown(text)} is not a range; give two values, as in {example}")

@@ -1,0 +1,80 @@
+"""Designs as files: a description each that opens in the studio, a figure of each, tables of all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+from sevenbar.description.files import loads
+from sevenbar.design.synthesis.candidates import Candidate
+from sevenbar.reporting.files import Write, figure_files, json_file
+from sevenbar.reporting.folder import write_csv
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class Designs(Protocol):
+    """What a search found: the best design first."""
+
+    @property
+    def candidates(self) -> Sequence[Candidate]:
+        """The designs."""
+        ...
+
+
+T = TypeVar("T", bound=Designs)
+
+
+def design_files(
+    count: int,
+    formats: Sequence[str],
+    *,
+    head: Callable[[T], Sequence[str]],
+    figure: Callable[[T, Candidate], Figure],
+    as_dict: Callable[[T], dict[str, Any]],
+) -> dict[str, Write[T]]:
+    """The files of at most `count` designs: design_1.toml with its figure, .., summary.csv, summary.json.
+
+    `head` are the lines of comment that a design's file begins with: what was wanted.
+    """
+    files: dict[str, Write[T]] = {}
+    for place in range(count):
+        name = f"design_{place + 1}"
+        files[f"{name}.toml"] = partial(_write_design, place=place, head=head)
+        files |= figure_files(name, formats, partial(_figure, place=place, figure=figure))
+    return files | {"summary.csv": write_summary, "summary.json": json_file(as_dict)}
+
+
+def _figure(found: T, *, place: int, figure: Callable[[T, Candidate], Figure]) -> Figure | None:
+    return figure(found, found.candidates[place]) if place < len(found.candidates) else None
+
+
+def _write_design(found: T, path: Path, *, place: int, head: Callable[[T], Sequence[str]]) -> None:
+    if place < len(found.candidates):
+        text = toml_of(found.candidates[place], head(found))
+        loads(text, path.name)  # what is written must open
+        path.write_text(text, encoding="utf-8")
+
+
+def write_summary(found: Designs, path: Path) -> None:
+    """Writes a table with a line for each design; a column that one does not have is empty there."""
+    rows = [{"design": i, **c.columns} for i, c in enumerate(found.candidates, 1)]
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    write_csv(path, names, ([row.get(name) for name in names] for row in rows))
+
+
+def toml_of(candidate: Candidate, head: Sequence[str]) -> str:
+    """The design as TOML: comments with what was wanted and what it does, then the description."""
+    told = [f"{name} = {_plain(value)}" for name, value in candidate.columns.items() if value is not None]
+    measured = told[: len(told) - sum(d.kind != "speed" for d in candidate.draft.dimensions)]
+    # a name or a command may hold what would end a comment
+    clean = ("".join(c if c.isprintable() else " " for c in line) for line in (*head, "", *measured))
+    lines = [f"# {line}" if line else "#" for line in clean]
+    return "\n".join(lines) + "\n\n" + candidate.draft.toml()
+
+
+def _plain(value: object) -> str:
+    return f"{value:.9g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,112 @@
+"""How a kind of result is reported: printed for people, as one object for programs, as files to keep."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy.typing as npt
+from rich.console import Console, RenderableType
+
+from sevenbar.reporting.folder import check_targets, fill_folder, write_columns
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+T = TypeVar("T")
+
+#: Writes one file of a result to a path; a file that the result does not have is not written.
+Write = Callable[[T, Path], object]
+
+#: What writes each file that a result may have, by the file's name.
+Files = Mapping[str, Write[T]]
+
+
+@dataclass(frozen=True)
+class Report(Generic[T]):
+    """How results of one kind are reported; the names of files are known before there is a result."""
+
+    text: Callable[[T], RenderableType]
+    as_dict: Callable[[T], dict[str, Any]]
+    files: Files[T] = field(default_factory=dict)
+    #: draws figures into the folder, whose names the result decides; before the files are written
+    figures: Callable[[T, Path], object] | None = None
+
+    def targets(self, folder: Path) -> list[Path]:
+        """The files that `write` may write, for a look before long work."""
+        return [folder / name for name in self.files]
+
+    def json(self, found: T) -> str:
+        """A result as JSON text."""
+        return json_text(self.as_dict(found))
+
+    def print(self, found: T, console: Console | None = None) -> None:
+        """Prints a result for people."""
+        (console or Console()).print(self.text(found))
+
+    def write(self, found: T, folder: str | os.PathLike[str], *, force: bool = False) -> list[Path]:
+        """Writes the files of a result into a folder, all or none; returns their paths.
+
+        The folder is made if need be. All are finished in a folder aside before the first is put in place.
+        Raises `OutputError` where that cannot be done, and where one exists and `force` is not given.
+        """
+        check_targets(self.targets(Path(folder)), force=force)
+
+        def fill(staging: Path) -> None:
+            if self.figures is not None:
+                self.figures(found, staging)
+            for name, write in self.files.items():
+                write(found, staging / name)
+
+        return fill_folder(Path(folder), fill, force=force)
+
+
+def text_file(text: Callable[[T], str]) -> Write[T]:
+    """Writes a text in UTF-8."""
+    return lambda found, path: path.write_text(text(found), encoding="utf-8")
+
+
+def json_file(as_dict: Callable[[T], Any]) -> Write[T]:
+    """Writes plain values as JSON."""
+    return text_file(lambda found: json_text(as_dict(found)) + "\n")
+
+
+def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T]:
+    """Writes columns of one length (n,) as CSV."""
+    return lambda found, path: write_columns(path, columns(found))
+
+
+def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure | None]) -> Files[T]:
+    """A figure in each of these formats, drawn once; nothing where there is nothing to draw."""
+    drawn: list[tuple[T, Figure | None]] = []
+
+    def write(found: T, path: Path) -> None:
+        from sevenbar.drawing.figure import save
+
+        if not drawn or drawn[0][0] is not found:
+            drawn[:] = [(found, draw(found))]
+        if (figure := drawn[0][1]) is not None:
+            save(figure, path)
+
+    return {f"{stem}.{ending}": write for ending in formats}
+
+
+def without_nan(value: Any) -> Any:
+    """Plain values with null in place of each number that is not finite, as JSON needs it."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: without_nan(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_nan(v) for v in value]
+    return value
+
+
+def json_text(value: Any) -> str:
+    """Plain values as JSON text, null in place of each number that is not finite."""
+    return json.dumps(without_nan(value), indent=2, allow_nan=False)

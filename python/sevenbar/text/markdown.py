@@ -1,0 +1,22 @@
+"""Tables in Markdown."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Sequence
+
+#: A bar that would end its cell, in code as well.
+_BAR = re.compile(r"(?<!\\)\|")
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, right: Collection[int] = ()) -> str:
+    r"""A table; the columns in places `right` are flush right, bars within a cell are escaped.
+
+    >>> print(table(["x", "y"], [["a|b", "1"]], right=[1]))
+    | x | y |
+    | --- | ---: |
+    | a\|b | 1 |
+    """
+    rule = ["---:" if place in right else "---" for place in range(len(heads))]
+    lines = (" | ".join(_BAR.sub(r"\|", cell) for cell in line) for line in (heads, rule, *rows))
+    return "\n".join(f"| {line} |" for line in lines)
