@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.path.task import path_task
 from sevenbar.drawing.skeleton import frames_of
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
@@ -21,6 +22,7 @@ from sevenbar.export.layout import arrange
 from sevenbar.export.parts import Rod, length_of
 from sevenbar.export.pose import take
 from sevenbar.reporting.report import markdown
+from sevenbar.sweep import run
 from test_tolerance_sensitivities import compare_all
 
 EXACT = 1e-11
@@ -119,6 +121,23 @@ def test_a_pin_in_a_plane_goes_round_its_pivot() -> None:
     reach = float(np.linalg.norm(arm))
     assert rocks.input_range == pytest.approx((0, 2 * reach), abs=1e-9)
     assert len(linkage.assembly_modes(1.0, input="pin.1").q) == 2
+
+
+@pytest.mark.parametrize("kinds", ["ERRRR", "RURE"])
+def test_a_sweep_measures_loops_with_a_planar_joint_as_their_motion_does(kinds: str) -> None:
+    linkage = sb.from_axes(drawn(kinds, 4))
+    draft = Draft.of_linkage(linkage)
+    values = [share * draft.dimension("j2.x").value for share in (0.9, 1.1)]
+    table = run(linkage, {"j2.x": values}, ["motion_type", "circuits", "swing"]).table()
+    for index, value in enumerate(values):
+        motion = draft.with_values({"j2.x": value}).linkage.motion(90)
+        own = [row for row in table.to_pylist() if row["linkage"] == index]
+        assert [row["circuit"] for row in own] == [circuit.index for circuit in motion] != []
+        slides = motion.linkage.column_kinds[motion.circuits[0].output_column] == "slide"
+        for row, circuit in zip(own, motion, strict=True):
+            swing = circuit.swing if slides or circuit.swing is None else math.degrees(circuit.swing)
+            key = next(name for name in row if name.startswith("swing"))
+            assert row[key] == (None if swing is None else pytest.approx(swing, rel=1e-9))
 
 
 def test_mobility_report_and_names_of_a_planar_joint() -> None:

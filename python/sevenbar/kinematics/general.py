@@ -15,6 +15,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.from_core import change_points_from, circuit_from, search_from
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.joints import Z
 from sevenbar.kinematics.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.motion import Circuit, Integers, Law, Modes, Motion, Solvable, Trace, Words
 from sevenbar.kinematics.rigid import axis_to_z, inverse
@@ -26,6 +27,9 @@ AGREE = _core.AGREE
 
 #: Rank six, and the one that is driven.
 MOST_FREEDOMS = 7
+
+#: The motion that leaves all where it is.
+STILL = np.eye(4)
 
 #: An angle [rad] short of a full turn by less is zero.
 ROUNDING = 1e-12
@@ -282,12 +286,12 @@ def expanded(linkage: Loop) -> Expanded:
         for step in joint.row.steps[:1] if whole else joint.row.steps:
             letters += joint.kind if whole else step.letter
             advances.append(joint.advance)
-            along = axis_to_z(step.axis)
-            fixed.append(ahead @ joint.before(step) @ along)
-            ahead = inverse(along)
+            ahead = ahead @ joint.before(step) if step.tilted else ahead
+            fixed.append(ahead if step.axis == Z else ahead @ axis_to_z(step.axis))
+            ahead = STILL if step.axis == Z else inverse(axis_to_z(step.axis))
         last.append(len(letters) - 1)
         if i < len(linkage.links):
-            ahead = ahead @ linkage.links[i]
+            ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
     return Expanded(letters, advances, fixed[0], fixed[1:], last)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from functools import cached_property
+from functools import cached_property, reduce
 from itertools import pairwise
 from typing import Any, Literal
 
@@ -66,14 +66,14 @@ class Joint:
 
     def motion(self, q: Floats) -> Floats:
         """The motion Z (n, 4, 4) of the link after the joint for the values of its columns (n, columns)."""
-        moved = np.tile(np.eye(4), (len(q), 1, 1))
+        parts = []
         for step, values in self.steps(q):
+            parts += [self.before(step)] if step.tilted else []
             if step.freedom == "turn":
-                own = pose(about(step.axis, values))
+                parts.append(pose(about(step.axis, values)))
             else:
-                own = pose(np.eye(3), values[:, None] * np.eye(3)[step.axis])
-            moved = moved @ self.before(step) @ own
-        return moved
+                parts.append(pose(np.eye(3), values[:, None] * np.eye(3)[step.axis]))
+        return reduce(np.matmul, parts)
 
     def slid(self, q: Floats) -> Floats:
         """How far it has slid along its axis (n,) [length] for the values of its columns (n, columns)."""
