@@ -9,7 +9,7 @@ import numpy as np
 
 from fuzz import random_loops
 from sevenbar.description.gallery import names, text
-from sevenbar.description.written import FREEDOMS
+from sevenbar.kinematics.joints import KINDS
 
 Description = dict[str, Any]
 Draw = Callable[[np.random.Generator], Description]
@@ -37,7 +37,7 @@ def shuffled(rng: np.random.Generator) -> Description:
         kinds = "".join(rng.choice(list("RRRRPPCUSSH"), rng.integers(FEWEST, MOST)))
         if "H" in kinds and rng.random() < 0.9:
             continue
-        if sum(len(FREEDOMS[kind]) for kind in kinds) in FREEDOMS_KEPT:
+        if sum(len(KINDS[kind].freedoms) for kind in kinds) in FREEDOMS_KEPT:
             break
     tidy = rng.random() < 0.7
     joints = [

@@ -12,7 +12,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.tolerance.sensitivities import NEAR
-from sevenbar.kinematics.joints import FREEDOMS
+from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.motion import SPIN_UNDEFINED, STATUSES
 
 PAGE = (Path(__file__).parent.parent / "docs" / "conventions.md").read_text(encoding="utf-8")
@@ -39,7 +39,9 @@ def test_every_status_is_told():
 
 
 def test_joint_kinds_have_the_columns_that_are_told():
-    assert {row[0]: row[1].split(", ") for row in table("Joints")} == {k: [*v] for k, v in FREEDOMS.items()}
+    assert {row[0]: row[1].split(", ") for row in table("Joints")} == {
+        k: [*v.freedoms] for k, v in KINDS.items()
+    }
 
 
 def test_frames_of_the_rssr_are_those_of_the_table():

@@ -63,13 +63,13 @@ def ends(linkage: sb.Linkage) -> tuple[int, int]:
 def batch(linkages: Sequence[sb.Linkage], threads: int = 1, samples: int = SAMPLES) -> Batch:
     """All of them, which have one pattern of joints, at once."""
     parts = [expanded(linkage) for linkage in linkages]
-    (letters,) = {letters for letters, *_ in parts}
+    (letters,) = {part.letters for part in parts}
     return _core.measure_loops(
         letters,
-        np.array([advances for _, advances, _, _ in parts]),
-        np.array([linkage.base for linkage in linkages]),
+        np.array([part.advances for part in parts]),
+        np.array([part.base for part in parts]),
         np.array([linkage.ground for linkage in linkages]),
-        np.array([links for _, _, links, _ in parts]),
+        np.array([part.links for part in parts]),
         *ends(linkages[0]),
         samples,
         threads,
@@ -135,7 +135,7 @@ def test_random_loops_come_to_what_the_motion_of_each_says() -> None:
 @pytest.mark.parametrize(("name", "letters"), GALLERY.items())
 def test_loops_of_the_gallery_come_to_what_their_motion_says(name: str, letters: str) -> None:
     linkage = sb.load(name)
-    assert expanded(linkage)[0] == letters
+    assert expanded(linkage).letters == letters
     got = batch([linkage])
     assert_is_the_motion(got, [linkage])
     assert got["status"] == [0]

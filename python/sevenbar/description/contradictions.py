@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sevenbar.description.written import (
-    ROW_KINDS,
     Written,
     drive_of,
     driven,
@@ -16,7 +15,7 @@ from sevenbar.description.written import (
     names_ground,
 )
 from sevenbar.errors import Problem, shown
-from sevenbar.kinematics.joints import JOINT_KINDS
+from sevenbar.kinematics.joints import JOINT_KINDS, KINDS, ROW_KINDS
 
 FEWEST_JOINTS, MOST_JOINTS = 2, 12
 
@@ -73,10 +72,8 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
 def _misfits(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Keys that a joint of this kind needs and has not, or has and cannot use."""
     kind = joint["kind"]
-    needs = {"R": {"axis"}, "P": {"axis"}, "C": {"axis"}, "H": {"axis", "pitch"}, "U": {"axes"}, "S": set()}[
-        kind
-    ]
-    given = joint.keys() & {"axis", "axes", "pitch"}
+    needs = set(KINDS[kind].drawn_keys)
+    given = joint.keys() & {key for row in KINDS.values() for key in row.drawn_keys}
     missing = [(key, f"is missing; a joint of kind {kind} needs it") for key in sorted(needs - given)]
     return missing + [
         (key, f"does not belong to a joint of kind {kind}; leave it out") for key in sorted(given - needs)
@@ -86,13 +83,13 @@ def _misfits(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
 def _row_misfits(row: Mapping[str, Any]) -> list[tuple[str, str]]:
     """The same for a Denavit-Hartenberg row, where one number is the variable and is not written."""
     kind = row.get("joint", "R")
-    moving = "offset" if kind == "P" else "angle"
+    moving, has_pitch = KINDS[kind].moving_key, "pitch" in KINDS[kind].row_keys
     misfits = []
-    if kind == "H" and "pitch" not in row:
-        misfits.append(("pitch", "is missing; a joint of kind H needs it"))
+    if has_pitch and "pitch" not in row:
+        misfits.append(("pitch", f"is missing; a joint of kind {kind} needs it"))
     if moving in row:
         misfits.append((moving, f"is what moves in a joint of kind {kind}; leave it out"))
-    if kind != "H" and "pitch" in row:
+    if not has_pitch and "pitch" in row:
         misfits.append(("pitch", f"does not belong to a joint of kind {kind}; leave it out"))
     return misfits
 

@@ -20,13 +20,6 @@ from sevenbar.text.units import ANGLES, TURNING_SPEEDS, amount, length_sizes
 #: A place in a description: keys of tables, and counts from 0 in lists.
 Place = tuple[str | int, ...]
 
-#: Keys of the numbers in a row of Denavit-Hartenberg, by its joint's kind.
-ROW_KEYS = {
-    "R": ("length", "offset", "twist"),
-    "P": ("length", "angle", "twist"),
-    "H": ("length", "offset", "twist", "pitch"),
-}
-
 
 @dataclass(frozen=True)
 class Dimension:
@@ -190,7 +183,7 @@ class Draft:
         linkage = self.linkage
         length, angle = linkage.length_unit, str(self.raw.get("angle_unit", "deg"))
         found: list[Dimension] = []
-        for key in ("M", "N", "L1", "L2", "L3", "D") if "rssr" in self.raw else ():
+        for key in ("M", "N", "L1", "L2", "L3", "D") if linkage.form == "rssr" else ():
             given = self.raw["rssr"].get(key)
             value = linkage.dimensions[key] if given is None else float(given)
             # D left out is 0; L2 left out follows from the others
@@ -202,13 +195,13 @@ class Draft:
         joints = linkage.joints
         for i, row in enumerate(self.raw.get("link", ())):
             group = f"link {i + 1}, after {joints[i].name} ({joints[i].kind})"
-            for key in ROW_KEYS[joints[i].kind]:
+            for key in joints[i].row.row_keys:
                 unit = units.get(key, length)
                 value = float(row.get(key, 0.0))
                 found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
         for i, table in enumerate(self.raw.get("joint", ())):
             found += _of_drawn(i, table, joints[i], length)
-        letters = "uvw" if "link" in self.raw else "xyz"
+        letters = "uvw" if linkage.form == "rows" else "xyz"
         for i, table in enumerate(self.raw.get("point", ())):
             name = table["name"]
             found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)

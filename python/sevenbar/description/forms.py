@@ -14,6 +14,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.proportions import disproportions
 from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.kinematics.geometry import Drive, Joint, Point
+from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import inverse, pose
 
@@ -77,7 +78,7 @@ def from_axes(
 ) -> Linkage:
     """A linkage from its joints as drawn in one assembled pose, in loop order: kind, point, direction.
 
-    Each joint is a mapping with `kind` (R P H C U S), `at` (three coordinates), `axis` (three numbers;
+    Each joint is a mapping with `kind` (a letter), `at` (three coordinates), `axis` (three numbers;
     `axes`, two of them, for U; none for S), `pitch` (length per turn) for H, and perhaps `name`. Link i lies
     between joints i and i + 1, the last is the ground. Every joint is at zero in this pose.
 
@@ -165,7 +166,8 @@ def _rows(joints: object, columns: Mapping[str, Any], names: Any) -> list[dict[s
     rows: list[dict[str, Any]] = []
     for i, letter in enumerate(joints):
         # these keys are refused in a row of this kind, whatever they hold
-        idle = {"R": ("angle", "pitch"), "P": ("offset", "pitch"), "H": ("angle",)}.get(letter, ())
+        own = KINDS[letter].row_keys if letter in KINDS else ()
+        idle = {"offset", "angle", "pitch"}.difference(own) if own else ()
         row = {key: values[i] for key, values in given.items() if values[i] is not None}
         numbers = {key: value for key, value in row.items() if not (key in idle and value == 0)}
         rows.append({"joint": letter, **numbers})
@@ -237,6 +239,7 @@ def _from_dimensions(form: RssrForm) -> Linkage:
         point_frames=np.stack([np.eye(4)] * 4),
         drive=Drive("crank", "rocker"),
         points=(Point("A", 1, (form.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
+        form="rssr",
         dimensions={"M": form.M, "N": form.N, "L1": form.L1, "L2": form.coupler, "L3": form.L3, "D": form.D},
     )
 
@@ -254,10 +257,9 @@ def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
     dimensions: dict[str, float] = {}
     for i, row in enumerate(rows, 1):
         dimensions |= {f"length_{i}": row.length, f"twist_{i}_deg": _degrees(row.twist)}
-        dimensions |= (
-            {f"angle_{i}_deg": _degrees(row.angle)} if row.joint == "P" else {f"offset_{i}": row.offset}
-        )
-        dimensions |= {f"pitch_{i}": row.pitch} if row.joint == "H" else {}
+        own = {f"offset_{i}": row.offset, f"angle_{i}_deg": _degrees(row.angle), f"pitch_{i}": row.pitch}
+        keys = KINDS[row.joint].row_keys
+        dimensions |= {name: value for name, value in own.items() if name.split("_")[0] in keys}
     return Linkage(
         name=form.name,
         joints=tuple(
@@ -268,6 +270,7 @@ def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
         links=np.stack([f @ span for f, span in zip(fixed[:-1], spans[:-1], strict=True)]),
         point_frames=np.stack(points),
         drive=Drive(*form.driven),
+        form="rows",
         dimensions=dimensions,
     )
 
@@ -330,7 +333,7 @@ def _coincident_balls(drawn: tuple[JointForm, ...]) -> list[Problem]:
     for i, joint in enumerate(drawn):
         last = i - 1 if i > 0 else len(drawn) - 1
         apart = np.linalg.norm(places[i] - places[last])
-        if joint.kind == drawn[last].kind == "S" and not apart > NO_LENGTH * size:
+        if KINDS[joint.kind].is_ball and KINDS[drawn[last].kind].is_ball and not apart > NO_LENGTH * size:
             place = f"{list(joint.at)} is the place of joint[{last + 1}]"
             message = f"{place}; link {last + 1} between two balls has no length, so leave one ball out"
             problems.append(Problem(f"joint[{i + 1}].at", message))

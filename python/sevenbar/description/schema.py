@@ -35,7 +35,6 @@ from sevenbar.description.values import (
     refuse,
 )
 from sevenbar.description.written import (
-    ROW_KINDS,
     RSSR_JOINTS,
     Written,
     drive_of,
@@ -45,17 +44,15 @@ from sevenbar.description.written import (
 )
 from sevenbar.errors import DescriptionError, Problem, bare, shown, suggestion
 from sevenbar.kinematics.geometry import following_coupler
-from sevenbar.kinematics.joints import JOINT_KINDS
+from sevenbar.kinematics.joints import JOINT_KINDS, KINDS, ROW_KINDS, letters_with
 from sevenbar.text.units import ANGLES, LENGTHS
-
-#: How the kinds that take more than one Denavit-Hartenberg row are written.
-AS_ROWS = {"C": "R and P on one axis", "U": "R and R", "S": "R, R and R through one point"}
 
 
 def _row_kind(value: object) -> object:
-    rows = AS_ROWS.get(value if isinstance(value, str) and value in AS_ROWS else meant_kind(value))
-    if rows is not None:
-        raise refuse(f"{shown(value)} takes more than one row; write {rows}, or draw the loop as [[joint]]")
+    kind = KINDS.get(value if isinstance(value, str) and value in KINDS else meant_kind(value))
+    if kind is not None and kind.as_rows:
+        how = f"write {kind.as_rows}, or draw the loop as [[joint]]"
+        raise refuse(f"{shown(value)} takes more than one row; {how}")
     return value
 
 
@@ -100,14 +97,23 @@ class JointForm(_Form):
     ]
     at: Annotated[Vector, _key("any point of the axis; of U and S the centre", "length")]
     name: Annotated[Text | None, _key("left out, theta_1, theta_2 .. by its place")] = None
-    axis: Annotated[Direction | None, _key("of R P H C, which need it: any length but 0")] = None
+    axis: Annotated[
+        Direction | None,
+        _key(f"of {letters_with('axis')}, which need it: any length but 0"),
+    ] = None
     axes: Annotated[
         Annotated[tuple[Direction, Direction], AfterValidator(crossing)] | None,
-        _key("of U, which needs them: held by the link before, by that after; not parallel"),
+        _key(
+            f"of {letters_with('axes')}, which needs them: held by the link before, by that after; "
+            "not parallel"
+        ),
     ] = None
     pitch: Annotated[
         Number | None,
-        _key("of H, which needs it: right-handed, left-hand if negative", "length per turn"),
+        _key(
+            f"of {letters_with('pitch')}, which needs it: right-handed, left-hand if negative",
+            "length per turn",
+        ),
     ] = None
 
 
@@ -132,7 +138,10 @@ class LinkForm(_Form):
     angle: Annotated[Angle, _key("of P: its fixed theta", "angle_unit")] = 0.0
     pitch: Annotated[
         Number,
-        _key("of H, which needs it: right-handed, left-hand if negative", "length per turn"),
+        _key(
+            f"of {letters_with('pitch')}, which needs it: right-handed, left-hand if negative",
+            "length per turn",
+        ),
     ] = 0.0
 
 

@@ -9,9 +9,8 @@ from typing import Annotated
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from sevenbar.description.written import ROW_KINDS, meant_kind
+from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.joints import JOINT_KINDS
 from sevenbar.text.units import sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
@@ -88,7 +87,7 @@ def one_of(what: str, known: Mapping[str, object] | tuple[str, ...]) -> BeforeVa
             return value
         if what == "unit":
             raise refuse(unknown_unit(value, known))
-        meant = meant_kind(value) if known in (JOINT_KINDS, ROW_KINDS) else ""
+        meant = meant_kind(value) if what == "joint kind" else ""
         near = f"did you mean '{meant}'? " if meant in known else suggestion(str(value), known)
         raise refuse(f"{shown(value)} is not a {what}; {near}allowed: {', '.join(known)}")
 

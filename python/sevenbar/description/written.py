@@ -6,20 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sevenbar.errors import Problem, no_joint, shown
-from sevenbar.kinematics.joints import FREEDOMS, column_names
-
-#: Kinds that a Denavit-Hartenberg row can hold.
-ROW_KINDS = ("R", "P", "H")
-
-#: Words that people use for the kinds.
-KIND_WORDS = {
-    "R": ("revolute", "hinge", "pin", "turning", "rotary", "rotation"),
-    "P": ("prismatic", "slider", "sliding", "slide", "translation"),
-    "H": ("helical", "helix", "screw"),
-    "C": ("cylindric", "cylindrical", "cylinder"),
-    "U": ("universal", "cardan", "hooke"),
-    "S": ("spherical", "sphere", "ball"),
-}
+from sevenbar.kinematics.joints import KINDS, column_names
 
 #: Words that people use for the ground where a joint's kind should stand.
 GROUND_WORDS = ("g", "ground", "fixed", "frame", "base")
@@ -36,9 +23,14 @@ class Written(NamedTuple):
     kind: str
 
     @property
+    def is_ball(self) -> bool:
+        """Whether it is known to be a ball."""
+        return bool(self.kind) and KINDS[self.kind].is_ball
+
+    @property
     def columns(self) -> dict[str, str]:
         """What each of its freedoms does, by the name of its column."""
-        freedoms = FREEDOMS.get(self.kind, ("turn",))
+        freedoms = KINDS[self.kind].freedoms if self.kind else ("turn",)
         return dict(zip(column_names(self.name, freedoms), freedoms, strict=True))
 
 
@@ -58,7 +50,7 @@ def joints_of(raw: Mapping[str, Any]) -> list[Written]:
         kind, name = table.get(kind_key, default), table.get("name")
         label = name.strip() if isinstance(name, str) else ""
         if not is_only_ground(table, kind):
-            known = kind if isinstance(kind, str) and kind in FREEDOMS else ""
+            known = kind if isinstance(kind, str) and kind in KINDS else ""
             joints.append(Written(f"{key}[{i}]", label or f"theta_{i}", known))
     return joints
 
@@ -66,7 +58,7 @@ def joints_of(raw: Mapping[str, Any]) -> list[Written]:
 def meant_kind(word: object) -> str:
     """The kind that a word stands for, or nothing."""
     plain = word.strip().lower().removesuffix("joint").strip() if isinstance(word, str) else ""
-    return next((kind for kind, words in KIND_WORDS.items() if plain in words), "")
+    return next((letter for letter, kind in KINDS.items() if plain in kind.words), "")
 
 
 def names_ground(kind: object) -> bool:
@@ -82,11 +74,11 @@ def is_only_ground(table: Mapping[str, Any], kind: object) -> bool:
 def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, str, list[Problem]]:
     """The columns of input and output, and what is wrong with those that are named.
 
-    The plain name of a joint of two freedoms is its first one. Without a word the input is the first joint
-    that is no ball, and the output the last one.
+    The plain name of a joint of several freedoms is its first one. Without a word the input is the first
+    joint that is no ball, and the output the last one.
     """
-    firsts = [next(iter(joint.columns)) for joint in joints if joint.kind != "S"]
-    free = [column for joint in joints if joint.kind != "S" for column in joint.columns]
+    firsts = [next(iter(joint.columns)) for joint in joints if not joint.is_ball]
+    free = [column for joint in joints if not joint.is_ball for column in joint.columns]
     if len(free) < 2:
         loop = " ".join(joint.kind for joint in joints)
         count = "one freedom" if free else "no freedom"
@@ -95,9 +87,7 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         return "", "", [Problem("joint", message)] if known_kinds else []
     # two joints of one name are told of elsewhere; to choose from they are one
     choices = list(dict.fromkeys(free))
-    known = list(
-        dict.fromkeys(name for j in joints for name in (j.columns if j.kind in ("C", "U") else [j.name]))
-    )
+    known = list(dict.fromkeys(name for j in joints for name in ([j.name] if j.is_ball else j.columns)))
     problems = []
     chosen: dict[str, str] = {}
     for key in ("joint", "output"):
@@ -108,7 +98,7 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         owner = next((joint for joint in joints if name == joint.name or name in joint.columns), None)
         if owner is None:
             problems.append(Problem(f"drive.{key}", no_joint(name, known)))
-        elif owner.kind == "S":
+        elif owner.is_ball:
             ball = f"joint {shown(owner.name)} is a ball; give a joint with one freedom: {', '.join(choices)}"
             problems.append(Problem(f"drive.{key}", ball))
         else:

@@ -15,6 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import A0, B0, LINK_ENDS, A, B, Chain, Skeleton, short
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.motion import Motion
 
 #: Colours of Okabe and Ito, told apart by colour-blind readers too.
@@ -356,17 +357,6 @@ def link_keys(motion: Motion, frame: Skeleton) -> list[Line2D]:
     return [*keys, Line2D([], [], color="#404040", lw=0.9, ls=(0, (7, 2, 1.5, 2)), label="joint axis")]
 
 
-#: The words for joints in a legend, and the mark of each.
-KINDS = {
-    "R": ("hinge", "cylinder"),
-    "P": ("slide", "block"),
-    "H": ("screw", "thread"),
-    "C": ("cylinder, slides too", "cylinder"),
-    "U": ("universal joint", "arm"),
-    "S": ("ball", "ball"),
-}
-
-
 def chain_keys(linkage: Loop, ends: tuple[str, str]) -> list[Line2D]:
     """The legend's entries of any loop: its links and the kinds of its joints."""
     colours, _ = chain_colours(linkage, ends)
@@ -375,12 +365,13 @@ def chain_keys(linkage: Loop, ends: tuple[str, str]) -> list[Line2D]:
     if COUPLER in colours:
         keys.append(Line2D([], [], color=COUPLER, lw=5, label="other moving links"))
     keys.append(Line2D([], [], color=GROUND, lw=4, alpha=0.6, label="ground"))
-    for kind, (word, mark) in KINDS.items():
-        if kind in linkage.kind:
+    for letter, kind in KINDS.items():
+        if letter in linkage.kind:
+            mark = kind.shape
             style = {
                 "cylinder": {"marker": "s", "ms": 7},
                 "thread": {"marker": "s", "ms": 6, "mfc": "white", "mew": 2.4},
             }
             look = style.get(mark) or ({"marker": "P", "ms": 8} if mark == "arm" else _mark(mark, JOINT))
-            keys.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=word))
+            keys.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=kind.legend))
     return keys

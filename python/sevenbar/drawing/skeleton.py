@@ -201,7 +201,7 @@ def chain(
     before = np.stack([np.broadcast_to(linkage.base, (rows, 4, 4)), *steps], axis=1)
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
     spread = float((np.nanmax(origins, axis=(0, 1)) - np.nanmin(origins, axis=(0, 1))).max())
-    in_rows = "twist_1_deg" in linkage.dimensions
+    in_rows = linkage.form == "rows"
     spherical = not spread > 1e-9
     places: list[Floats] = []
 
@@ -228,20 +228,18 @@ def chain(
             way = np.where(back, -1.0, 1.0) * axis
             return add(middle - half * span * way), add(end + half * span * way)
 
-        if joint.kind != "S":
+        shape = joint.row.shape
+        if shape != "ball":
             marks.append((i, "axis", along(near, first, AXIS, far)))
-        match joint.kind:
-            case "R" | "C" | "H":
-                cylinder = along(far, second, CYLINDER)
-                marks.append((i, "cylinder", cylinder))
-                marks += [(i, "thread", cylinder)] if joint.kind == "H" else []
-            case "P":
-                marks.append((i, "block", (feet[i][1],)))
-            case "U":
-                marks.append((i, "axis", along(far, second, AXIS)))
-                marks += [(i, "arm", along(near, first, CYLINDER)), (i, "arm", along(far, second, CYLINDER))]
-            case _:
-                marks.append((i, "ball", (feet[i][1],)))
+        if joint.row.has_cross:
+            marks.append((i, "axis", along(far, second, AXIS)))
+            marks += [(i, shape, along(near, first, CYLINDER)), (i, shape, along(far, second, CYLINDER))]
+        elif shape in ("cylinder", "thread"):
+            cylinder = along(far, second, CYLINDER)
+            marks.append((i, "cylinder", cylinder))
+            marks += [(i, shape, cylinder)] if shape == "thread" else []
+        else:
+            marks.append((i, shape, (feet[i][1],)))
     for i in range(count):
         start, end = feet[i][1], feet[(i + 1) % count][0]
         inner: tuple[int, ...] = ()
@@ -298,42 +296,11 @@ def _arc_between(centre: Floats, start: Floats, end: Floats) -> list[Floats]:
 def frames_of(linkage: Loop, q: Floats) -> Floats:
     """The frames (n, moving links, 4, 4) of the links in the report frame, from joint values (n, columns)."""
     now = np.broadcast_to(linkage.base, (len(q), 4, 4))
-    found, column = [], 0
-    for i, joint in enumerate(linkage.joints[:-1]):
-        values = q[:, column : column + len(joint.columns)].T
-        column += len(joint.columns)
-        match joint.kind:
-            case "R":
-                move = _turn(values[0], 2)
-            case "P":
-                move = _slide(values[0])
-            case "H":
-                move = _turn(values[0], 2) @ _slide(joint.pitch * values[0] / math.tau)
-            case "C":
-                move = _turn(values[0], 2) @ _slide(values[1])
-            case "U":
-                move = _turn(values[0], 2) @ _turn(np.full(len(q), joint.angle), 0) @ _turn(values[1], 2)
-            case _:
-                move = _turn(values[0], 2) @ _turn(values[1], 1) @ _turn(values[2], 0)
-        found.append(now @ move)
-        now = found[-1] @ linkage.links[i]
+    found = []
+    for joint, own, link in zip(linkage.joints[:-1], linkage.places[:-1], linkage.links, strict=True):
+        found.append(now @ joint.motion(q[:, own]))
+        now = found[-1] @ link
     return np.stack(found, axis=1)
-
-
-def _turn(angle: Floats, axis: int) -> Floats:
-    """Rotations (n, 4, 4) about x, y or z (`axis` 0, 1, 2)."""
-    matrices = np.tile(np.eye(4), (len(angle), 1, 1))
-    a, b = (axis + 1) % 3, (axis + 2) % 3
-    matrices[:, a, a] = matrices[:, b, b] = np.cos(angle)
-    matrices[:, b, a], matrices[:, a, b] = np.sin(angle), -np.sin(angle)
-    return matrices
-
-
-def _slide(distance: Floats) -> Floats:
-    """Translations (n, 4, 4) along z."""
-    matrices = np.tile(np.eye(4), (len(distance), 1, 1))
-    matrices[:, 2, 3] = distance
-    return matrices
 
 
 def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:

@@ -93,7 +93,7 @@ class _Commands:
         count = len(self.linkage.joints)
         if body < count:
             return True
-        crosses = [i for i, joint in enumerate(self.linkage.joints) if joint.kind == "U"]
+        crosses = [i for i, joint in enumerate(self.linkage.joints) if joint.row.has_cross]
         return not self._hooke(crosses[body - count])
 
     def _hooke(self, i: int) -> bool:
@@ -210,35 +210,24 @@ class _Commands:
         before, after = (i - 1) % count, i
         on_before = inverse(self.pose.frames[before]) @ self.pose.near[i]
         on_after = inverse(self.pose.frames[after]) @ self.pose.far[i]
-        if joint.kind == "U":
+        if joint.row.has_cross:
             self._universal(i, on_before, on_after)
             return
         j_marker = self._marker(before, f"{word}_j", on_before)
         i_marker = self._marker(after, f"{word}_i", on_after)
-        kinds = {
-            "R": "revolute",
-            "P": "translational",
-            "C": "cylindrical",
-            "H": "cylindrical",
-            "S": "spherical",
-        }
-        name = self._connect(kinds[joint.kind], word, i_marker, j_marker)
-        if joint.kind == "H":
+        name = self._connect(joint.row.adams, word, i_marker, j_marker)
+        if joint.row.is_screw:
             # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
             self._connect("screw", f"{word}_thread", i_marker, j_marker, self.scale * joint.pitch)
-        if joint.kind in "RH":
-            self.columns[joint.name] = (name, i_marker, j_marker, True)
-        elif joint.kind == "P":
-            self.columns[joint.name] = (name, i_marker, j_marker, False)
-        elif joint.kind == "C":
-            for column, turns in zip(joint.columns, (True, False), strict=True):
-                self.columns[column] = (name, i_marker, j_marker, turns)
+        if not joint.row.is_ball:
+            for column, freedom in zip(joint.columns, joint.row.freedoms, strict=True):
+                self.columns[column] = (name, i_marker, j_marker, freedom == "turn")
 
     def _universal(self, i: int, on_before: Floats, on_after: Floats) -> None:
         joint, word = self.linkage.joints[i], self.joints[i]
         count = len(self.linkage.joints)
         before = (i - 1) % count
-        body = count + sum(other.kind == "U" for other in self.linkage.joints[:i])
+        body = count + sum(other.row.has_cross for other in self.linkage.joints[:i])
         cross = self.assembly.frames[body]
         if self._hooke(i):
             # its crosspiece: y of the J marker and x of the I marker
@@ -251,8 +240,7 @@ class _Commands:
             i_marker = self._marker(i, f"{word}_i", frame_i)
             self._connect("hooke", word, i_marker, j_marker)
             return
-        cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
-        tilt = np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
+        tilt = joint.before(joint.row.steps[-1])
         for k, (j_body, j_frame, i_body, i_frame) in enumerate(
             ((before, on_before, body, np.eye(4)), (body, tilt, i, on_after)), 1
         ):

@@ -14,6 +14,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, unit_of
 from sevenbar.export.pose import Pose
+from sevenbar.kinematics.joints import Shape
 from sevenbar.kinematics.motion import Integers
 
 #: Sweeps over all joints; most layouts no longer change after two.
@@ -28,9 +29,9 @@ SHIFT_COST = 0.03
 def arrange(pose: Pose) -> Assembly:
     """The parts of a linkage in a pose, seated with the least overlap found."""
     unit = unit_of(pose)
-    kinds = [joint.kind for joint in pose.linkage.joints]
+    shapes = [joint.row.shape for joint in pose.linkage.joints]
     # by turns above and below, as in a plane linkage of two layers
-    seats = tuple(Seat(side=1 if i % 2 == 0 else -1) for i in range(len(kinds)))
+    seats = tuple(Seat(side=1 if i % 2 == 0 else -1) for i in range(len(shapes)))
 
     @cache
     def cost(seats: tuple[Seat, ...]) -> float:
@@ -39,8 +40,8 @@ def arrange(pose: Pose) -> Assembly:
 
     for _ in range(SWEEPS):
         start = seats
-        for i, kind in enumerate(kinds):
-            tried = [(*seats[:i], seat, *seats[i + 1 :]) for seat in _choices(kind)]
+        for i, shape in enumerate(shapes):
+            tried = [(*seats[:i], seat, *seats[i + 1 :]) for seat in _choices(shape)]
             # min keeps the first of equals: what is seated already stays
             seats = min([seats, *tried], key=cost)
         if seats == start:
@@ -48,13 +49,13 @@ def arrange(pose: Pose) -> Assembly:
     return assemble(pose, seats, unit)
 
 
-def _choices(kind: str) -> list[Seat]:
-    match kind:
-        case "S":
+def _choices(shape: Shape) -> list[Seat]:
+    match shape:
+        case "ball":
             return []
-        case "U":
+        case "arm":
             return [Seat(a, d, other=b) for a, b, d in product((1, -1), (1, -1), (0.0, 1.0))]
-        case "P":
+        case "block":
             across = [(0.0, 0.0), (ASIDE, 0.0), (-ASIDE, 0.0), (0.0, ASIDE), (0.0, -ASIDE)]
             return [Seat(side, d, way) for side, d, way in product((1, -1), SHIFTS[:3], across)]
         case _:

@@ -148,9 +148,9 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
     for i, joint in enumerate(linkage.joints):
         before, after, seat = builds[i - 1], builds[i], seats[i]
         near, far = feet[i]
-        if joint.kind == "S":
+        if joint.row.is_ball:
             continue
-        if joint.kind == "U":
+        if joint.row.has_cross:
             frame, cross, middles = _universal(before, after, pose, i, seat, unit)
             extra.append(replace(cross, body=len(frames), name=f"cross_{_word(joint.name)}"))
             frames.append(frame)
@@ -174,7 +174,7 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
         np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last])
         for line, (first, last) in zip(lines, ends, strict=True)
     ]
-    for i in (i for i, joint in enumerate(linkage.joints) if joint.kind == "S"):
+    for i in (i for i, joint in enumerate(linkage.joints) if joint.row.is_ball):
         _ball_joint(builds[i - 1], builds[i], pose, i, (arms[i - 1], arms[i]), unit)
     for build, arm in zip(builds, arms, strict=True):
         build.arm(arm, unit)
@@ -286,7 +286,7 @@ def _axial(
     sleeve = bases[1] + shift * frames[1][:3, 2]
     way = seat.side * axis
     travels = high - low > 1e-9 * unit
-    square = pose.linkage.joints[i].kind == "P"
+    square = pose.linkage.joints[i].row.shape == "block"
     near, far = (before, after) if carrier_is_near else (after, before)
     near.hub(carrier, -way, True, frames[0][:3, 0] if square else None)
     far.hub(sleeve, seat.side * frames[1][:3, 2], not travels, frames[1][:3, 0] if square else None)

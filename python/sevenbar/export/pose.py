@@ -25,7 +25,7 @@ class Pose:
     `frames` (n, 4, 4) are those of the links in it, the ground's last (the identity), and `others`
     (m, n, 4, 4) those of further poses of the circuit. `near` and `far` (n, 4, 4) are the frames of each
     joint on the link before it and on the link after it. `travel` (n, 2) is how far each joint slides along
-    its axis on the circuit, and `slide` (n,) how far it has in this pose. `places` is what the figures draw.
+    its axis on the circuit. `places` is what the figures draw.
     """
 
     motion: Motion
@@ -37,7 +37,6 @@ class Pose:
     near: Floats
     far: Floats
     travel: Floats
-    slide: Floats
     places: Chain
 
     @property
@@ -96,7 +95,6 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
         near=near,
         far=far,
         travel=_travel(linkage, np.vstack([chosen.q, q])),
-        slide=_slides(linkage, q[None])[0],
         places=chain(linkage, frames),
     )
 
@@ -116,24 +114,9 @@ def _joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
     return np.stack(before), after
 
 
-def _slides(linkage: Loop, q: Floats) -> Floats:
-    """How far each joint has slid along its axis, (rows, joints) [length]."""
-    slid = np.zeros((len(q), len(linkage.joints)))
-    column = 0
-    for i, joint in enumerate(linkage.joints):
-        if joint.kind == "P":
-            slid[:, i] = q[:, column]
-        elif joint.kind == "C":
-            slid[:, i] = q[:, column + 1]
-        elif joint.kind == "H":
-            slid[:, i] = joint.pitch * q[:, column] / math.tau
-        column += len(joint.columns)
-    return slid
-
-
 def _travel(linkage: Loop, q: Floats) -> Floats:
-    slid = _slides(linkage, q)
-    return np.stack([np.nanmin(slid, axis=0), np.nanmax(slid, axis=0)], axis=1)
+    slid = [joint.slid(q[:, own]) for joint, own in zip(linkage.joints, linkage.places, strict=True)]
+    return np.stack([np.nanmin(slid, axis=1), np.nanmax(slid, axis=1)], axis=1)
 
 
 def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:

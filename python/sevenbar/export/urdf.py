@@ -13,13 +13,10 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
-from sevenbar.kinematics.geometry import Joint
 from sevenbar.text.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the next link's.
 JOINING = 1e-6
-#: The axis of a freedom in its own frame.
-Z = "0 0 1"
 #: What `limit` must tell of a slide and and a linkage does not know [N, m/s].
 EFFORT, VELOCITY = 1e6, 1e3
 
@@ -51,35 +48,36 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
     cross = count
     for i, joint in enumerate(linkage.joints[:-1]):
         name = assembly.bodies[i]
-        steps = _steps(joint)
-        for k, (column, kind, axis, before) in enumerate(steps):
+        q = np.vstack([assembly.pose.circuit.q, assembly.pose.q])[:, linkage.places[i]]
+        steps = joint.steps(q)
+        for k, ((step, values), (column, _)) in enumerate(
+            zip(steps, joint.row.named(joint.name), strict=True)
+        ):
             last = k == len(steps) - 1
             child = name if last else f"{name}_{k + 1}"
-            attributes = {"name": column, "type": "prismatic" if kind == "slide" else "continuous"}
-            element = Xml.SubElement(robot, "joint", attributes)
-            _origin(element, mount @ before, scale)
+            kind = "prismatic" if step.freedom == "slide" else "continuous"
+            element = Xml.SubElement(robot, "joint", {"name": column, "type": kind})
+            _origin(element, mount @ joint.before(step), scale)
             Xml.SubElement(element, "parent", link=parent)
             Xml.SubElement(element, "child", link=child)
-            Xml.SubElement(element, "axis", xyz=axis)
-            if kind == "slide":
-                low, high = scale * assembly.pose.travel[i]
+            Xml.SubElement(element, "axis", xyz=" ".join("1" if a == step.axis else "0" for a in range(3)))
+            if step.freedom == "slide":
+                low, high = scale * np.nanmin(values), scale * np.nanmax(values)
                 Xml.SubElement(
                     element, "limit", lower=_number(low), upper=_number(high),
                     effort=_number(EFFORT), velocity=_number(VELOCITY),
                 )  # fmt: skip
-            if column.endswith(".slide") and joint.kind == "H":
-                Xml.SubElement(
-                    element, "mimic", joint=joint.name, multiplier=_number(scale * joint.pitch / math.tau)
-                )
+            if step.driven:
+                Xml.SubElement(element, "mimic", joint=joint.name, multiplier=_number(scale * joint.advance))
             if last:
                 _add_link(robot, assembly, i, name, weights[i], scale)
-            elif joint.kind == "U":
+            elif joint.row.has_cross:
                 _add_link(robot, assembly, cross, child, weights[cross], scale)
             else:
                 light = Mass(JOINING * weights[i].mass, np.zeros(3), JOINING * weights[i].inertia)
                 _add_link(robot, assembly, None, child, light, scale)
             parent, mount = child, np.eye(4)
-        cross += joint.kind == "U"
+        cross += joint.row.has_cross
         if i < count - 2:
             mount = linkage.links[i]
     Xml.indent(robot)
@@ -103,9 +101,9 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
     count = len(linkage.joints)
     factors = np.where([kind == "slide" for kind in linkage.column_kinds], scale, 1.0)
     own: dict[str, Any] = {"name": joint.name, "kind": joint.kind, "columns": list(joint.columns)}
-    if joint.kind == "H":
+    if joint.row.is_screw:
         own["pitch"] = scale * joint.pitch
-    if joint.kind == "U":
+    if joint.row.has_cross:
         own["angle"] = joint.angle
     return {
         "format": 1,
@@ -127,26 +125,6 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
             "q": dict(zip(linkage.columns, (factors * assembly.pose.q).tolist(), strict=True)),
         },
     }
-
-
-def _steps(joint: Joint) -> list[tuple[str, str, str, Floats]]:
-    """The freedoms of a joint as URDF joints: name, kind, axis, and the transform that stands before each."""
-    still = np.eye(4)
-    match joint.kind:
-        case "R":
-            return [(joint.name, "turn", Z, still)]
-        case "P":
-            return [(joint.name, "slide", Z, still)]
-        case "H":
-            return [(joint.name, "turn", Z, still), (f"{joint.name}.slide", "slide", Z, still)]
-        case "C":
-            return [(joint.columns[0], "turn", Z, still), (joint.columns[1], "slide", Z, still)]
-        case "U":
-            cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
-            tilt = np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
-            return [(joint.columns[0], "turn", Z, still), (joint.columns[1], "turn", Z, tilt)]
-    axes = (Z, "0 1 0", "1 0 0")
-    return [(column, "turn", axis, still) for column, axis in zip(joint.columns, axes, strict=True)]
 
 
 def _add_link(

@@ -119,11 +119,11 @@ def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int
     """
     parts = [expanded(linkage) for linkage in linkages]
     raw = _core.measure_loops(
-        parts[0][0],
-        np.array([advances for _, advances, _, _ in parts]),
-        np.stack([linkage.base for linkage in linkages]),
+        parts[0].letters,
+        np.array([part.advances for part in parts]),
+        np.stack([part.base for part in parts]),
         np.stack([linkage.ground for linkage in linkages]),
-        np.stack([np.array(links) for _, _, links, _ in parts]),
+        np.stack([np.array(part.links) for part in parts]),
         input,
         output,
         samples,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,7 @@ from sevenbar import _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.joints import Freedom
+from sevenbar.kinematics.joints import Freedom, Z
 from sevenbar.kinematics.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.motion import (
     ChangePoint,
@@ -32,9 +32,13 @@ from sevenbar.kinematics.motion import (
     circuit_from,
     status_words,
 )
+from sevenbar.kinematics.rigid import axis_to_z, inverse
 
 #: Rank six, and the one that is driven.
 MOST_FREEDOMS = 7
+
+#: The motion that leaves all where it is.
+STILL = np.eye(4)
 
 #: An angle [rad] short of a full turn by less is zero.
 ROUNDING = 1e-12
@@ -44,12 +48,15 @@ SAME_LIMIT = 1e-6
 
 
 class GeneralLoop:
-    """The solver of one loop. C and U are two joints each for the core, so links are counted anew there."""
+    """The solver of one loop. Some joints are several for the core, so links are counted anew there."""
 
     def __init__(self, linkage: Solvable) -> None:
         self._linkage = linkage
-        letters, advances, links, self._link = expanded(linkage)
-        self._core = _core.Loop(letters, np.array(advances), linkage.base, linkage.ground, np.array(links))
+        parts = expanded(linkage)
+        self._base, self._link = parts.base, parts.last
+        self._core = _core.Loop(
+            parts.letters, np.array(parts.advances), parts.base, linkage.ground, np.array(parts.links)
+        )
         self._found: dict[int, Mobility] = {}
 
     def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable]]:
@@ -217,7 +224,7 @@ class GeneralLoop:
             gruebler=freedoms - 6,
             rank=rank,
             idle=idle,
-            redundant=redundant_constraints(np.array(raw.get("wrenches", [])).reshape(-1, 6), linkage.base),
+            redundant=redundant_constraints(np.array(raw.get("wrenches", [])).reshape(-1, 6), self._base),
             finite=finite,
         )
 
@@ -287,29 +294,36 @@ def _run_backwards(raw: Mapping[str, Any], order: Integers, kinds: Sequence[Free
     return {**raw, **rows, "joints": joints}
 
 
-def expanded(linkage: Loop) -> tuple[str, list[float], list[Floats], list[int]]:
-    """The joints as the core takes them: letters, advances for a radian, links, and where each link went."""
-    letters, advances, links, last = "", [], [], []
-    still = np.eye(4)
+class Expanded(NamedTuple):
+    """The joints as the core takes them, each about or along z of its frame.
+
+    `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
+    between them; `last` the number of the last one of each joint of the linkage.
+    """
+
+    letters: str
+    advances: list[float]
+    base: Floats
+    links: list[Floats]
+    last: list[int]
+
+
+def expanded(linkage: Loop) -> Expanded:
+    """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
+    letters, advances, fixed, last = "", [], [], []
+    ahead = linkage.base
     for i, joint in enumerate(linkage.joints):
-        if joint.kind == "C":
-            letters += "RP"
-            advances += [0.0, 0.0]
-            links.append(still)
-        elif joint.kind == "U":
-            letters += "RR"
-            advances += [0.0, 0.0]
-            cosine, sine = math.cos(joint.angle), math.sin(joint.angle)
-            links.append(
-                np.array([[1, 0, 0, 0], [0, cosine, -sine, 0], [0, sine, cosine, 0], [0, 0, 0, 1.0]])
-            )
-        else:
-            letters += joint.kind
-            advances.append(joint.pitch / math.tau)
+        whole = joint.row.is_screw or joint.row.is_ball
+        for step in joint.row.steps[:1] if whole else joint.row.steps:
+            letters += joint.kind if whole else step.letter
+            advances.append(joint.advance)
+            ahead = ahead @ joint.before(step) if step.tilted else ahead
+            fixed.append(ahead if step.axis == Z else ahead @ axis_to_z(step.axis))
+            ahead = STILL if step.axis == Z else inverse(axis_to_z(step.axis))
         last.append(len(letters) - 1)
         if i < len(linkage.links):
-            links.append(np.array(linkage.links[i]))
-    return letters, advances, links, last
+            ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
+    return Expanded(letters, advances, fixed[0], fixed[1:], last)
 
 
 def is_endless(circuit: Mapping[str, Any], span: tuple[float, float] | None) -> bool:

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from functools import cached_property
-from typing import Any
+from functools import cached_property, reduce
+from itertools import pairwise
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
-from sevenbar.kinematics.joints import FREEDOMS, Freedom, column_names
-from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z, column_names
+from sevenbar.kinematics.rigid import inverse, slides_along, turns_about
+
+#: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, joints as drawn.
+Form = Literal["rssr", "rows", "drawn"]
 
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint: its kind (R P H C U S) and its name.
+    """A joint: the letter of its kind, and its name.
 
     `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U.
     """
@@ -29,9 +34,49 @@ class Joint:
     angle: float = 0.0
 
     @property
+    def row(self) -> JointKind:
+        """Its kind's row of the table."""
+        return KINDS[self.kind]
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """One name for each of its freedoms."""
-        return column_names(self.name, FREEDOMS[self.kind])
+        return column_names(self.name, self.row.freedoms)
+
+    @property
+    def advance(self) -> float:
+        """The slide of a screw [length] for a radian."""
+        return self.pitch / math.tau
+
+    def steps(self, q: Floats) -> list[tuple[Step, Floats]]:
+        """Each step, and its values (n,) [rad, or length] from those of the joint's columns (n, columns)."""
+        found: list[tuple[Step, Floats]] = []
+        column = 0
+        for step in self.row.steps:
+            if step.driven:
+                found.append((step, self.advance * found[-1][1]))
+            else:
+                found.append((step, q[:, column]))
+                column += 1
+        return found
+
+    def before(self, step: Step) -> Floats:
+        """The fixed transform (4, 4) before a step."""
+        return turns_about(X, np.array([self.angle]))[0] if step.tilted else np.eye(4)
+
+    def motion(self, q: Floats) -> Floats:
+        """The motion Z (n, 4, 4) of the link after the joint for the values of its columns (n, columns)."""
+        parts = []
+        for step, values in self.steps(q):
+            moves = turns_about if step.freedom == "turn" else slides_along
+            parts += [self.before(step)] if step.tilted else []
+            parts.append(moves(step.axis, values))
+        return reduce(np.matmul, parts)
+
+    def slid(self, q: Floats) -> Floats:
+        """How far it has slid along its axis (n,) [length] for the values of its columns (n, columns)."""
+        along = [v for step, v in self.steps(q) if step.freedom == "slide" and step.axis == Z]
+        return sum(along, np.zeros(len(q)))
 
 
 @dataclass(frozen=True)
@@ -59,7 +104,7 @@ class Loop:
     `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,
     both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
     to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
-    `dimensions` are the named numbers of the form it was written in, `description` that form itself: the
+    `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made.
 
     Source: docs/theory.md, (1).
@@ -75,6 +120,7 @@ class Loop:
     length_unit: str = "mm"
     points: tuple[Point, ...] = ()
     dimensions: Mapping[str, float] = field(default_factory=dict)
+    form: Form = "drawn"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
@@ -96,6 +142,12 @@ class Loop:
         return "".join(joint.kind for joint in self.joints)
 
     @cached_property
+    def places(self) -> tuple[slice, ...]:
+        """Where the columns of each joint stand among all."""
+        ends = np.cumsum([len(joint.columns) for joint in self.joints]).tolist()
+        return tuple(slice(start, end) for start, end in pairwise([0, *ends]))
+
+    @cached_property
     def columns(self) -> tuple[str, ...]:
         """The names of the one-freedom joints, in loop order."""
         return tuple(column for joint in self.joints for column in joint.columns)
@@ -103,7 +155,7 @@ class Loop:
     @cached_property
     def column_kinds(self) -> tuple[Freedom, ...]:
         """What each column is: an angle [rad] or a length."""
-        return tuple(freedom for joint in self.joints for freedom in FREEDOMS[joint.kind])
+        return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
 
     def drivable(self, without: int | None = None) -> list[str]:
         """The columns that may drive or be driven: all but those of balls, and but one."""
@@ -111,14 +163,14 @@ class Loop:
         return [
             name
             for index, (name, owner) in enumerate(zip(self.columns, owners, strict=True))
-            if owner.kind != "S" and index != without
+            if not owner.row.is_ball and index != without
         ]
 
     def column(self, name: str, key: str) -> int:
-        """The place of a column named by the caller; a C or U joint's name stands for its first freedom."""
+        """The place of a column named by the caller; a joint's name stands for its first one."""
         known = [joint.name for joint in self.joints]
         for joint in self.joints:
-            if joint.kind == "S" and name in (joint.name, *joint.columns):
+            if joint.row.is_ball and name in (joint.name, *joint.columns):
                 raise RequestError(
                     f"{key}: joint '{name}' is a ball; "
                     f"give a joint with one freedom: {', '.join(self.drivable())}"
@@ -134,7 +186,9 @@ class Loop:
         if self.columns[column] != self.drive.output:
             return self.columns.index(self.drive.output)
         last = [
-            joint for joint in self.joints if joint.kind != "S" and self.columns[column] not in joint.columns
+            joint
+            for joint in self.joints
+            if not joint.row.is_ball and self.columns[column] not in joint.columns
         ]
         name = last[-1].columns[0] if last else self.drivable(column)[-1]
         return self.columns.index(name)

@@ -1,24 +1,158 @@
-"""The kinds of joints, what each moves, and the names of its columns."""
+"""The kinds of joints, one row each: the steps it is made of, its words, its keys, how it is drawn and built.
+
+A joint moves the link after it against the link before by `Z(q)`, the product of its steps. A step is a turn
+about or a slide along an axis of the frame that the steps before it have moved; the columns of a joint are
+the values of its steps, but for a slide that a screw's turn drives.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Literal
 
 Freedom = Literal["turn", "slide"]
 
-#: What each freedom of a joint does, in the order of its columns.
-FREEDOMS: dict[str, tuple[Freedom, ...]] = {
-    "R": ("turn",),
-    "P": ("slide",),
-    "H": ("turn",),
-    "C": ("turn", "slide"),
-    "U": ("turn", "turn"),
-    "S": ("turn", "turn", "turn"),
-}
-JOINT_KINDS = tuple(FREEDOMS)
+#: What marks a joint in drawings, and is made of it in models of bodies.
+Shape = Literal["cylinder", "block", "thread", "arm", "ball"]
+
+#: The axes of a frame.
+X, Y, Z = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class Step:
+    """A part of a joint with one freedom: a turn about or a slide along x, y or z (`axis` 0, 1, 2).
+
+    `tilted`: it stands after the turn about x by the joint's fixed `angle`. `driven`: a slide of `pitch` for
+    each turn of the step before, without a column of its own.
+    """
+
+    freedom: Freedom
+    axis: int = Z
+    tilted: bool = False
+    driven: bool = False
+
+    @property
+    def letter(self) -> str:
+        """The kind of joint that is this step alone."""
+        return "R" if self.freedom == "turn" else "P"
+
+    @property
+    def number(self) -> int:
+        """Its place among the six freedoms of a body: slides along x, y, z, then turns about them."""
+        return self.axis + 3 * (self.freedom == "turn")
+
+
+@dataclass(frozen=True)
+class JointKind:
+    """All that distinguishes a kind of joint from the others.
+
+    `legend` is what figures call it, `words` are those that people write for it. `steps` stand in loop order,
+    the last of all but a ball about or along z. `drawn_keys` are the keys that it needs as drawn beside its
+    place, `row_keys` the numbers of a Denavit-Hartenberg row; a kind without them is written `as_rows`.
+    `shape` is how it is drawn and built, `adams` what ADAMS calls it.
+    """
+
+    letter: str
+    legend: str
+    words: tuple[str, ...]
+    steps: tuple[Step, ...]
+    drawn_keys: tuple[str, ...]
+    shape: Shape
+    adams: str
+    row_keys: tuple[str, ...] = ()
+    as_rows: str = ""
+
+    @property
+    def freedoms(self) -> tuple[Freedom, ...]:
+        """What each of its columns is."""
+        return tuple(step.freedom for step in self.steps if not step.driven)
+
+    @property
+    def free(self) -> tuple[bool, ...]:
+        """Which of the six freedoms of a body it lets go, seen from the frame before it."""
+        numbers = {step.number for step in self.steps}
+        return tuple(number in numbers for number in range(6))
+
+    @property
+    def is_ball(self) -> bool:
+        """Whether it turns any way about a place: such a joint is not driven, and its turns are no output."""
+        return self.freedoms == ("turn",) * 3
+
+    @property
+    def has_cross(self) -> bool:
+        """Whether a body of its own stands between its steps."""
+        return any(step.tilted for step in self.steps)
+
+    @property
+    def is_screw(self) -> bool:
+        """Whether its slide follows from its turn."""
+        return any(step.driven for step in self.steps)
+
+    def named(self, joint: str) -> list[tuple[str, Step]]:
+        """The steps of a joint of this name, each by its column's; a screw's slide has a name of its own."""
+        names = iter(column_names(joint, self.freedoms))
+        return [(f"{joint}.slide" if step.driven else next(names), step) for step in self.steps]
+
+    @property
+    def moving_key(self) -> str:
+        """The key of a row that is its variable, and so is not written."""
+        return "offset" if "angle" in self.row_keys else "angle"
+
+
+_AXIS = ("axis",)
+_TURN, _SLIDE = Step("turn"), Step("slide")
+
+#: Every kind of joint, by its letter.
+KINDS: Mapping[str, JointKind] = {
+    row.letter: row
+    for row in (
+        JointKind(
+            "R", "hinge", ("revolute", "hinge", "pin", "turning", "rotary", "rotation"),
+            (_TURN,), _AXIS, "cylinder", "revolute",
+            row_keys=("length", "offset", "twist"),
+        ),
+        JointKind(
+            "P", "slide", ("prismatic", "slider", "sliding", "slide", "translation"),
+            (_SLIDE,), _AXIS, "block", "translational",
+            row_keys=("length", "angle", "twist"),
+        ),
+        JointKind(
+            "H", "screw", ("helical", "helix", "screw"),
+            (_TURN, Step("slide", driven=True)), ("axis", "pitch"), "thread", "cylindrical",
+            row_keys=("length", "offset", "twist", "pitch"),
+        ),
+        JointKind(
+            "C", "cylinder, slides too", ("cylindric", "cylindrical", "cylinder"),
+            (_TURN, _SLIDE), _AXIS, "cylinder", "cylindrical",
+            as_rows="R and P on one axis",
+        ),
+        JointKind(
+            "U", "universal joint", ("universal", "cardan", "hooke"),
+            (_TURN, Step("turn", tilted=True)), ("axes",), "arm", "hooke",
+            as_rows="R and R",
+        ),
+        JointKind(
+            "S", "ball", ("spherical", "sphere", "ball"),
+            (Step("turn", Z), Step("turn", Y), Step("turn", X)), (), "ball", "spherical",
+            as_rows="R, R and R through one point",
+        ),
+    )
+}  # fmt: skip
+
+#: Their letters.
+JOINT_KINDS = tuple(KINDS)
+
+#: Kinds that a Denavit-Hartenberg row can hold.
+ROW_KINDS = tuple(letter for letter, kind in KINDS.items() if kind.row_keys)
 
 
 def column_names(joint: str, freedoms: Sequence[Freedom]) -> tuple[str, ...]:
     """One name for each freedom of a joint: its own, numbered from 1 where it has more than one."""
     return (joint,) if len(freedoms) == 1 else tuple(f"{joint}.{k}" for k in range(1, len(freedoms) + 1))
+
+
+def letters_with(key: str) -> str:
+    """The letters of the kinds that are drawn with a key, as in "R P H C"."""
+    return " ".join(letter for letter, kind in KINDS.items() if key in kind.drawn_keys)

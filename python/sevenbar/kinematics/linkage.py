@@ -124,7 +124,7 @@ class Linkage(Solvable):
     ) -> Modes:
         """Every assembly mode at one value of the input [rad, or length]; none where the loop does not close.
 
-        An RSSR is solved in closed form, any loop of turning and sliding joints (so also of C, U and S) by
+        An RSSR is solved in closed form, any loop of turning and sliding joints (and joints made of these) by
         following all solutions over the complex numbers; with screws modes are searched. `method` "general"
         takes the general way for an RSSR too.
 

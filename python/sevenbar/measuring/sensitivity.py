@@ -103,9 +103,9 @@ class Closure(Protocol):
 def closure_of(linkage: Linkage, input: str, output: str) -> Closure:
     """The closure of a linkage as it was written; `NotCoveredError` for a form without dimensions."""
     first, second = linkage.columns.index(input), linkage.columns.index(output)
-    if "L1" in linkage.dimensions:
+    if linkage.form == "rssr":
         return RssrClosure(linkage, first)
-    if "twist_1_deg" in linkage.dimensions:
+    if linkage.form == "rows":
         return RowsClosure(linkage, first, second)
     raise NotCoveredError(
         "calibrate: a linkage drawn as [[joint]] has places and directions, not dimensions that a "

@@ -66,7 +66,7 @@ def summary(motion: Motion, room: int = 100) -> Summary:
     Angles are in degrees, rates in radians.
     """
     linkage = motion.linkage
-    sheets = [_dimension_sheet(linkage)] if _in_rows(linkage) else []
+    sheets = [_dimension_sheet(linkage)] if linkage.form == "rows" else []
     if len(motion.circuits) > MOST_COLUMNS:
         sheets += _compared(motion, room)
     elif motion.circuits:
@@ -122,7 +122,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     """What the report tells of the motion as a whole: names and words."""
     linkage = motion.linkage
     facts = [("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))]
-    numbers = {} if _in_rows(linkage) else dict(linkage.dimensions) or side_lengths(linkage)
+    numbers = {} if linkage.form == "rows" else dict(linkage.dimensions) or side_lengths(linkage)
     if numbers:
         told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
         facts.append(("dimensions", f"{told}  [{linkage.length_unit}]"))
@@ -180,11 +180,6 @@ def _units(motion: Motion) -> tuple[str, str]:
     return first, second
 
 
-def _in_rows(linkage: Loop) -> bool:
-    """Whether the linkage was written in Denavit-Hartenberg rows."""
-    return "twist_1_deg" in linkage.dimensions
-
-
 def _dimension_sheet(linkage: Loop) -> Sheet:
     """The rows as they were written, one a link; a joint's own value is none of the dimensions."""
     unit = linkage.length_unit
@@ -202,7 +197,7 @@ def _dimension_sheet(linkage: Loop) -> Sheet:
     kept = [key for key in columns if numbers[key]]
     rows = []
     for place, joint in enumerate(linkage.joints, start=1):
-        own = "offset" if joint.kind == "P" else "angle_deg"
+        own = {"angle": "angle_deg"}.get(joint.row.moving_key, "offset")
         cells = [
             f"{numbers[key][place]:.6g}" if place in numbers[key] else "moves" if key == own else "-"
             for key in kept

@@ -12,7 +12,7 @@ from sevenbar.errors import EngineError
 from sevenbar.kinematics.rigid import pose
 from sevenbar.simulation.engine import Progress, Record, imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
-from sevenbar.simulation.prototype import FREEDOMS, GROUND, GYRATION, Body, Connection, Prototype, SpinRule
+from sevenbar.simulation.prototype import GROUND, GYRATION, Body, Connection, Prototype, SpinRule
 
 #: Numerical damping of the generalized-alpha method, which needs less than 1 for constraints on positions;
 #: an error of the accelerations at the start shrinks by about this factor a step.
@@ -61,7 +61,7 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
     notes = []
     for joint in model.connections:
         assembly.add_joint(joint)
-        if joint.kind == "H":
+        if joint.row.is_screw:
             notes.append(
                 f"Exudyn has no screw: {joint.name} is a cylindrical joint, its slide tied to its turn"
             )
@@ -120,7 +120,7 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
 def _pace(model: Prototype) -> float:
     """How many of Exudyn's units of time make a second."""
     drive = model.drive
-    return abs(drive.speed) / (1.0 if drive.freedom == 5 else model.size)
+    return abs(drive.speed) / (1.0 if drive.turns else model.size)
 
 
 def _failure(reason: str) -> str:
@@ -175,10 +175,10 @@ class _Assembly:
 
     def add_joint(self, joint: Connection) -> None:
         """Adds the constraints of a joint's kind; of a screw those of a cylinder, and one of its own."""
-        self._add_constraints(joint, [int(not free) for free in FREEDOMS[joint.kind]])
-        if joint.kind != "H":
+        self._add_constraints(joint, [int(not free) for free in joint.row.free])
+        if not joint.row.is_screw:
             return
-        turn = self.model.values[self.model.connections.index(joint), 0]
+        turn = self.model.values[self.model.connections.index(joint), 5]
         screw = ScrewConstraint(joint, self.model.size, turn)
         one = np.zeros((1, 1))
         nodes = [None if body == GROUND else self.nodes[body] for body in (joint.before, joint.after)]
@@ -203,7 +203,7 @@ class _Assembly:
     def add_drive(self) -> None:
         """Constrains the driven freedom alone; the joint itself has the other constraints."""
         drive = self.model.drive
-        unit = 1.0 if drive.freedom == 5 else self.model.size
+        unit = 1.0 if drive.turns else self.model.size
 
         def offset(_system: Any, time: float, _item: int, _parameters: Any) -> list[float]:
             values = [0.0] * 6

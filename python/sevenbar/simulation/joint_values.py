@@ -71,29 +71,32 @@ def joint_values(linkage: Loop, bodies: Bodies) -> JointValues:
         turn = np.swapaxes(before[:, :3, :3], 1, 2) @ after[:, :3, :3]
         way = after[:, :3, 3] - before[:, :3, 3]
         local = np.einsum("nji,nj->ni", before[:, :3, :3], way)
-        axis = before[:, :3, 2]
         columns: list[tuple[Floats, Floats, Floats]] = []
-        if joint.kind in "RCH":
-            columns.append(
-                (
-                    np.arctan2(turn[:, 1, 0], turn[:, 0, 0]),
-                    _dot(bodies.spin[:, i] - spin, axis),
-                    _dot(bodies.spin_rate[:, i] - spin_rate, axis)
-                    + _dot(bodies.spin[:, i] - spin, np.cross(spin, axis)),
+        for step in () if joint.row.is_ball or joint.row.has_cross else joint.row.steps:
+            axis = before[:, :3, step.axis]
+            if step.driven:
+                continue
+            if step.freedom == "turn":
+                columns.append(
+                    (
+                        np.arctan2(turn[:, 1, 0], turn[:, 0, 0]),
+                        _dot(bodies.spin[:, i] - spin, axis),
+                        _dot(bodies.spin_rate[:, i] - spin_rate, axis)
+                        + _dot(bodies.spin[:, i] - spin, np.cross(spin, axis)),
+                    )
                 )
-            )
-        if joint.kind in "PC":
-            apart = bodies.velocity[:, i] - motion[0]
-            columns.append(
-                (
-                    local[:, 2],
-                    _dot(apart, axis) + _dot(way, np.cross(spin, axis)),
-                    _slide_acceleration(bodies, i, way, axis, motion, spin, spin_rate),
+            else:
+                apart = bodies.velocity[:, i] - motion[0]
+                columns.append(
+                    (
+                        local[:, step.axis],
+                        _dot(apart, axis) + _dot(way, np.cross(spin, axis)),
+                        _slide_acceleration(bodies, i, way, axis, motion, spin, spin_rate),
+                    )
                 )
-            )
-        if joint.kind == "U":
+        if joint.row.has_cross:
             columns += _universal(joint, turn, before, bodies, i, spin, spin_rate)
-        if joint.kind == "S":
+        if joint.row.is_ball:
             nothing = np.full(rows, np.nan)
             columns += [(value, nothing, nothing) for value in _ball(turn)]
         parts += columns
@@ -172,24 +175,18 @@ def _ball(turn: Floats) -> list[Floats]:
 
 def _apart(joint: Joint, turn: Floats, local: Floats, angle: Floats) -> tuple[Floats, Floats]:
     """How far apart the sides of a joint stand, and how far askew, in what the joint holds."""
-    across = np.hypot(local[:, 0], local[:, 1])
-    askew = np.hypot(turn[:, 0, 2], turn[:, 1, 2])
-    whole = np.linalg.norm(local, axis=1)
-    match joint.kind:
-        case "R":
-            return whole, askew
-        case "P":
-            odd = 0.5 * (turn - np.swapaxes(turn, 1, 2))
-            return across, np.linalg.norm(odd[:, [2, 0, 1], [1, 2, 0]], axis=1)
-        case "C":
-            return across, askew
-        case "H":
-            # up to whole turns, which the axial place tells
-            advance = joint.pitch / math.tau
-            turns = np.round((local[:, 2] / advance - angle) / math.tau) if advance else 0.0
-            slip = local[:, 2] - advance * (angle + math.tau * turns)
-            return np.hypot(across, slip), askew
-        case "U":
-            return whole, np.abs(turn[:, 2, 2] - math.cos(joint.angle)) / math.sin(joint.angle)
-        case _:
-            return whole, np.zeros(len(local))
+    row, free = joint.row, joint.row.free
+    held = local[:, [axis for axis in range(3) if not free[axis]]]
+    gap = np.linalg.norm(held, axis=1)
+    if row.is_screw:
+        # up to whole turns, which the axial place tells
+        turns = np.round((local[:, 2] / joint.advance - angle) / math.tau) if joint.advance else 0.0
+        gap = np.hypot(gap, local[:, 2] - joint.advance * (angle + math.tau * turns))
+    if row.is_ball:
+        return gap, np.zeros(len(local))
+    if row.has_cross:
+        return gap, np.abs(turn[:, 2, 2] - math.cos(joint.angle)) / math.sin(joint.angle)
+    if any(free[3:]):
+        return gap, np.hypot(turn[:, 0, 2], turn[:, 1, 2])
+    odd = 0.5 * (turn - np.swapaxes(turn, 1, 2))
+    return gap, np.linalg.norm(odd[:, [2, 0, 1], [1, 2, 0]], axis=1)

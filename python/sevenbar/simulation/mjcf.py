@@ -50,7 +50,7 @@ class Cut:
 
 def cut(model: Prototype) -> Cut:
     """At the far ball of a link between two, else at the first ball, else beyond the last joint."""
-    balls = [number for number, joint in enumerate(model.connections) if joint.kind == "S"]
+    balls = [number for number, joint in enumerate(model.connections) if joint.row.is_ball]
     held = {rule.after for rule in model.spin_rules}
     far = [number for number in balls if model.connections[number].before in held]
     chosen = (far or balls)[:1]
@@ -196,36 +196,26 @@ class _Tree:
 
     def _add_freedoms(self, body: Element, joint: Connection, number: int, frame: Floats, way: float) -> None:
         """The joints of MuJoCo that make up one of ours, at `frame` of the body, and their start."""
-        turn, slide = self._model.values[number]
-        turn_rate, slide_rate = self._model.rates[number]
-        turn_name, slide_name = {
-            "C": (f"{joint.name}.1", f"{joint.name}.2"),
-            "H": (joint.name, f"{joint.name}.slide"),
-        }.get(joint.kind, (joint.name, joint.name))
         place = {"pos": _numbers(frame[:3, 3] * self._metre)}
-        axis = {"axis": _numbers(way * frame[:3, 2])}
-        if joint.kind in "PCH":
-            wheel = self._flywheel(number, 2)
-            _add(body, "joint", name=slide_name, type="slide", **axis, **wheel)
-            value = turn * joint.advance if joint.kind == "H" else slide
-            rate = turn_rate * joint.advance if joint.kind == "H" else slide_rate
-            self._state.qpos.append(value * self._metre)
-            self._state.qvel.append(rate * self._metre)
-        if joint.kind in "RCH":
-            wheel = self._flywheel(number, 5)
-            _add(body, "joint", name=turn_name, type="hinge", **place, **axis, **wheel)
-            self._state.qpos.append(turn)
-            self._state.qvel.append(turn_rate)
-        if joint.kind == "H":
-            _add(
-                self._equality,
-                "joint",
-                name=f"{joint.name}_screw",
-                joint1=slide_name,
-                joint2=turn_name,
-                polycoef=_numbers([0, joint.advance * self._metre, 0, 0, 0]),
-            )
-        if joint.kind == "S":
+        steps = [] if joint.row.is_ball else joint.row.named(joint.name)
+        # a joint of MuJoCo is carried by those before it in its body
+        for name, step in steps if way > 0 else steps[::-1]:
+            axis = {"axis": _numbers(way * frame[:3, step.axis])}
+            kind, at, unit = ("hinge", place, 1.0) if step.freedom == "turn" else ("slide", {}, self._metre)
+            wheel = self._flywheel(number, step.number)
+            _add(body, "joint", name=name, type=kind, **at, **axis, **wheel)
+            self._state.qpos.append(self._model.values[number, step.number] * unit)
+            self._state.qvel.append(self._model.rates[number, step.number] * unit)
+            if step.driven:
+                _add(
+                    self._equality,
+                    "joint",
+                    name=f"{joint.name}_screw",
+                    joint1=name,
+                    joint2=joint.name,
+                    polycoef=_numbers([0, joint.advance * self._metre, 0, 0, 0]),
+                )
+        if joint.row.is_ball:
             _add(body, "joint", name=joint.name, type="ball", **place)
             before, after = self._model.frames(number)
             # of the body against its parent, at the start and where the two frames of the joint agree
@@ -258,9 +248,8 @@ class _Tree:
         drive = self._model.drive
         if number != drive.connection or freedom != drive.freedom:
             return {}
-        inertia = MASS * (_gyration(self._model, self._metre) ** 2 if freedom == 5 else 1.0)
-        if self._model.connections[number].kind == "H":
-            inertia = max(inertia, MASS * (self._model.connections[number].advance * self._metre) ** 2)
+        inertia = MASS * (_gyration(self._model, self._metre) ** 2 if drive.turns else 1.0)
+        inertia = max(inertia, MASS * (self._model.connections[number].advance * self._metre) ** 2)
         return {"armature": f"{FLYWHEEL * inertia:.17g}"}
 
     def mark(self, element: Element, name: str, frame: Floats) -> None:

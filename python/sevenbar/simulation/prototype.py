@@ -13,8 +13,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import frames_along
 from sevenbar.errors import NotCoveredError, RequestError
+from sevenbar.kinematics.joints import KINDS, JointKind
 from sevenbar.kinematics.motion import Circuit, Solvable
-from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.kinematics.rigid import inverse, turns_about
 
 #: The number of the ground among the bodies.
 GROUND = -1
@@ -25,15 +26,6 @@ GYRATION = 0.1
 
 #: The first joint's axis and the line of two balls must differ by this sine for the rule of the spin.
 LEAST_SINE = 1e-8
-
-#: The freedoms of a joint along and about the axes of its frame: x, y, z, then turns about them.
-FREEDOMS = {
-    "R": (False, False, False, False, False, True),
-    "P": (False, False, True, False, False, False),
-    "C": (False, False, True, False, False, True),
-    "H": (False, False, True, False, False, True),
-    "S": (False, False, False, True, True, True),
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +45,7 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class Connection:
-    """A joint between two bodies, R P C H or S, that turns about and slides along z of its two frames.
+    """A joint between two bodies, of any kind without a cross, which is a body here.
 
     `before` and `after` number the bodies, `GROUND` for the ground; `frame_before` and `frame_after` (4, 4)
     are the joint's frames in the two, equal where the joint is at zero. `advance` [length for a radian] of H.
@@ -66,6 +58,11 @@ class Connection:
     frame_before: Floats
     frame_after: Floats
     advance: float = 0.0
+
+    @property
+    def row(self) -> JointKind:
+        """Its kind's row of the table."""
+        return KINDS[self.kind]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,12 +80,17 @@ class SpinRule:
 
 @dataclass(frozen=True)
 class PrescribedMotion:
-    """The drive: freedom 2 (slide along z) or 5 (turn about z) of one joint, from `start` at `speed`."""
+    """The drive: one of the six freedoms of a joint (2 slides along z, 5 turns), from `start` at `speed`."""
 
     connection: int
     freedom: int
     start: float
     speed: float
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is a turn."""
+        return self.freedom >= 3
 
     def at(self, time: float) -> float:
         """The value [rad, or length] at a time [s] after the start."""
@@ -99,8 +101,9 @@ class PrescribedMotion:
 class Prototype:
     """Bodies, joints and drive; joint k lies between body k - 1 and body k, the ground before and after all.
 
-    `size` [length] is that of the linkage. `values` (k, 2) holds each joint's turn [rad] and slide [length]
-    at the start and `rates` (k, 2) how fast they grow; NaN where a joint has none, or is a ball.
+    `size` [length] is that of the linkage. `values` (k, 6) holds what each joint has slid along x, y, z
+    [length] and turned about them [rad] at the start and `rates` (k, 6) how fast that grows; NaN where a
+    joint does not move, or is a ball.
     """
 
     name: str
@@ -138,10 +141,9 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     share = speed / circuit.dq[row, circuit.input_column]
     bodies: list[Body] = []
     connections: list[Connection] = []
-    values: list[tuple[float, float]] = []
-    rates: list[tuple[float, float]] = []
+    values: list[Floats] = []
+    rates: list[Floats] = []
     drive: PrescribedMotion | None = None
-    column = 0
     before = GROUND
     last = len(linkage.joints) - 1
 
@@ -153,45 +155,46 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         return Body(f"link_{i + 1}", i + 1, own, share * velocity, share * spin)
 
     for i, joint in enumerate(linkage.joints):
-        width = len(joint.columns)
-        q, dq = circuit.q[row, column : column + width], share * circuit.dq[row, column : column + width]
+        own = linkage.places[i]
+        steps = joint.steps(circuit.q[row, own][None])
+        paces = [share * pace[0] for _, pace in joint.steps(circuit.dq[row, own][None])]
         frame_before = linkage.base if i == 0 else linkage.links[i - 1]
-        if joint.kind == "U":
+        first = len(connections)
+        if joint.row.has_cross:
             # the cross is a body of its own
+            (step, q), *rest = steps
             above = np.eye(4) if before == GROUND else bodies[before].frame
             start = above @ frame_before
             carrier = None if before == GROUND else bodies[before]
-            cross = start @ turned(q[0])
             arm = np.zeros(3) if carrier is None else start[:3, 3] - carrier.frame[:3, 3]
             carried = np.zeros(3) if carrier is None else carrier.spin
             velocity = np.zeros(3) if carrier is None else carrier.velocity + np.cross(carried, arm)
-            bodies.append(Body(f"{joint.name}_cross", 0, cross, velocity, carried + dq[0] * start[:3, 2]))
+            cross, spin = start @ turns_about(step.axis, q)[0], carried + paces[0] * start[:3, step.axis]
+            bodies.append(Body(f"{joint.name}_cross", 0, cross, velocity, spin))
+            after = len(bodies) - 1
             connections.append(
-                Connection(f"{joint.name}.1", "R", before, len(bodies) - 1, frame_before, np.eye(4))
+                Connection(joint.columns[0], step.letter, before, after, frame_before, np.eye(4))
             )
-            before = len(bodies) - 1
-            frame_before = tilted(joint.angle)
-            values.append((q[0], math.nan))
-            rates.append((dq[0], math.nan))
-        kind = "R" if joint.kind == "U" else joint.kind
-        slide = {"P": 0, "C": 1}.get(kind)
-        turn = {"R": width - 1, "C": 0, "H": 0}.get(kind)
+            before, frame_before = after, joint.before(rest[0][0])
         if i < last:
             bodies.append(link_body(i))
             after, frame_after = len(bodies) - 1, np.eye(4)
         else:
             after, frame_after = GROUND, linkage.ground
-        name = joint.columns[-1] if joint.kind == "U" else joint.name
-        advance = joint.pitch / math.tau
-        connections.append(Connection(name, kind, before, after, frame_before, frame_after, advance))
-        values.append((_value(q, turn), _value(q, slide)))
-        rates.append((_value(dq, turn), _value(dq, slide)))
-        if column <= circuit.input_column < column + width:
-            offset = circuit.input_column - column
-            number = len(connections) - 1 - (joint.kind == "U" and offset == 0)
-            slides = linkage.column_kinds[circuit.input_column] == "slide"
-            drive = PrescribedMotion(number, 2 if slides else 5, float(q[offset]), speed)
-        column += width
+        name, kind = joint.name, joint.kind
+        if joint.row.has_cross:
+            name, kind = joint.columns[-1], steps[-1][0].letter
+        connections.append(Connection(name, kind, before, after, frame_before, frame_after, joint.advance))
+        values += [np.full(6, math.nan) for _ in connections[first:]]
+        rates += [np.full(6, math.nan) for _ in connections[first:]]
+        column = own.start
+        for (step, q), pace in zip(steps, paces, strict=True):
+            number = len(connections) - 1 if step.tilted or not joint.row.has_cross else first
+            if not joint.row.is_ball:
+                values[number][step.number], rates[number][step.number] = q[0], pace
+            if column == circuit.input_column and not step.driven:
+                drive = PrescribedMotion(number, step.number, float(q[0]), speed)
+            column += not step.driven
         before = after
     if drive is None:
         raise RequestError(f"input: column {circuit.input_column} is no joint of this linkage")
@@ -209,16 +212,12 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     )
 
 
-def _value(values: Floats, place: int | None) -> float:
-    return math.nan if place is None else float(values[place])
-
-
 def _spin_rules(linkage: Solvable, bodies: list[Body], connections: list[Connection]) -> tuple[SpinRule, ...]:
     """The rule of the idle spin of each link between two balls: its y stays across the axis before."""
     rules = []
     for first, joint in enumerate(connections[:-1]):
         following = connections[first + 1]
-        if joint.kind != "S" or following.kind != "S":
+        if not (joint.row.is_ball and following.row.is_ball):
             continue
         if first == 0:
             raise NotCoveredError(
@@ -245,15 +244,3 @@ def _spin_rules(linkage: Solvable, bodies: list[Body], connections: list[Connect
             "balls is not held in an engine; describe the loop without it"
         )
     return tuple(rules)
-
-
-def turned(angle: float) -> Floats:
-    """The turn (4, 4) about z."""
-    c, s = math.cos(angle), math.sin(angle)
-    return pose([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]], np.zeros(3))
-
-
-def tilted(angle: float) -> Floats:
-    """The turn (4, 4) about x."""
-    c, s = math.cos(angle), math.sin(angle)
-    return pose([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]], np.zeros(3))

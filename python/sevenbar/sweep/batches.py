@@ -40,7 +40,7 @@ def batched(plan: Plan, values: Floats, threads: int) -> tuple[list[Block], Inte
     if not all(isinstance(measure, str) for measure in plan.measures):
         return [], np.arange(count)
     block = None
-    if "rssr" in plan.draft.raw:
+    if plan.draft.linkage.form == "rssr":
         block = _of_rssrs(plan, values, threads)
     elif plan.draft.linkage.followed_generally:
         block = _of_loops(plan, values, threads)

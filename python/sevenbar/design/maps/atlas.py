@@ -164,7 +164,7 @@ def motion_map(
     driver = linkage.columns[column]
     places = {axis.dimension.place[0] for axis in axes}
     plane: Plane
-    if "rssr" in draft.raw and places <= {"rssr", "drive", "point"}:
+    if draft.linkage.form == "rssr" and places <= {"rssr", "drive", "point"}:
         lines = _lines(grid, GRID)
         scheme = _scheme(lines, FINE, TOLERANCE)
         plane = RssrPlane(draft, axes, driver, SAMPLES, progress)

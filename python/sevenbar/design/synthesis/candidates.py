@@ -169,13 +169,13 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
 
     With `whole` (n, columns) by those of all joints, but the turns of balls.
     """
-    owners = [joint.kind for joint in motion.linkage.joints for _ in joint.columns]
+    balls = [joint.row.is_ball for joint in motion.linkage.joints for _ in joint.columns]
     count = len(inputs)
     best = Ways(np.full(count, -1), np.full(count, -1), np.full(count, np.nan), np.full(count, np.inf))
     for circuit in motion.circuits:
         columns = [circuit.input_column, circuit.output_column]
         if whole is not None:
-            columns += [c for c, kind in enumerate(owners) if kind != "S" and c not in columns]
+            columns += [c for c, ball in enumerate(balls) if not ball and c not in columns]
         turning = [motion.linkage.column_kinds[c] == "turn" for c in columns]
         rows = circuit.q[:, columns]
         poses = np.column_stack([inputs, outputs]) if whole is None else whole[:, columns]
@@ -256,7 +256,7 @@ def used_transmission(linkage: Linkage, circuit: Circuit, inputs: Floats, positi
 
     Of an RSSR given by its dimensions over the inputs from the first to the last; else that of the circuit.
     """
-    if "L1" not in linkage.dimensions or circuit.input_column != 0:
+    if linkage.form != "rssr" or circuit.input_column != 0:
         return None if circuit.transmission is None else circuit.transmission.lowest
     ends = inputs[0] + np.array([0.0, _travel(circuit, inputs, position)])
     used = np.concatenate([np.linspace(ends.min(), ends.max(), RANGE_SAMPLES), inputs])

@@ -30,7 +30,6 @@ from sevenbar.design.tolerance.rigid import (
     then,
     unit,
 )
-from sevenbar.kinematics.joints import FREEDOMS
 from sevenbar.kinematics.linkage import Linkage
 
 #: The axes of a ball's turns, and that of all other columns.
@@ -100,7 +99,7 @@ class Numbered:
         """The one-freedom columns in loop order."""
         found = []
         for i, joint in enumerate(self.linkage.joints):
-            freedoms, ball = FREEDOMS[joint.kind], joint.kind == "S"
+            freedoms, ball = joint.row.freedoms, joint.row.is_ball
             for place, freedom in enumerate(freedoms):
                 axis = BALL_AXES[place] if ball else OWN_AXIS
                 found.append(Column(i, freedom == "turn", axis, place == len(freedoms) - 1, ball))
@@ -108,9 +107,8 @@ class Numbered:
 
     def built(self, p: Numbers) -> Built:
         """The transforms for numbers p (k, ..), analytic in each."""
-        raw = self.draft.raw
-        parts = _Parts(self, p)
-        return _rssr(parts) if "rssr" in raw else _rows(parts) if "link" in raw else _drawn(parts)
+        made = {"rssr": _rssr, "rows": _rows, "drawn": _drawn}[self.linkage.form]
+        return made(_Parts(self, p))
 
     def changed(self, p: Floats) -> Linkage:
         """The linkage that a file with other numbers (k,) describes."""

@@ -90,9 +90,9 @@ class PointWord:
 
     def word(self, values: Floats) -> Word:
         """The word of the dimensions' values (k,)."""
-        if "rssr" in self._raw:
+        if self._linkage.form == "rssr":
             return self._rssr_word(values)
-        return self._rows_word(values) if "link" in self._raw else self._drawn_word(values)
+        return self._rows_word(values) if self._linkage.form == "rows" else self._drawn_word(values)
 
     def _amount(self, values: Floats, *place: str | int, rate: float = 1.0) -> Amount:
         """The amount of a step that is one dimension; `rate` makes radians of its unit."""
