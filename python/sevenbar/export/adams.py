@@ -16,6 +16,7 @@ from sevenbar.errors import RequestError
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
+from sevenbar.kinematics.joints import Step
 from sevenbar.kinematics.rigid import inverse
 from sevenbar.kinematics.rigid import pose as matrix
 from sevenbar.text.units import LENGTHS
@@ -52,8 +53,8 @@ class _Commands:
         self.model = "." + _word(self.linkage.name, "linkage")
         self.lines: list[str] = []
         self.joints = _distinct([_word(joint.name, "joint") for joint in self.linkage.joints])
-        #: Each column's joint, its markers, and whether it turns; none for turns of Hooke joints and balls.
-        self.columns: dict[str, tuple[str, str, str, bool]] = {}
+        #: Each column's joint, its markers, and its step; none for turns of Hooke joints and balls.
+        self.columns: dict[str, tuple[str, str, str, Step]] = {}
 
     def text(self) -> str:
         drive = self._drive()
@@ -220,8 +221,8 @@ class _Commands:
             # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
             self._connect("screw", f"{word}_thread", i_marker, j_marker, self.scale * joint.pitch)
         if not joint.row.is_ball:
-            for column, freedom in zip(joint.columns, joint.row.freedoms, strict=True):
-                self.columns[column] = (name, i_marker, j_marker, freedom == "turn")
+            for column, step in joint.row.named(joint.name):
+                self.columns[column] = (name, i_marker, j_marker, step)
 
     def _universal(self, i: int, on_before: Floats, on_after: Floats) -> None:
         joint, word = self.linkage.joints[i], self.joints[i]
@@ -247,7 +248,7 @@ class _Commands:
             j_marker = self._marker(j_body, f"{word}_{k}_j", j_frame)
             i_marker = self._marker(i_body, f"{word}_{k}_i", i_frame)
             name = self._connect("revolute", f"{word}_{k}", i_marker, j_marker)
-            self.columns[joint.columns[k - 1]] = (name, i_marker, j_marker, True)
+            self.columns[joint.columns[k - 1]] = (name, i_marker, j_marker, joint.row.steps[k - 1])
 
     def _connect(self, kind: str, word: str, i_marker: str, j_marker: str, pitch: float | None = None) -> str:
         name = f"{self.model}.{word}"
@@ -264,7 +265,8 @@ class _Commands:
     def _motion(self, drive: tuple[float, float, int]) -> None:
         speed, end, steps = drive
         motion = self.pose.motion
-        joint, _, _, turns = self.columns[motion.input]
+        joint, _, _, step = self.columns[motion.input]
+        turns = step.freedom == "turn"
         unit = 1.0 if turns else self.scale
         self._say(
             "constraint create motion_generator",
@@ -276,22 +278,23 @@ class _Commands:
         for column in (motion.input, motion.output):
             if column not in self.columns:
                 continue
-            _, i, j, turns = self.columns[column]
+            _, i, j, step = self.columns[column]
+            turns, axis = step.freedom == "turn", "XYZ"[step.axis]
             word = _word(column, "joint")
             for quantity, function, units in (
                 (
                     "position",
-                    f"AZ({i}, {j})" if turns else f"DZ({i}, {j}, {j})",
+                    f"AZ({i}, {j})" if turns else f"D{axis}({i}, {j}, {j})",
                     "angle" if turns else "length",
                 ),
                 (
                     "velocity",
-                    f"{'WZ' if turns else 'VZ'}({i}, {j}, {j})",
+                    f"{'W' if turns else 'V'}{axis}({i}, {j}, {j})",
                     "angular_velocity" if turns else "velocity",
                 ),
                 (
                     "acceleration",
-                    f"{'WDTZ' if turns else 'ACCZ'}({i}, {j}, {j})",
+                    f"{'WDT' if turns else 'ACC'}{axis}({i}, {j}, {j})",
                     "angular_acceleration" if turns else "acceleration",
                 ),
             ):

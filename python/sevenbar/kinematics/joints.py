@@ -81,6 +81,11 @@ class JointKind:
         return self.freedoms == ("turn",) * 3
 
     @property
+    def rides(self) -> bool:
+        """Whether it slides along its axis, as on a rail."""
+        return any(step.freedom == "slide" and step.axis == Z for step in self.steps)
+
+    @property
     def has_cross(self) -> bool:
         """Whether a body of its own stands between its steps."""
         return any(step.tilted for step in self.steps)

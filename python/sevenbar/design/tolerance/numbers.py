@@ -30,10 +30,11 @@ from sevenbar.design.tolerance.rigid import (
     then,
     unit,
 )
+from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 
-#: The axes of a ball's turns, and that of all other columns.
-BALL_AXES, OWN_AXIS = (2, 1, 0), 2
+#: The axes of a ball's turns.
+BALL_AXES = tuple(step.axis for step in KINDS["S"].steps)
 
 #: Report frame of rows against the ground link's; a point (u, v, w) of a row against its link's frame.
 RENAMED = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
@@ -99,10 +100,10 @@ class Numbered:
         """The one-freedom columns in loop order."""
         found = []
         for i, joint in enumerate(self.linkage.joints):
-            freedoms, ball = joint.row.freedoms, joint.row.is_ball
-            for place, freedom in enumerate(freedoms):
-                axis = BALL_AXES[place] if ball else OWN_AXIS
-                found.append(Column(i, freedom == "turn", axis, place == len(freedoms) - 1, ball))
+            steps = [step for step in joint.row.steps if not step.driven]
+            for step in steps:
+                turns, ends = step.freedom == "turn", step is steps[-1]
+                found.append(Column(i, turns, step.axis, ends, joint.row.is_ball))
         return tuple(found)
 
     def built(self, p: Numbers) -> Built:

@@ -10,6 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import A0, AXIS, B0, LINK_ENDS, Chain, Skeleton
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.joints import JointKind
 
 #: Two places, from and to.
 Pair = tuple[int, int]
@@ -26,7 +27,7 @@ class JointPlaces:
     `spin` two places along the axis, the same way in every pose, where there are such.
     """
 
-    kind: str
+    kind: JointKind
     pitch: float
     near: int
     far: int
@@ -53,9 +54,9 @@ class Layout:
         found = [(way[0], place) for place in way[1:]] + list(pairwise(way))
         before = self.joints[link if link < last else last]
         after = self.joints[link + 1 if link < last else 0]
-        found += [before.spin] + ([after.spin] if after.kind == "R" else [])
-        found += [before.axes[-1]] if before.kind == "U" else []
-        found += [after.axes[0]] if after.kind == "U" else []
+        found += [before.spin] + ([] if after.kind.rides else [after.spin])
+        found += [before.axes[-1]] if before.kind.has_cross else []
+        found += [after.axes[0]] if after.kind.has_cross else []
         return [pair for pair in found if pair != NOWHERE]
 
 
@@ -73,7 +74,7 @@ def layout(linkage: Loop, frame: Skeleton) -> Layout:
     for i, joint in enumerate(linkage.joints):
         own = {0: (axes[0],), 3: (axes[1],)}.get(i, ())
         joints.append(
-            JointPlaces(joint.kind, 0.0, ends[i - 1][1], ends[i][0], own, own[0] if own else NOWHERE)
+            JointPlaces(joint.row, 0.0, ends[i - 1][1], ends[i][0], own, own[0] if own else NOWHERE)
         )
     return Layout(tuple(ends), tuple(joints), count, fixed)
 
@@ -85,5 +86,5 @@ def _of_chain(linkage: Loop, frame: Chain) -> Layout:
         axes = tuple(pair for word, pair in marks if word == "axis")
         spin = next((pair for word, pair in marks if word == "cylinder"), NOWHERE)
         near, far = frame.links[i - 1][-1], frame.links[i][0]
-        joints.append(JointPlaces(joint.kind, joint.pitch, near, far, axes, spin))
+        joints.append(JointPlaces(joint.row, joint.pitch, near, far, axes, spin))
     return Layout(frame.links, tuple(joints), frame.places.shape[1], np.empty((0, 3)))

@@ -116,12 +116,12 @@ def plan(linkage: Loop, frame: Skeleton, ends: tuple[str, str], size: float) -> 
         for corner in way[1:-1]:
             solids.add("ball", (corner, corner), LINK * unit, colour, length=LINK * unit, moves=moves)
     for i, (joint, colour) in enumerate(zip(where.joints, joints, strict=True)):
-        if joint.kind in "PCH":
+        if joint.kind.rides:
             _add_slide(solids, i, joint, colour, every, unit)
         else:
             _add_joint(solids, i, joint, colour, links, unit)
     for joint, link in ((where.joints[0], 0), (where.joints[-1], len(links) - 2)):
-        if joint.kind not in "PCH":
+        if not joint.kind.rides:
             _add_ground(solids, joint, link, every, unit, size)
     for i, (start, place, end) in enumerate(frame.stays):
         link = next((n for n, way in enumerate(where.links) if (way[0], way[-1]) == (start, end)), -1)
@@ -175,16 +175,16 @@ def _add_joint(
 ) -> None:
     """The solids of a joint that does not slide."""
     spin, far = joint.spin, joint.far
-    if joint.kind == "R":
+    if joint.kind.shape == "cylinder":
         solids.add("cylinder", spin, HINGE[0] * unit, colour, length=HINGE[1] * unit)
         solids.add("cylinder", spin, PIN[0] * unit, STEEL, length=PIN[1] * unit)
-    elif joint.kind == "U":
+    elif joint.kind.has_cross:
         for axis in joint.axes:
             solids.add("cylinder", axis, ARM[0] * unit, colour, length=ARM[1] * unit)
         solids.add("ball", (far, far), KNUCKLE * unit, colour, length=KNUCKLE * unit)
     else:
         # the link between two ball joints has both sockets
-        link = index - 1 if solids.layout.joints[index - 1].kind == "S" else index
+        link = index - 1 if solids.layout.joints[index - 1].kind.is_ball else index
         way = solids.layout.links[link]
         out = (way[1], way[0]) if link == index else (way[-2], way[-1])
         solids.add("ball", (far, far), BALL * unit, BRIGHT, length=BALL * unit)
@@ -215,12 +215,12 @@ def _add_slide(
         low, high = -max(-low, high), max(-low, high)
     rail_roll, roll = (_best(solids.layout.rigid(link), to_rail, every, along=False) for link in carriers)
     # where a link has nothing off the axis, the other's turn tells its own
-    rate = math.tau / joint.pitch if joint.kind == "H" and joint.pitch else 0.0
+    rate = math.tau / joint.pitch if joint.kind.is_screw and joint.pitch else 0.0
     rail_twist = -rate if rail_roll == NOWHERE else 0.0
     twist = rate if roll == NOWHERE else 0.0
     rail_roll, roll = (rail_roll if rail_roll != NOWHERE else roll), (roll if roll != NOWHERE else rail_roll)
     rod, radius, pieces, piece = "cylinder", RAIL, 1, high - low
-    if joint.kind == "H":
+    if joint.kind.is_screw:
         rod, radius = ("thread" if joint.pitch >= 0 else "left thread"), THREAD
         piece = TURNS * float(np.clip(abs(joint.pitch), FINE * unit, COARSE * unit))
         pieces = math.ceil((high - low) / piece)
@@ -230,7 +230,8 @@ def _add_slide(
             share=at_rail, shift=low + (k + 0.5) * piece, length=piece, guide=guide,
             roll=rail_roll, slide=(rail, slider), twist=rail_twist,
         )  # fmt: skip
-    shape, (wide, long) = {"P": ("box", BLOCK), "C": ("cylinder", SLEEVE), "H": ("hexagon", NUT)}[joint.kind]
+    sliders = {"block": ("box", BLOCK), "cylinder": ("cylinder", SLEEVE), "thread": ("hexagon", NUT)}
+    shape, (wide, long) = sliders[joint.kind.shape]
     solids.add(
         shape,
         to_slider,
