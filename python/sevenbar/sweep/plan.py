@@ -137,7 +137,7 @@ class Plan:
 
 def _part_size(draft: Draft, measures: Sequence[Measure]) -> int:
     """Linkages of a part, by how long they take: never by the machine, since resumed parts must fit."""
-    if "rssr" not in draft.raw or not all(MEASURES.get(m.name) is m for m in measures):
+    if draft.linkage.form != "rssr" or not all(MEASURES.get(m.name) is m for m in measures):
         return PART_OF_LOOPS
     return PART_OF_TYPES if OF_TYPES.issuperset(m.name for m in measures) else PART_OF_CIRCUITS
 

@@ -111,7 +111,7 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
         return torn
     best = found[0]
     figures = _standing(best.placing, linkage.length_unit) if task.place else {}
-    if task.place and "joint" in task.draft.raw:
+    if task.place and task.draft.linkage.form == "drawn":
         draft, figures = moved(draft, best.placing), {}
     outputs = best.poses[:, linkage.columns.index(linkage.drive.output)]
     errors = np.linalg.norm(best.left, axis=1)

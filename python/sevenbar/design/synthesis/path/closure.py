@@ -157,7 +157,7 @@ class PointClosure(PointWord):
         """
         q = q.copy()
         column = carried = 0
-        steps = self.word(values).steps if self._spun and "joint" in self._raw else ()
+        steps = self.word(values).steps if self._spun and self._linkage.form == "drawn" else ()
         for i, joint in enumerate(self._linkage.joints):
             if i in self._spun and steps:
                 first, second = steps[carried].axis, steps[carried + 1].axis

@@ -141,7 +141,7 @@ class PathProblem:
     def _limits(self, z: Floats) -> tuple[Floats, Floats]:
         """What limits of an RSSR are missed by (m,), weighted, and its derivatives (m, unknowns)."""
         task = self._task
-        if "rssr" not in task.draft.raw or not self._weight:
+        if task.draft.linkage.form != "rssr" or not self._weight:
             return np.empty(0), np.empty((0, len(z)))
         values, inputs = self.split(z)
         numbers = {d.place[1]: i for i, d in enumerate(task.closure.dimensions) if d.place[0] == "rssr"}

@@ -132,7 +132,7 @@ def path_task(
         raise RequestError("phase: the path has no inputs whose start could be free; give timing, too")
     wanted = wanted[:-1] if closed else wanted
     limits = Limits() if limits is None else limits
-    if limits.transmission_lowest and "rssr" not in draft.raw:
+    if limits.transmission_lowest and draft.linkage.form != "rssr":
         raise RequestError(
             "transmission: its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
         )
