@@ -14,7 +14,7 @@ from typing import Literal
 Freedom = Literal["turn", "slide"]
 
 #: What marks a joint in drawings, and is made of it in models of bodies.
-Shape = Literal["cylinder", "block", "thread", "arm", "ball"]
+Shape = Literal["cylinder", "block", "thread", "arm", "ball", "plate"]
 
 #: The axes of a frame.
 X, Y, Z = 0, 1, 2
@@ -86,6 +86,11 @@ class JointKind:
         return any(step.freedom == "slide" and step.axis == Z for step in self.steps)
 
     @property
+    def has_plane(self) -> bool:
+        """Whether it slides across its axis, so that x of its frame counts."""
+        return any(step.freedom == "slide" and step.axis != Z for step in self.steps)
+
+    @property
     def has_cross(self) -> bool:
         """Whether a body of its own stands between its steps."""
         return any(step.tilted for step in self.steps)
@@ -142,6 +147,11 @@ KINDS: Mapping[str, JointKind] = {
             "S", "ball", ("spherical", "sphere", "ball"),
             (Step("turn", Z), Step("turn", Y), Step("turn", X)), (), "ball", "spherical",
             as_rows="R, R and R through one point",
+        ),
+        JointKind(
+            "E", "slides in a plane", ("planar", "plane", "flat"),
+            (Step("slide", X), Step("slide", Y), _TURN), _AXIS, "plate", "planar",
+            as_rows="P, P and R, the slides square to each other and to the turn",
         ),
     )
 }  # fmt: skip
