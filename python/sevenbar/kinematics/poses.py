@@ -133,6 +133,16 @@ def frames_of(linkage: Loop, q: Floats) -> Floats:
     return np.stack(found, axis=1)
 
 
+def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
+    """The frames (n, joints, 4, 4) of each joint on the link before it and on the link after it.
+
+    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them.
+    """
+    still = (len(frames), 1, 4, 4)
+    before = np.concatenate([np.broadcast_to(linkage.base, still), frames @ linkage.links], axis=1)
+    return before, np.concatenate([frames, np.broadcast_to(linkage.ground, still)], axis=1)
+
+
 def _slid(distance: Floats, rotation: Floats) -> Floats:
     """Rigid motions (n, 4, 4) that turn, and slide along z."""
     return pose(rotation, distance[:, None] * (0.0, 0.0, 1.0))
