@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.geometry import Loop, Point
 from sevenbar.kinematics.motion import Circuit, Motion
-from sevenbar.kinematics.poses import at_row, frames_along, frames_of, walk
+from sevenbar.kinematics.poses import at_row, frames_along, frames_of, joint_frames, walk
 
 #: Half the length of a joint's drawn axis and of its cylinder, and how far a plate reaches past what slides
 #: on it, as shares of the linkage's extent.
@@ -85,9 +85,7 @@ def skeleton_of(
     frames show only a part of it.
     """
     rows, count = len(frames), len(linkage.joints)
-    after = np.concatenate([frames, np.broadcast_to(linkage.ground, (rows, 1, 4, 4))], axis=1)
-    steps = [frames[:, i] @ linkage.links[i] for i in range(count - 1)]
-    before = np.stack([np.broadcast_to(linkage.base, (rows, 4, 4)), *steps], axis=1)
+    before, after = joint_frames(linkage, frames)
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
     spread = float((np.nanmax(origins, axis=(0, 1)) - np.nanmin(origins, axis=(0, 1))).max())
     in_rows = linkage.form == "rows"

@@ -13,7 +13,7 @@ from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Circuit, Law, Motion, Solvable, chosen_circuit
-from sevenbar.kinematics.poses import frames_along
+from sevenbar.kinematics.poses import frames_along, joint_frames
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.
 SAMPLED = 12
@@ -85,7 +85,7 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
     # this pose among them, so that there is one at least
     valid = np.concatenate([frames, valid[~np.isnan(valid).any(axis=(1, 2, 3))]])
     picked = np.unique(np.linspace(0, len(valid) - 1, SAMPLED).astype(int))
-    near, far = _joint_frames(linkage, frames)
+    near, far = (each[0] for each in joint_frames(linkage, frames))
     return Pose(
         motion=motion,
         circuit=chosen,
@@ -107,12 +107,6 @@ def size_of(pose: Pose) -> float:
 
 def _with_ground(frames: Floats) -> Floats:
     return np.concatenate([frames, np.broadcast_to(np.eye(4), (len(frames), 1, 4, 4))], axis=1)
-
-
-def _joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
-    after = np.concatenate([frames[0], [linkage.ground]])
-    before = [linkage.base, *(frame @ link for frame, link in zip(frames[0], linkage.links, strict=True))]
-    return np.stack(before), after
 
 
 def _travel(linkage: Loop, q: Floats) -> Floats:

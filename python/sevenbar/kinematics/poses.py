@@ -118,6 +118,16 @@ def frames_of(linkage: Loop, q: Floats) -> Floats:
     return np.stack(found, axis=1)
 
 
+def joint_frames(linkage: Loop, frames: Floats) -> tuple[Floats, Floats]:
+    """The frames (n, joints, 4, 4) of each joint on the link before it and on the link after it.
+
+    `frames` (n, moving links, 4, 4) are those of the links, as `frames_of` gives them.
+    """
+    still = (len(frames), 1, 4, 4)
+    before = np.concatenate([np.broadcast_to(linkage.base, still), frames @ linkage.links], axis=1)
+    return before, np.concatenate([frames, np.broadcast_to(linkage.ground, still)], axis=1)
+
+
 def frames_along(linkage: Loop, circuit: Circuit, rows: Integers) -> Floats:
     """The frames (n, moving links, 4, 4) of the links along rows of a circuit; NaN where it has no pose."""
     frames = frames_of(linkage, circuit.q[rows])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -58,21 +58,15 @@ class SolidPlan:
 
     def moving(self) -> SolidPlan:
         """The plan of the moving links and joints alone."""
-        kept = {shape: self.moves[rows] for shape, rows in self.shapes.items()}
-        return SolidPlan(
-            slices({shape: int(rows.sum()) for shape, rows in kept.items() if rows.any()}),
-            self.places[:, self.moves],
-            self.share[self.moves],
-            self.shift[self.moves],
-            self.length[self.moves],
-            self.twist[self.moves],
-            self.sides[self.moves],
-            self.colours[self.moves],
-            self.moves[self.moves],
-            self.count,
-            self.fixed,
-            self.axes[:0],
-            (),
+        kept = {shape: int(self.moves[rows].sum()) for shape, rows in self.shapes.items()}
+        each = ("share", "shift", "length", "twist", "sides", "colours", "moves")
+        return replace(
+            self,
+            shapes=slices({shape: count for shape, count in kept.items() if count}),
+            places=self.places[:, self.moves],
+            axes=self.axes[:0],
+            labels=(),
+            **{name: getattr(self, name)[self.moves] for name in each},
         )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import GROUND, JOINT, POINT_COLOURS, link_colours
+from sevenbar.drawing.scene import GROUND, JOINT, link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.layout import NOWHERE, JointPlaces, Layout, Pair, layout
@@ -120,11 +120,12 @@ def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
     for joint, link in ((where.joints[0], 0), (where.joints[-1], len(links) - 2)):
         if not joint.kind.rides:
             _add_ground(solids, joint, link, every, unit, size)
-    for i, (start, place, end) in enumerate(frame.stays):
-        link = next((n for n, way in enumerate(where.links) if (way[0], way[-1]) == (start, end)), -1)
+    points = paths(frame, ends)[: len(frame.points)]
+    for (start, place, end), (_, colour), point in zip(
+        frame.stays, points, frame.linkage.added_points, strict=True
+    ):
         for corner in (start, end):
-            solids.add("cylinder", (corner, place), STAY * unit, links[link], moves=False)
-        colour = POINT_COLOURS[i % len(POINT_COLOURS)]
+            solids.add("cylinder", (corner, place), STAY * unit, links[point.link - 1], moves=False)
         solids.add("ball", (place, place), POINT * unit, colour, length=POINT * unit, moves=False)
     return _made(solids, frame, every[0], size)
 
