@@ -68,7 +68,7 @@ def test_loops_of_hostile_frames_are_answered_or_refused(letters: str) -> None:
         arrays = advances, base, ground, links
         door(
             "batch",
-            lambda a=arrays: _core.measure_loops(letters, *(x[None] for x in a), 0, 1, 12, 1),
+            lambda a=arrays: _core.measure_loops(letters, *(x[None] for x in a), 0, 1, 12, np.ones(1), 1),
         )
         loop = door("loop", lambda a=arrays: _core.Loop(letters, *a))
         if not isinstance(loop, _core.Loop):
@@ -118,4 +118,4 @@ def test_batches_of_hostile_dimensions_have_a_code_each(side: str) -> None:
         assert not np.isinf(limits).any()
         unusable = ~np.isfinite(dimensions).all(axis=0)
         assert (codes[unusable] == 6).all()
-        assert (_core.measure_rssr(dimensions, side, 3)["motion_type"] == codes).all()
+        assert (_core.measure_rssr(dimensions, side, np.ones(50), 3).codes == codes).all()

@@ -21,7 +21,7 @@ from sevenbar import _core
 Floats = npt.NDArray[np.float64]
 
 
-def opened(seed: int, letters: str, epsilon: float) -> dict[str, Any]:
+def opened(seed: int, letters: str, epsilon: float) -> _core.RawMotion:
     """The motion of the loop with one link moved along the wrench that no joint yields to."""
     rng = np.random.default_rng(seed)
     frames = []
@@ -35,13 +35,12 @@ def opened(seed: int, letters: str, epsilon: float) -> dict[str, Any]:
     links = np.array([np.linalg.inv(a) @ b for a, b in zip(frames[:-1], frames[1:], strict=True)])
     links[3][:3, 3] += epsilon * frames[3][2, :3]
     loop = _core.Loop(letters, np.zeros(len(letters)), frames[0], frames[-1], links)
-    raw: dict[str, Any] = loop.motion(0, 1, 90, 1.0, None)
-    return raw
+    return loop.motion(0, 1, 90, 1.0, None)
 
 
-def farthest(circuit: dict[str, Any]) -> float:
+def farthest(circuit: _core.RawCircuit) -> float:
     """How far the first three joints of a circuit go from the pose that stood alone [rad, or length]."""
-    joints = circuit["joints"][0][:, :3]
+    joints = circuit.joints[0][:, :3]
     joints = joints[np.isfinite(joints).all(axis=1)]
     return float(np.abs((joints + math.pi) % (2 * math.pi) - math.pi).max()) if len(joints) else math.inf
 
@@ -53,8 +52,8 @@ def test_a_narrow_circuit_is_found_on_the_side_on_which_it_opens(letters: str, e
         found = []
         for side in (1, -1):
             raw = opened(seed, letters, side * epsilon)
-            assert raw["count"][4] == []
-            found.append(sum(farthest(c) < 200 * math.sqrt(epsilon) for c in raw["circuits"]))
+            assert raw.search.count.open == []
+            found.append(sum(farthest(c) < 200 * math.sqrt(epsilon) for c in raw.circuits))
         assert sorted(found) == [0, 1]
 
 
@@ -107,7 +106,7 @@ def test_where_turns_of_an_rssr_are_infinite_at_real_rocker_angles_its_crank_cou
 def test_a_complex_pair_straight_beside_a_drawn_pose_is_counted() -> None:
     # on one side of a border of two ranges, and known on the other
     for seed, epsilon in ((1, -1e-12), (4, 1e-12)):
-        assert opened(seed, "RRRSR", epsilon)["count"][4] == []
+        assert opened(seed, "RRRSR", epsilon).search.count.open == []
 
 
 @pytest.mark.parametrize("kinds", ["RCCC", "RPRRRPR", "RRPRPRP"])

@@ -6,7 +6,7 @@ method; for the extremes of the jerk dense rows.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,6 @@ from sevenbar import _core
 from sevenbar.kinematics.general import expanded
 
 Floats = np.ndarray
-Batch = Mapping[str, np.ndarray]
 
 #: Rows a turn: fewer than extremes are bracketed by.
 SAMPLES = 90
@@ -39,8 +38,7 @@ GALLERY = {
     "swash_plate": "RPPRRRP",
 }
 
-BY_LOOP = ("status", "circuits", "rank", "finite", "complete", "still", "input_rests", "modes")
-BY_LIMIT = ("input_dead_centres",)
+MEASURES = ("turns", "swing", "time_ratio", "transmission", "velocity", "acceleration", "jerk")
 
 
 def random_seven_r(count: int, seed: int) -> list[sb.Linkage]:
@@ -61,7 +59,9 @@ def ends(linkage: sb.Linkage) -> tuple[int, int]:
     return linkage._asked(SAMPLES, None, None, None)[:2]
 
 
-def batch(linkages: Sequence[sb.Linkage], threads: int = 1, samples: int = SAMPLES) -> Batch:
+def batch(
+    linkages: Sequence[sb.Linkage], threads: int = 1, samples: int = SAMPLES, speed: float = 1.0
+) -> _core.LoopBatch:
     """All of them, which have one pattern of joints, at once."""
     parts = [expanded(linkage) for linkage in linkages]
     (letters,) = {part.letters for part in parts}
@@ -73,8 +73,20 @@ def batch(linkages: Sequence[sb.Linkage], threads: int = 1, samples: int = SAMPL
         np.array([part.links for part in parts]),
         *ends(linkages[0]),
         samples,
+        np.full(len(linkages), speed),
         threads,
     )
+
+
+def by_loop(got: _core.LoopBatch) -> dict[str, Floats]:
+    """What there is one of for each loop."""
+    return {name: np.array(getattr(got, name)) for name in ("status", "motion_types", "circuits")}
+
+
+def by_circuit(got: _core.LoopBatch) -> dict[str, Floats]:
+    """What there is one of for each circuit, and their limits."""
+    own = {name: np.array(getattr(got, name)) for name in ("circuit_types", "limit_counts", "limits")}
+    return own | {name: getattr(got.measures, name) for name in MEASURES}
 
 
 def four(extremes: Any) -> list[float]:
@@ -83,96 +95,84 @@ def four(extremes: Any) -> list[float]:
     return [extremes.lowest, extremes.lowest_at, extremes.highest, extremes.highest_at]
 
 
-def assert_is_the_motion(got: Batch, linkages: Sequence[sb.Linkage]) -> None:
+def assert_is_the_motion(linkages: Sequence[sb.Linkage], speed: float = 1.0) -> _core.LoopBatch:
     """Every number of a batch against the motion of each linkage by itself."""
-    motions = [linkage.motion(SAMPLES, speed=1.0, method="general") for linkage in linkages]
-    assert list(got["circuits"]) == [len(motion.circuits) for motion in motions]
-    assert list(got["complete"]) == [motion.completeness != "searched" for motion in motions]
+    got = batch(linkages, speed=speed)
+    motions = [linkage.motion(SAMPLES, speed=speed, method="general") for linkage in linkages]
+    assert list(got.circuits) == [len(motion.circuits) for motion in motions]
+    assert list(got.status) == [(motion.motion_type == "two-inputs") * 2 for motion in motions]
+    assert got.motion_types == [motion.motion_type for motion in motions]
     circuits = [circuit for motion in motions for circuit in motion]
-    for name in ("closed", "turns"):
-        assert list(got[name]) == [getattr(circuit, name) for circuit in circuits], name
-    assert list(got["singular"]) == [circuit.motion_type == "change-point" for circuit in circuits]
+    assert got.circuit_types == [circuit.motion_type for circuit in circuits]
+    assert list(got.measures.turns) == [circuit.turns for circuit in circuits]
 
-    def same(name: str, want: Sequence[Any]) -> None:
-        np.testing.assert_allclose(
-            got[name], np.reshape(want, got[name].shape), rtol=SAME, atol=SAME, err_msg=name
-        )
+    def same(got: Floats, want: Sequence[Any]) -> None:
+        numbers = np.reshape(np.array(want, dtype=np.float64), got.shape)
+        np.testing.assert_allclose(got, numbers, rtol=SAME, atol=SAME)
 
-    for which in ("input", "output"):
-        ranges = [getattr(circuit, f"{which}_range") for circuit in circuits]
-        same(f"{which}_range", [(np.nan, np.nan) if r is None else r for r in ranges])
-        assert list(got[f"{which}_turns_fully"]) == [r is None for r in ranges]
-    same("velocity", [four(circuit.velocity) for circuit in circuits])
-    same("acceleration", [four(circuit.acceleration) for circuit in circuits])
-    same("output_dead_centres", [four(circuit.angle) for circuit in circuits])
-    limits = [[(d.input, d.output) for d in c.dead_centres if d.kind == "input"] for c in circuits]
-    assert list(got["input_dead_centre_count"]) == [len(of) for of in limits]
-    same("input_dead_centres", [d for of in limits for d in of])
-    same("residual", [np.nanmax(circuit.residual) for circuit in circuits])
-    ok = [circuit.condition[circuit.status == "ok"] for circuit in circuits]
-    same("condition", [conditions.max() for conditions in ok])
-
-    for n, (linkage, motion) in enumerate(zip(linkages, motions, strict=True)):
-        found = linkage._general._found[ends(linkage)[0]]
-        assert got["rank"][n] == (-1 if found.rank is None else found.rank)
-        assert got["finite"][n] == (-1 if found.finite is None else found.finite)
-        assert got["status"][n] == (motion.motion_type == "two-inputs") * 2
-        if got["modes"][n] >= 0:
-            assert got["modes"][n] == len(linkage.assembly_modes(0.0))
+    same(got.measures.swing, [circuit.swing for circuit in circuits])
+    same(got.measures.time_ratio, [circuit.time_ratio for circuit in circuits])
+    same(got.measures.velocity, [four(circuit.velocity) for circuit in circuits])
+    same(got.measures.acceleration, [four(circuit.acceleration) for circuit in circuits])
+    same(got.measures.jerk, [four(circuit.jerk) for circuit in circuits])
+    limits = [[d.input for d in c.dead_centres if d.kind == "input"] for c in circuits]
+    assert list(got.limit_counts) == [len(of) for of in limits]
+    same(got.limits, [d for of in limits for d in of])
+    return got
 
 
 def test_random_loops_come_to_what_the_motion_of_each_says() -> None:
     linkages = random_seven_r(40, seed=11)
-    got = batch(linkages)
-    assert_is_the_motion(got, linkages)
+    got = assert_is_the_motion(linkages)
     # all that is to be told apart is among them
-    assert {0, 1, 2} < set(got["circuits"])
-    assert got["complete"].all()
-    assert (got["modes"] >= 0).all()
-    assert 0 < got["input_turns_fully"].sum() < len(got["turns"])
-    assert np.isfinite(got["jerk"]).all(axis=1).any()
+    assert {0, 1, 2} < set(got.circuits)
+    assert 0 < np.count_nonzero(got.measures.turns) < len(got.measures.turns)
+    assert np.isfinite(got.measures.jerk).all(axis=1).any()
+    assert_is_the_motion(linkages[:10], speed=-2.5)
 
 
 @pytest.mark.parametrize(("name", "letters"), GALLERY.items())
 def test_loops_of_the_gallery_come_to_what_their_motion_says(name: str, letters: str) -> None:
     linkage = sb.load(name)
     assert expanded(linkage).letters == letters
-    got = batch([linkage])
-    assert_is_the_motion(got, [linkage])
-    assert got["status"] == [0]
-    assert got["circuits"][0] > 0
+    got = assert_is_the_motion([linkage])
+    assert got.status == [0]
+    assert got.circuits[0] > 0
 
 
 @pytest.mark.parametrize("count", [1, 17])
 def test_a_batch_is_the_same_to_the_bit_for_any_threads_and_any_split(count: int) -> None:
     linkages = random_seven_r(count, seed=12)
     whole = batch(linkages)
+    whole = by_loop(whole) | by_circuit(whole)
+
+    def same(*parts: _core.LoopBatch) -> None:
+        each = [by_loop(part) | by_circuit(part) for part in parts]
+        for name, values in whole.items():
+            assert np.concatenate([part[name] for part in each]).tobytes() == values.tobytes(), name
+
     for threads in (0, 2, 5):
-        other = batch(linkages, threads=threads)
-        for name, values in whole.items():
-            assert values.tobytes() == other[name].tobytes(), (name, threads)
+        same(batch(linkages, threads=threads))
     for cut in {1, count // 2, count - 1} - {0, count}:
-        parts = [batch(linkages[:cut], threads=2), batch(linkages[cut:])]
-        for name, values in whole.items():
-            joined = np.concatenate([part[name] for part in parts])
-            assert values.tobytes() == joined.tobytes(), (name, cut)
+        same(batch(linkages[:cut], threads=2), batch(linkages[cut:]))
 
 
 def test_a_loop_is_the_same_to_the_bit_after_any_others() -> None:
     linkages = random_seven_r(12, seed=13)
     forwards, backwards = batch(linkages), batch(linkages[::-1])
-    for name in BY_LOOP:
-        assert forwards[name].tobytes() == backwards[name][::-1].tobytes(), name
-    bounds = np.cumsum(np.append(0, forwards["circuits"]))
+    for name, values in by_loop(forwards).items():
+        assert values.tobytes() == by_loop(backwards)[name][::-1].tobytes(), name
+    bounds = np.cumsum(np.append(0, forwards.circuits))
     order = np.concatenate([np.arange(a, b) for a, b in zip(bounds[-2::-1], bounds[:0:-1], strict=True)])
-    for name in set(forwards) - {*BY_LOOP, *BY_LIMIT}:
-        assert forwards[name][order.astype(int)].tobytes() == backwards[name].tobytes(), name
+    for name, values in by_circuit(forwards).items():
+        if name != "limits":
+            assert values[order.astype(int)].tobytes() == by_circuit(backwards)[name].tobytes(), name
 
 
 @pytest.mark.parametrize("name", ["seven_r", "bennett", "rccc", "rsur"])
 def test_extremes_of_the_jerk_are_those_of_dense_rows(name: str) -> None:
     linkage = sb.load(name)
-    got = batch([linkage])["jerk"]
+    got = batch([linkage]).measures.jerk
     rows = 5000
     dense = linkage.motion(rows, speed=1.0, method="general")
     assert len(got) == len(dense.circuits)
@@ -198,10 +198,11 @@ def test_extremes_of_the_jerk_do_not_hang_on_the_rows() -> None:
     linkages = random_seven_r(30, seed=14)
     coarse, fine = batch(linkages, samples=30), batch(linkages, samples=720)
     for name in ("velocity", "acceleration", "jerk"):
-        bounded = np.isfinite(fine[name]).all(axis=1)
+        both = [getattr(each.measures, name) for each in (coarse, fine)]
+        bounded = np.isfinite(both[1]).all(axis=1)
         assert bounded.sum() > 5
-        assert (np.isfinite(coarse[name]).all(axis=1) == bounded).all()
-        values = [values[name][bounded][:, [0, 2]] for values in (coarse, fine)]
+        assert (np.isfinite(both[0]).all(axis=1) == bounded).all()
+        values = [values[bounded][:, [0, 2]] for values in both]
         np.testing.assert_allclose(*values, rtol=1e-9, err_msg=name)
 
 
@@ -215,22 +216,22 @@ def test_what_does_not_move_or_cannot_be_driven_has_its_status() -> None:
         return np.zeros((2, len(letters))), frames, frames, links
 
     # twelve freedoms
-    got = _core.measure_loops("SRSRSRR", *arrays("SRSRSRR"), 3, 10, SAMPLES, 1)
-    assert list(got["status"]) == [2, 2]
-    assert list(got["circuits"]) == [0, 0]
-    assert list(got["rank"]) == [-1, -1]
+    got = _core.measure_loops("SRSRSRR", *arrays("SRSRSRR"), 3, 10, SAMPLES, np.ones(2), 1)
+    assert list(got.status) == [2, 2]
+    assert list(got.circuits) == [0, 0]
     # a ball has no one freedom
-    got = _core.measure_loops("RSSR", *arrays("RSSR"), 1, 7, SAMPLES, 1)
-    assert list(got["status"]) == [1, 1]
-    got = _core.measure_loops("RRR", *arrays("RRR"), 0, 2, SAMPLES, 1)
-    assert list(got["circuits"]) == [0, 0]
-    assert got["velocity"].shape == (0, 4)
+    got = _core.measure_loops("RSSR", *arrays("RSSR"), 1, 7, SAMPLES, np.ones(2), 1)
+    assert list(got.status) == [1, 1]
+    got = _core.measure_loops("RRR", *arrays("RRR"), 0, 2, SAMPLES, np.ones(2), 1)
+    assert list(got.circuits) == [0, 0]
+    assert got.measures.velocity.shape == (0, 4)
 
 
 def test_an_empty_batch_has_empty_arrays() -> None:
     frames = np.empty((0, 4, 4))
-    got = _core.measure_loops("RRRR", np.empty((0, 4)), frames, frames, np.empty((0, 3, 4, 4)), 0, 3, 90, 2)
-    assert {name: values.shape[0] for name, values in got.items()} == dict.fromkeys(got, 0)
+    links = np.empty((0, 3, 4, 4))
+    got = _core.measure_loops("RRRR", np.empty((0, 4)), frames, frames, links, 0, 3, 90, np.empty(0), 2)
+    assert {len(values) for values in (by_loop(got) | by_circuit(got)).values()} == {0}
 
 
 def test_what_does_not_fit_is_refused() -> None:
@@ -241,11 +242,16 @@ def test_what_does_not_fit_is_refused() -> None:
     )
 
     def refused(
-        message: str, letters: str = "RRRR", input: int = 0, samples: int = 90, **other: Floats
+        message: str,
+        letters: str = "RRRR",
+        input: int = 0,
+        samples: int = 90,
+        speeds: int = 2,
+        **other: Floats,
     ) -> None:
         arrays = {"advances": advances, "base": frames, "ground": frames, "links": links} | other
         with pytest.raises(_core.CoreError, match=message):
-            _core.measure_loops(letters, *arrays.values(), input, 3, samples, 1)
+            _core.measure_loops(letters, *arrays.values(), input, 3, samples, np.ones(speeds), 1)
 
     refused("'X' is no joint; give R, P, H or S", letters="RRXR")
     refused(r"advances: an array of shape \[2, 4\]; give \[2, 5\]", letters="RRRRR")
@@ -254,3 +260,4 @@ def test_what_does_not_fit_is_refused() -> None:
     refused("links: NaN is not a finite number", links=links * np.nan)
     refused("input: no column 4; give 0 to 3", input=4)
     refused("4 joints and 0 samples", samples=0)
+    refused(r"speed: an array of shape \[3\]; give \[2\]", speeds=3)

@@ -155,10 +155,10 @@ def test_dimensions_that_make_no_linkage_are_invalid_and_their_neighbours_are_no
         assert len(set(codes[::2])) == 1
         assert CLASSES[codes[0]] != "invalid"
         assert len({row.tobytes() for row in limits[::2]}) == 1
-        measured = _core.measure_rssr(many, driver, 1)
-        assert (measured["motion_type"] == codes).all()
-        assert (measured["circuits"][1::2] == 0).all()
-        assert np.isnan(measured["limits"][1::2]).all()
+        measured = measure(many, driver, 1)
+        assert (measured.codes == codes).all()
+        assert (measured.circuits[1::2] == 0).all()
+        assert np.isnan(measured.limits[1::2]).all()
 
 
 @pytest.mark.parametrize("unit", [1e-300, 1e-30, 1e3, 1e300, 1e307])
@@ -177,40 +177,49 @@ def test_the_unit_of_length_does_not_matter(unit: float) -> None:
 def test_no_linkages_give_no_rows() -> None:
     codes, limits = _core.classify_rssr(np.empty((6, 0)), "crank", 1)
     assert (codes.shape, limits.shape) == ((0,), (0, 4))
-    measured = _core.measure_rssr(np.empty((6, 0)), "crank", 2)
-    assert measured["jerk"].shape == (0, 4)
-    assert measured["circuits"].shape == (0,)
+    measured = measure(np.empty((6, 0)), "crank", 2)
+    assert measured.measures.jerk.shape == (0, 4)
+    assert measured.circuits.shape == (0,)
 
 
 def test_a_wrong_request_is_told() -> None:
     with pytest.raises(_core.CoreError, match=r"shape \(5, 3\); give a contiguous one of shape \(6, n\)"):
         _core.classify_rssr(np.ones((5, 3)), "crank", 1)
     with pytest.raises(_core.CoreError, match="'coupler' is not a side link; give crank or rocker"):
-        _core.measure_rssr(np.ones((6, 3)), "coupler", 1)
+        measure(np.ones((6, 3)), "coupler", 1)
+
+
+def measure(many: np.ndarray, driver: str, threads: int) -> _core.RssrBatch:
+    """At unit speed of the input."""
+    return _core.measure_rssr(many, driver, np.ones(many.shape[1]), threads)
 
 
 @pytest.mark.parametrize("driver", DRIVERS)
 def test_what_is_measured_is_what_the_linkage_s_own_motion_says(driver: str) -> None:
     linkages = of_all_kinds(4, 240)
-    measured = _core.measure_rssr(dimensions(linkages), driver, 2)
+    measured = measure(dimensions(linkages), driver, 2)
     codes, _ = _core.classify_rssr(dimensions(linkages), driver, 1)
-    assert (measured["motion_type"] == codes).all()
+    assert (measured.codes == codes).all()
     row = 0
     for index, description in enumerate(linkages):
         motion = description.linkage().motion(samples=4, input=driver)
-        assert measured["circuits"][index] == len(motion.circuits)
-        assert (measured["limits"][index, : motion.limits.size] == motion.limits).all()
+        assert measured.circuits[index] == len(motion.circuits)
+        assert (measured.limits[index, : motion.limits.size] == motion.limits).all()
         for circuit in motion:
-            assert measured["turns"][row] == circuit.turns
-            same(measured["input_range"][row], circuit.input_range)
-            if motion.motion_type != "change-point":  # there Python follows the output instead
-                same(measured["output_range"][row], circuit.output_range)
-                same(measured["output_dead_centres"][row], ends(circuit.angle))
-            same(measured["transmission"][row], ends(circuit.transmission))
-            same(measured["velocity"][row], ends(circuit.velocity))
-            same(measured["acceleration"][row], ends(circuit.acceleration))
+            assert measured.measures.turns[row] == circuit.turns
+            if motion.motion_type != "change-point":  # there the output is followed instead
+                same(measured.measures.swing[row : row + 1], circuit.swing)
+                same(measured.measures.time_ratio[row : row + 1], circuit.time_ratio)
+            same(measured.measures.transmission[row], ends(circuit.transmission))
+            same(measured.measures.velocity[row], ends(circuit.velocity))
+            same(measured.measures.acceleration[row], ends(circuit.acceleration))
             row += 1
-    assert all(len(measured[key]) == row for key in ("turns", "jerk", "input_range", "transmission"))
+    assert all(len(values) == row for values in arrays_of(measured.measures).values())
+
+
+def arrays_of(measures: _core.RawMeasures) -> dict[str, np.ndarray]:
+    names = ("turns", "swing", "time_ratio", "transmission", "velocity", "acceleration", "jerk")
+    return {name: getattr(measures, name) for name in names}
 
 
 def ends(extremes: sb.motion.Extremes | None) -> tuple[float, ...] | None:
@@ -219,16 +228,16 @@ def ends(extremes: sb.motion.Extremes | None) -> tuple[float, ...] | None:
     return extremes.lowest, extremes.lowest_at, extremes.highest, extremes.highest_at
 
 
-def same(got: np.ndarray, want: tuple[float, ...] | None) -> None:
+def same(got: np.ndarray, want: tuple[float, ...] | float | None) -> None:
     """Equal to the last bit; NaN where there is nothing."""
     np.testing.assert_array_equal(got, np.full(got.size, np.nan) if want is None else want)
 
 
 def test_measures_do_not_depend_on_the_number_of_threads() -> None:
     many = dimensions(of_all_kinds(5, 90))
-    one = _core.measure_rssr(many, "crank", 1)
+    one = arrays_of(measure(many, "crank", 1).measures)
     for threads in (2, 5):
-        again = _core.measure_rssr(many, "crank", threads)
+        again = arrays_of(measure(many, "crank", threads).measures)
         assert {key: again[key].tobytes() for key in one} == {key: one[key].tobytes() for key in one}
 
 
@@ -238,17 +247,17 @@ def test_no_sampled_jerk_exceeds_its_extremes_and_the_output_has_them_where_they
 ) -> None:
     rng = np.random.default_rng(6)
     linkages = [d for d in (assembled_square(rng) for _ in range(300)) if d.reference().clearance() > 1e-3]
-    measured = _core.measure_rssr(dimensions(linkages), driver, 1)
-    owners = np.repeat(np.arange(len(linkages)), measured["circuits"])
-    turning = np.flatnonzero(np.isfinite(measured["jerk"]).all(axis=1))
+    measured = measure(dimensions(linkages), driver, 1)
+    owners = np.repeat(np.arange(len(linkages)), measured.circuits)
+    turning = np.flatnonzero(np.isfinite(measured.measures.jerk).all(axis=1))
     assert turning.size > 60
-    assert (np.isnan(measured["input_range"][turning])).all()
+    assert (measured.measures.turns[turning] > 0).all()
     inputs = np.linspace(0, 2 * np.pi, 2881)
     for row in turning:
         linkage = linkages[owners[row]].linkage()
         branch = int(np.count_nonzero(owners[:row] == owners[row]))
         sampled = linkage.output(inputs, 3, 1.0, input=driver).jerk[branch]
-        lowest, lowest_at, highest, highest_at = measured["jerk"][row]
+        lowest, lowest_at, highest, highest_at = measured.measures.jerk[row]
         span = highest - lowest
         assert lowest - 1e-10 * span <= sampled.min() <= lowest + 0.1 * span
         assert highest - 0.1 * span <= sampled.max() <= highest + 1e-10 * span
@@ -263,13 +272,13 @@ def test_the_extremes_of_jerk_hold_the_narrow_peak_beside_a_change_point(off: fl
     checked = 0
     while checked < 12:
         description = critical(rng, rng.choice([-off, off]))
-        measured = _core.measure_rssr(dimensions([description]), "crank", 1)
-        if CLASSES[measured["motion_type"][0]] not in {"crank-rocker", "double-crank"}:
+        measured = measure(dimensions([description]), "crank", 1)
+        if CLASSES[measured.codes[0]] not in {"crank-rocker", "double-crank"}:
             continue
         checked += 1
         linkage = description.linkage()
         for branch in range(2):
-            lowest, lowest_at, highest, highest_at = measured["jerk"][branch]
+            lowest, lowest_at, highest, highest_at = measured.measures.jerk[branch]
             near = np.concatenate(
                 [at + np.sqrt(off) * np.linspace(-20, 20, 4001) for at in (lowest_at, highest_at)]
             )

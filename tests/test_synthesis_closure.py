@@ -4,9 +4,7 @@ import math
 
 import numpy as np
 import pytest
-
-import sevenbar as sb
-from sevenbar.design.synthesis.closure import (
+from sevenbar.design.synthesis.function.closure import (
     NAMES,
     draft_of,
     output_slopes,
@@ -16,6 +14,8 @@ from sevenbar.design.synthesis.closure import (
     transmission_slopes,
     transmissions,
 )
+
+import sevenbar as sb
 from sevenbar.design.synthesis.limits import Limits, size_room
 from sevenbar.measuring.sensitivity import RssrClosure, response
 

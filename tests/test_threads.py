@@ -87,7 +87,9 @@ def long_calls() -> dict[str, Callable[[int], object]]:
     law = np.linspace(0, 6, 10_000)
     return {
         "classify_rssr": lambda n: _core.classify_rssr(np.tile(dimensions, 4000 * n), "crank", 1),
-        "measure_rssr": lambda n: _core.measure_rssr(np.tile(dimensions, 40 * n), "crank", 1),
+        "measure_rssr": lambda n: _core.measure_rssr(
+            np.tile(dimensions, 40 * n), "crank", np.ones(40 * n), 1
+        ),
         "outputs": lambda n: rssr.output(np.tile(law, 20 * n), order=3),
         "rssr motion": lambda n: rssr.motion(2000 * n),
         "loop motion": lambda n: bennett.motion(2000 * n),

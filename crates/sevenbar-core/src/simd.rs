@@ -1,7 +1,7 @@
 //! Runs a loop compiled for the widest vector unit that the machine has.
 //!
-//! The only `unsafe` of this crate: a function compiled for a vector unit may be called once the unit was seen at run time. The
-//! loops themselves are ordinary Rust, written without branches so that the compiler turns them into vector code.
+//! `unsafe` here, and in [`crate::vectors`] alone besides: a function compiled for a vector unit may be called once the unit was seen
+//! at run time. The loops themselves are ordinary Rust, written without branches so that the compiler turns them into vector code.
 
 /// A loop to be compiled once for each vector unit.
 pub(crate) trait Kernel {
@@ -29,18 +29,12 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) {
     fn middle<K: Kernel>(kernel: K) {
         kernel.run::<true>();
     }
-    if is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512vl")
-        && is_x86_feature_detected!("fma")
-    {
-        // SAFETY: the four features were seen on this machine just now
-        unsafe { wide(kernel) }
-    } else if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-        // SAFETY: both features were seen on this machine just now
-        unsafe { middle(kernel) }
-    } else {
-        kernel.run::<false>();
+    match level() {
+        // SAFETY: the unit was seen on this machine just now
+        "avx512" => unsafe { wide(kernel) },
+        // SAFETY: as above
+        "avx2" => unsafe { middle(kernel) },
+        _ => kernel.run::<false>(),
     }
 }
 

@@ -10,9 +10,9 @@ use numpy::{
 use pyo3::prelude::*;
 use sevenbar_core::loops::{self, Loop, Measures};
 use sevenbar_core::outcome::{CircuitMeasures, DeadCentreKind, Ends};
+use sevenbar_core::parallel::in_order;
 use sevenbar_core::rigid::Pose;
 use sevenbar_core::rssr::{self, MOST_LIMITS, MotionMeasures};
-use sevenbar_core::sweep::in_order;
 
 /// What circuits are measured by: arrays (c,), and extremes (c, 4); NaN where there is nothing.
 #[pyclass(frozen, get_all, module = "sevenbar._core")]

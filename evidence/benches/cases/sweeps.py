@@ -114,14 +114,14 @@ class Batch:
 
 def batches(dimensions: np.ndarray, loops: int) -> list[Batch]:
     """What is measured on threads."""
-    some = np.ascontiguousarray(dimensions[:, : 10 * loops])
+    some, speed = np.ascontiguousarray(dimensions[:, : 10 * loops]), np.ones(10 * loops)
     drawn = {name: loop_arrays(rows) for name, rows in loop_rows(loops).items()}
     return [
         # six doubles come in; a byte and four limits go out, and are filled before
         Batch(
             "classify_rssr", dimensions.shape[1], lambda n: classify_rssr(dimensions, "crank", n), 48 + 2 * 33
         ),
-        Batch("measure_rssr", some.shape[1], lambda n: measure_rssr(some, "crank", n)),
+        Batch("measure_rssr", speed.size, lambda n: measure_rssr(some, "crank", speed, n)),
         *(Batch(f"measure_loops, {name}", loops, on_loops(arrays)) for name, arrays in drawn.items()),
     ]
 
@@ -129,7 +129,8 @@ def batches(dimensions: np.ndarray, loops: int) -> list[Batch]:
 def on_loops(arrays: tuple[np.ndarray, ...]) -> Callable[[int], Any]:
     """The measures of general loops, by the number of threads."""
     advances, base, ground, links = arrays
-    return lambda threads: measure_loops("R" * 7, advances, base, ground, links, 0, 6, 90, threads)
+    given = advances, base, ground, links, 0, 6, 90, np.ones(len(base))
+    return lambda threads: measure_loops("R" * 7, *given, threads)
 
 
 def threads(dimensions: np.ndarray, setting: Setting) -> Table:

@@ -332,6 +332,7 @@ impl Account<'_> {
 mod tests {
     use super::super::chain::{Chain, Joint};
     use super::super::modes::{ModeFinder, random_pose};
+    use super::super::survey::Infinite;
     use super::*;
     use crate::random::Random;
     use crate::rigid::Pose;

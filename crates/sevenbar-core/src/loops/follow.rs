@@ -182,14 +182,14 @@ impl LaneKernel for Walk<'_> {
                 }
             }
             let mask = V::load(&allowed);
-            here.replace(mask, &tried.next, self.chain.ball_count());
+            replace(&mut here, mask, &tried.next, self.chain.ball_count());
             if fresh.contains(&true) {
                 let begun = self.begun::<V>(&walker);
                 let mut mask = [-1.0; LANES];
                 for lane in (0..LANES).filter(|&k| fresh[k]) {
                     mask[lane] = 1.0;
                 }
-                here.replace(V::load(&mask), &begun, self.chain.ball_count());
+                replace(&mut here, V::load(&mask), &begun, self.chain.ball_count());
             }
             for lane in (0..LANES).filter(|&k| fresh[k]) {
                 growth[lane] = 0.0;
@@ -372,35 +372,33 @@ impl Walk<'_> {
     }
 }
 
-impl<V: Vector> Stand<V> {
-    /// Takes over the lanes of another where a number is not negative.
-    #[inline(always)]
-    fn replace(&mut self, mask: V, other: &Self, balls: usize) {
-        let (node, new) = (&mut self.node, &other.node);
-        take(mask, &mut node.at.values, &new.at.values);
-        for b in 0..balls {
-            take(
-                mask,
-                node.at.balls[b].as_flattened_mut(),
-                new.at.balls[b].as_flattened(),
-            );
-        }
-        take(mask, node.rates.as_flattened_mut(), new.rates.as_flattened());
-        take(mask, &mut node.slopes, &new.slopes);
-        let mut scalars = [node.inverse_norm, node.across, node.far, node.open];
+/// Takes over the lanes of another where a number is not negative.
+#[inline(always)]
+fn replace<V: Vector>(here: &mut Stand<V>, mask: V, other: &Stand<V>, balls: usize) {
+    let (node, new) = (&mut here.node, &other.node);
+    take(mask, &mut node.at.values, &new.at.values);
+    for b in 0..balls {
         take(
             mask,
-            &mut scalars,
-            &[new.inverse_norm, new.across, new.far, new.open],
-        );
-        [node.inverse_norm, node.across, node.far, node.open] = scalars;
-        take(mask, self.screws.as_flattened_mut(), other.screws.as_flattened());
-        take(
-            mask,
-            self.inverse.0.as_flattened_mut(),
-            other.inverse.0.as_flattened(),
+            node.at.balls[b].as_flattened_mut(),
+            new.at.balls[b].as_flattened(),
         );
     }
+    take(mask, node.rates.as_flattened_mut(), new.rates.as_flattened());
+    take(mask, &mut node.slopes, &new.slopes);
+    let mut scalars = [node.inverse_norm, node.across, node.far, node.open];
+    take(
+        mask,
+        &mut scalars,
+        &[new.inverse_norm, new.across, new.far, new.open],
+    );
+    [node.inverse_norm, node.across, node.far, node.open] = scalars;
+    take(mask, here.screws.as_flattened_mut(), other.screws.as_flattened());
+    take(
+        mask,
+        here.inverse.0.as_flattened_mut(),
+        other.inverse.0.as_flattened(),
+    );
 }
 
 /// Takes new numbers over in the lanes where another is not negative.

@@ -9,7 +9,7 @@ use super::chain::{Chain, Configuration};
 use super::curve::{Curve, End};
 use super::dense::{COLUMNS, Columns, free_direction};
 use super::follow::{self, Start};
-use super::modes::same;
+use super::many_starts::same;
 
 /// A pivot of the screws below this part of the greatest may be zero: such places are left to the ordinary way.
 const LEAST_PIVOT: f64 = 1e-6;

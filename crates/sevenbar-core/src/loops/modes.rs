@@ -6,21 +6,21 @@
 //! about axes in general position are added, and the solutions kept in which these stay at zero.
 
 use super::chain::{BALLS, Chain, Configuration, Joint};
+use super::chain_closure::{Closure, Input};
 use super::circle::{Circle, InputClosure};
 use super::closure::{JOINTS, Parameters, Slides, Solution, UNKNOWNS};
 use super::continuation::{BRISK, CAREFUL, Pace};
-use super::geometry::Form;
+use super::many_starts::{SAME_MODE, anywhere, same, searched};
 use super::phases::Watch;
 use super::poles::{poles, untold_three};
 use super::polish::{self, Settled, polish};
 use super::rotations::{Rotation, Z_TO_X, ball_rotation, rotation, short_way, squared_up};
-use super::starts::{Class, distinct, general_count};
+use super::starts::{distinct, general_count};
 use super::straight::carried;
 use crate::random::Random;
 use crate::rigid::Pose;
 use num_complex::Complex64;
 use std::cell::OnceCell;
-use std::sync::Arc;
 
 /// How complete a set of modes is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,21 +55,12 @@ pub(super) const REAL: f64 = 1e-5;
 /// A real solution may move by this much [rad, or parts of the size] when it is polished on the chain itself.
 const POLISHED_MOVE: f64 = 1e-3;
 
-/// Modes nearer than this in every joint [rad, or parts of the size] are one.
-pub(super) const SAME_MODE: f64 = 1e-7;
-
 /// `|e^(i t)|` of the general value of an input that turns: near the real ones, and beside the places on them where solutions
 /// meet.
 pub(super) const CIRCLE: f64 = 1.05;
 
-/// Starts of the search where there is no algebraic way.
-const SEARCH_STARTS: usize = 1500;
-
 /// The same where paths were lost: most starts lead to a pose where there is one, and each costs more.
 const SPARE_STARTS: usize = 300;
-
-/// Turns to each side within which a screw joint is searched.
-pub(super) const SCREW_TURNS: f64 = 1.0;
 
 /// What an unknown of the closure stands for.
 #[derive(Clone, Copy, Debug)]
@@ -92,19 +83,6 @@ pub(super) struct ModeFinder<'a> {
     closure: Option<Closure>,
     /// Found when it is first asked for.
     generic: OnceCell<Generic>,
-}
-
-/// The input as the closure takes it: `e^(i t)` and the slide. A screw's two are moved apart on the way to it.
-#[derive(Clone, Copy)]
-struct Input {
-    turn: Complex64,
-    slide: Complex64,
-}
-
-/// The links' normal form, and closures of the same geometry.
-struct Closure {
-    form: Form,
-    class: Arc<Class>,
 }
 
 /// All solutions at a general complex value of the input.
@@ -193,7 +171,7 @@ impl<'a> ModeFinder<'a> {
     pub fn one_by_search(&self, value: f64) -> Option<Configuration> {
         let mut random = Random(0x5ea4c4);
         let mut found = (0..SPARE_STARTS).filter_map(|_| {
-            let rough = self.anywhere(value, &mut random);
+            let rough = anywhere(self.chain, self.input, value, &mut random);
             polish::polish_with_spare(self.chain, self.input, &rough)
         });
         let found = found.find(|at| self.chain.counts(at));
@@ -205,7 +183,7 @@ impl<'a> ModeFinder<'a> {
     pub fn from_general_starts(chain: &'a Chain, input: usize) -> Self {
         let mut finder = Self::new(chain, input);
         if let Some(closure) = &mut finder.closure {
-            closure.class = Class::of(&finder.slides, None);
+            closure.class = super::starts::Class::of(&finder.slides, None);
         }
         finder
     }
@@ -246,7 +224,7 @@ impl<'a> ModeFinder<'a> {
     /// All modes at the one value that is asked for [rad, or parts of the size].
     pub fn once(&self, value: f64) -> Polished {
         let Some(closure) = &self.closure else {
-            return self.polished(&self.search(value));
+            return self.polished(&searched(self.chain, self.input, value));
         };
         // straight there: where as many arrive as there can be, none is missing
         let (to, shift) = closure.parameters(self.input_at(value));
@@ -268,7 +246,7 @@ impl<'a> ModeFinder<'a> {
     /// The same, some of them rough to [`POLISHED_MOVE`]: solutions whose imaginary parts are below `real` [rad, or parts of the size].
     pub fn rough_at(&self, value: f64, real: f64) -> Vec<Configuration> {
         let Some(closure) = &self.closure else {
-            return self.search(value);
+            return searched(self.chain, self.input, value);
         };
         let generic = self.generic(closure);
         let (from, _) = closure.parameters(generic.input);
@@ -305,7 +283,12 @@ impl<'a> ModeFinder<'a> {
     pub fn around(&self, count: usize, watch: Option<&Watch>) -> (Vec<Vec<Configuration>>, Option<Circle>) {
         let value = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
         let Some(algebraic) = self.algebraic() else {
-            return ((0..count).map(|k| self.search(value(k))).collect(), None);
+            return (
+                (0..count)
+                    .map(|k| searched(self.chain, self.input, value(k)))
+                    .collect(),
+                None,
+            );
         };
         let want = algebraic.generic.solutions.len();
         let shift = algebraic.zeros;
@@ -432,51 +415,6 @@ impl<'a> ModeFinder<'a> {
         }
         Some(out)
     }
-
-    /// Any configuration with the input at a value; screws within [`SCREW_TURNS`].
-    fn anywhere(&self, value: f64, random: &mut Random) -> Configuration {
-        let mut rough = Configuration::ZERO;
-        for (joint, &column) in self.chain.joints.iter().zip(&self.chain.first) {
-            let centred = 2.0 * random.uniform() - 1.0;
-            match joint {
-                Joint::Slide => rough.values[column] = centred,
-                Joint::Screw(_) => {
-                    rough.values[column] = centred * SCREW_TURNS * std::f64::consts::TAU;
-                }
-                Joint::Turn => rough.values[column] = centred * std::f64::consts::PI,
-                Joint::Ball(b) => {
-                    let angle = |r: &mut Random| std::f64::consts::TAU * r.uniform();
-                    rough.balls[*b] = ball_rotation(&[angle(random), angle(random), angle(random)]);
-                }
-            }
-        }
-        rough.values[self.input] = value;
-        rough
-    }
-
-    /// Newton from many places; screws within [`SCREW_TURNS`]. Redundant constraints may keep some of them open.
-    fn search(&self, value: f64) -> Vec<Configuration> {
-        let chain = self.chain;
-        let mut random = Random(0x5ea4c4);
-        let mut modes: Vec<Configuration> = Vec::new();
-        for _ in 0..SEARCH_STARTS {
-            let rough = self.anywhere(value, &mut random);
-            let in_range = |m: &Configuration| {
-                chain.joints.iter().zip(&chain.first).all(|(joint, &c)| {
-                    !matches!(joint, Joint::Screw(_))
-                        || c == self.input
-                        || m.values[c].abs() <= SCREW_TURNS * std::f64::consts::TAU
-                })
-            };
-            if let Some(Settled { at: mode, .. }) = polish(chain, self.input, &rough, f64::INFINITY)
-                && in_range(&mode)
-                && modes.iter().all(|m| !same(chain, m, &mode))
-            {
-                modes.push(mode);
-            }
-        }
-        modes
-    }
 }
 
 /// A closure that is algebraic, with its solutions at a general input.
@@ -533,45 +471,10 @@ impl<'a> Algebraic<'a> {
     }
 }
 
-impl Closure {
-    /// From the transforms after the joints, the first unknown one's first and the input's last.
-    fn of(transforms: &[Pose; JOINTS], slides: &Slides, input: Joint) -> Self {
-        let form = Form::of(transforms.each_ref());
-        let mut given = [input == Joint::Slide; JOINTS];
-        given[..UNKNOWNS].copy_from_slice(slides);
-        if let Some(form) = form.with_zeros(&given) {
-            let class = Class::of(slides, Some(form.pattern(&given, input != Joint::Turn)));
-            // without solutions that stand alone a class leads nowhere
-            if class.count() > 0 {
-                return Self { form, class };
-            }
-        }
-        Self { form, class: Class::of(slides, None) }
-    }
-
-    /// The closure at an input, and what its unknowns differ by from the joints' values.
-    fn parameters(&self, input: Input) -> (Parameters, [Complex64; UNKNOWNS]) {
-        let zeros = self.form.zeros();
-        let mut turns = zeros;
-        turns[UNKNOWNS] *= input.turn;
-        let parameters = Parameters {
-            twists: self.form.twists,
-            shifts: self.form.shifts.map(|s| s.map(Complex64::from)),
-            turns,
-            slide: input.slide,
-        };
-        (parameters, std::array::from_fn(|i| zeros[i]))
-    }
-}
-
 pub(super) fn random_pose(random: &mut Random) -> Pose {
     let v = std::array::from_fn(|_| 2.0 * random.uniform() - 1.0);
     Pose {
         rotation: squared_up(&rotation(crate::rigid::scale(v, 2.0))),
         translation: std::array::from_fn(|_| 1.2 * random.uniform() - 0.6),
     }
-}
-
-pub(super) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool {
-    chain.difference(a, b).iter().all(|d| d.abs() < SAME_MODE)
 }

@@ -5,7 +5,7 @@
 use super::circle::{Circle, InputClosure};
 use super::closure::{Slides, Solution, UNKNOWNS};
 use super::continuation::Place;
-use super::modes::SAME_MODE;
+use super::many_starts::SAME_MODE;
 use super::phases::FACTORS;
 use super::starts::distinct;
 use super::survey::{Infinite, Survey};

@@ -5,7 +5,8 @@ use super::curve::{self, Curve, End};
 use super::dense::{Columns, singular_values};
 use super::follow;
 use super::join;
-use super::modes::{ModeFinder, random_pose, same};
+use super::many_starts::same;
+use super::modes::{ModeFinder, random_pose};
 use super::passes::Passes;
 use super::rotations::{rotation, squared_up};
 use crate::random::Random;
@@ -245,7 +246,7 @@ fn curves_joined_from_pieces_are_those_followed_whole_in_either_direction() {
         let modes: Vec<Configuration> = (0..6).flat_map(|k| finder.at(f64::from(k)).modes).collect();
         let joined = join::closed_curves(chain, &modes);
         for mode in &modes {
-            let whole = follow::follow(&chain, &[(*mode, direction(chain, mode))], &[]).swap_remove(0);
+            let whole = follow::follow(chain, &[(*mode, direction(chain, mode))], &[]).swap_remove(0);
             let through: Vec<&Curve> = joined.iter().filter(|c| passes(chain, c, mode)).collect();
             if whole.end != End::Closed {
                 assert!(through.is_empty());

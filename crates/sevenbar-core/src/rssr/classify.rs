@@ -4,8 +4,8 @@ use super::lines::{ARCS, BLOCK, Dimensions, EMPTY, FULL, Lane, Lines};
 use super::linkage::{Input, Rssr};
 use super::motion::MotionType;
 use crate::error::Error;
+use crate::parallel::for_each;
 use crate::simd::{Kernel, dispatch};
-use std::sync::Mutex;
 
 /// Limits that a linkage can have: the zeros of a quartic.
 pub const MOST_LIMITS: usize = 4;
@@ -53,25 +53,11 @@ pub fn classify(
         }
     }
     let chunks = codes.chunks_mut(CHUNK).zip(limits.chunks_mut(CHUNK)).enumerate();
-    let chunks = Mutex::new(chunks);
-    let work = || {
-        let take = || chunks.lock().ok().and_then(|mut rest| rest.next());
-        while let Some((index, (codes, limits))) = take() {
-            let first = index * CHUNK;
-            let dimensions = dimensions.map(|column| &column[first..first + codes.len()]);
-            dispatch(Chunk { dimensions, input, codes, limits });
-        }
-    };
-    let threads = threads.clamp(1, want.div_ceil(CHUNK).max(1));
-    if threads == 1 {
-        work();
-    } else {
-        std::thread::scope(|scope| {
-            for _ in 0..threads {
-                scope.spawn(work);
-            }
-        });
-    }
+    for_each(chunks, threads, |(index, (codes, limits))| {
+        let first = index * CHUNK;
+        let dimensions = dimensions.map(|column| &column[first..first + codes.len()]);
+        dispatch(Chunk { dimensions, input, codes, limits });
+    });
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use super::linkage::Input;
 use super::motion::{Circuit, Motion, MotionType};
 use crate::error::Error;
 use crate::outcome::{CircuitMeasures, Ends};
-use crate::sweep::in_order;
+use crate::parallel::in_order;
 use std::f64::consts::PI;
 
 /// What a motion comes to.
