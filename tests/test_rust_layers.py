@@ -20,6 +20,7 @@ rssr::batch rssr::lines rssr::classify rssr::measures
 rssr
 
 loops::dense loops::flat loops::rotations loops::screws loops::chain loops::kinds loops::rates loops::spun
+loops::spin_axis
 loops::idle loops::reduce loops::description loops::polish loops::many_starts
 
 loops::complex_frame loops::lanes loops::closure loops::poles loops::phases loops::continuation

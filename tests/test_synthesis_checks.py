@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from sevenbar.design.synthesis.function.closure import draft_of
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
@@ -19,6 +18,7 @@ from sevenbar.design.synthesis.candidates import (
     ranked,
     renamed,
 )
+from sevenbar.design.synthesis.closure import draft_of
 from sevenbar.design.synthesis.files import design_files
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import OutputError, RequestError

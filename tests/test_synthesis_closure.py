@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from sevenbar.design.synthesis.function.closure import (
+
+import sevenbar as sb
+from sevenbar.design.synthesis.closure import (
     NAMES,
     draft_of,
     output_slopes,
@@ -14,8 +16,6 @@ from sevenbar.design.synthesis.function.closure import (
     transmission_slopes,
     transmissions,
 )
-
-import sevenbar as sb
 from sevenbar.design.synthesis.limits import Limits, size_room
 from sevenbar.measuring.sensitivity import RssrClosure, response
 

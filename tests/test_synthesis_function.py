@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sevenbar.design.synthesis.function.closure import NAMES
 
 import sevenbar as sb
+from sevenbar.design.synthesis.closure import NAMES
 from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.fitting import Fit, Point
 from sevenbar.design.synthesis.function.generation import function_generation

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from sevenbar.design.synthesis.function.closure import NAMES, outputs
 
 import sevenbar as sb
+from sevenbar.design.synthesis.closure import NAMES, outputs
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.precision import chebyshev, coefficients, system, through
 from sevenbar.design.synthesis.limits import Limits

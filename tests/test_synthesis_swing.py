@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from sevenbar.design.synthesis.function.closure import NAMES, outputs
 
 import sevenbar as sb
+from sevenbar.design.synthesis.closure import NAMES, outputs
 from sevenbar.design.synthesis.function.swing import ends_of_swing, swing_generation
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import RequestError

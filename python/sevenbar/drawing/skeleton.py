@@ -71,8 +71,7 @@ class Skeleton:
     @cached_property
     def span(self) -> float:
         """The largest extent along x, y or z [length]."""
-        high, low = (one.reduce(one.reduce(self.places, axis=0), axis=0) for one in (np.fmax, np.fmin))
-        return float((high - low).max())
+        return _extent(self.places)
 
 
 def skeleton_of(
@@ -87,7 +86,7 @@ def skeleton_of(
     rows, count = len(frames), len(linkage.joints)
     before, after = joint_frames(linkage, frames)
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
-    spread = float((np.nanmax(origins, axis=(0, 1)) - np.nanmin(origins, axis=(0, 1))).max())
+    spread = _extent(origins)
     in_rows = linkage.form == "rows"
     spherical = not spread > 1e-9
     places: list[Floats] = []
@@ -175,6 +174,12 @@ def skeleton_of(
         extent=span,
         reach=reach,
     )
+
+
+def _extent(places: Floats) -> float:
+    """The largest extent of places (n, k, 3) along x, y or z [length]; those that are NaN aside."""
+    high, low = (one.reduce(one.reduce(places, axis=0), axis=0) for one in (np.fmax, np.fmin))
+    return float((high - low).max())
 
 
 def _bend(frame: Floats, start: Floats, end: Floats, add: Callable[[Floats], int]) -> tuple[int, ...]:

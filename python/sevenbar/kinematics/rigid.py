@@ -84,9 +84,7 @@ def quaternion(rotation: Floats) -> Floats:
     for every rotation.
     """
     r = rotation
-    matrix = np.diag(
-        [r[0, 0] + r[1, 1] + r[2, 2], *(2 * np.diag(r) - np.trace(r))],
-    )
+    matrix = np.diag([np.trace(r), *(2 * np.diag(r) - np.trace(r))])
     matrix[0, 1:] = matrix[1:, 0] = 2 * axial(r)
     matrix[1:, 1:] += (r + r.T) * (1 - np.eye(3))
     vector: Floats = np.linalg.eigh(matrix)[1][:, -1]

@@ -12,7 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.function.closure import row_of, transmissions
+from sevenbar.design.synthesis.closure import row_of, transmissions
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.linkage import Linkage

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.design.synthesis.candidates import Candidate
-from sevenbar.design.synthesis.function.closure import outputs, row_of, transmissions
+from sevenbar.design.synthesis.closure import outputs, row_of, transmissions
 from sevenbar.design.synthesis.function.wish import Wish
 from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
 from sevenbar.drawing.skeleton import short

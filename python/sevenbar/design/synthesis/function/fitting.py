@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.function.closure import (
+from sevenbar.design.synthesis.closure import (
     output_slopes,
     outputs,
     transmission_slopes,

@@ -25,7 +25,7 @@ from sevenbar.design.synthesis.candidates import (
     renamed,
     tally,
 )
-from sevenbar.design.synthesis.function.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
 from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.fitting import Fit, Point
 from sevenbar.design.synthesis.function.precision import designs_of, reflected, system, through

@@ -29,7 +29,7 @@ from sevenbar.design.synthesis.candidates import (
     ranked,
     renamed,
 )
-from sevenbar.design.synthesis.function.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
 from sevenbar.design.synthesis.function.fitting import FREE
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, need_scipy
 from sevenbar.design.synthesis.function.precision import reflected
