@@ -17,8 +17,6 @@ from collections.abc import Iterator, Mapping
 from itertools import chain
 from pathlib import Path
 
-import grimp
-
 from evidence import ROOT
 
 #: What is counted, and where it lies; evidence had no folder of its own once.
@@ -47,6 +45,8 @@ def lines(root: Path) -> dict[str, tuple[int, int]]:
 
 def python_graph(root: Path) -> Graph:
     """The package's modules, without its face: that knows all, and commands may ask it."""
+    import grimp
+
     sys.path.insert(0, str(root / "python"))
     try:
         found = grimp.build_graph("sevenbar", exclude_type_checking_imports=False, cache_dir=None)

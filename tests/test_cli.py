@@ -361,7 +361,7 @@ def test_the_folder_of_a_general_loop_holds_joints_and_paths_too(tmp_path):
         ),
         (
             ["modes", "rssp", "--input", "slider", "--at", "9deg"],
-            "--at: '9deg' is no value of slider, which slides; give 12 or 12mm",
+            "--at: '9deg' is no value of slider, which slides; give 250 or 250mm",
         ),
         (
             ["modes", "rssp", "--input", "ball_a"],

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.given import angle, angles, lengths, numbers
+from sevenbar.commands.given import angle, angles, limits_of, numbers
 from sevenbar.commands.options import Figures, Force, Json, figure_formats
 from sevenbar.errors import RequestError
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.function.generation import Synthesis
-    from sevenbar.design.synthesis.limits import Limits
     from sevenbar.reporting.files import Report
 
 Transmission = Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")]
@@ -76,7 +75,7 @@ def function(
         output_range=angles("--output-range", output_range),
         precision=points,
         name=None if table is None else f"pairs of {table.name}",
-        limits=_limits(transmission, size, motion_type),
+        limits=limits_of(transmission, size, motion_type, "mm"),
         tolerance=angle("--tolerance", tolerance),
         count=designs,
         seed=seed_of(seed),
@@ -107,7 +106,7 @@ def swing(
     found = swing_generation(
         angle("--swing", swing),
         time_ratio,
-        limits=_limits(transmission, size, None),
+        limits=limits_of(transmission, size, None, "mm"),
         count=designs,
         seed=seed_of(seed),
     )
@@ -130,13 +129,6 @@ def _before(out: Path | None, designs: int, figures: list[str] | None, force: bo
     report = synthesis_report(designs, command_line(), formats)
     check_out(report, out, force=force)
     return report
-
-
-def _limits(transmission: str, size: str | None, motion_type: str | None) -> Limits:
-    from sevenbar.design.synthesis.limits import Limits
-
-    ends = None if size is None else lengths("--size", size, "mm")
-    return Limits(angle("--transmission", transmission), ends, motion_type)
 
 
 def seed_of(seed: int) -> int:

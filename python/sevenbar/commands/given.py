@@ -13,6 +13,7 @@ from sevenbar.text.ranges import Place, split_range, three_numbers
 from sevenbar.text.units import amount, examples_of, sizes_of
 
 if TYPE_CHECKING:
+    from sevenbar.design.synthesis.limits import Limits
     from sevenbar.kinematics.motion import Law
 
 
@@ -72,6 +73,14 @@ def lengths(option: str, text: str, unit: str) -> tuple[float, float]:
 def numbers(option: str, text: str) -> tuple[float, float]:
     """The two numbers of a range like 0:1."""
     return _ends(option, text, sizes_of(""), "", "0:1 or 1:10")
+
+
+def limits_of(transmission: str, size: str | None, motion_type: str | None, unit: str) -> Limits:
+    """What a design must keep; a size without a unit is in `unit`."""
+    from sevenbar.design.synthesis.limits import Limits
+
+    ends = None if size is None else lengths("--size", size, unit)
+    return Limits(angle("--transmission", transmission), ends, motion_type)
 
 
 def _ends(

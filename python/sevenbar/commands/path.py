@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from sevenbar.commands.deliver import check_out, command_line, deliver
-from sevenbar.commands.given import angle, lengths, point_of
+from sevenbar.commands.given import limits_of, point_of
 from sevenbar.commands.options import (
     Figures,
     Force,
@@ -23,9 +23,6 @@ from sevenbar.commands.options import (
 )
 from sevenbar.errors import RequestError
 from sevenbar.text.ranges import split_named, split_range
-
-if TYPE_CHECKING:
-    from sevenbar.design.synthesis.limits import Limits
 
 
 def path(
@@ -49,9 +46,7 @@ def path(
     phase: Annotated[
         bool, typer.Option("--phase", help="With --timing: inputs count from an unknown start.")
     ] = False,
-    transmission: Annotated[
-        str | None, typer.Option(help="Least transmission angle of an RSSR, as in '40deg'.")
-    ] = None,
+    transmission: Annotated[str, typer.Option(help="Least transmission angle of an RSSR; 0 for none.")] = "0",
     size: Annotated[
         str | None, typer.Option(help="Shortest link and longest dimension, as in 50:1000 or 5cm:1m.")
     ] = None,
@@ -96,7 +91,7 @@ def path(
         timing=inputs if timing else None,
         phase=phase,
         place=place,
-        limits=_limits(transmission, size, motion_type, draft.linkage.length_unit),
+        limits=limits_of(transmission, size, motion_type, draft.linkage.length_unit),
     )
     check_counts(designs, starts, seed)
     with progress_bar("designing") as progress:
@@ -112,11 +107,3 @@ def parsed_bounds(given: list[str]) -> dict[str, tuple[str, str]]:
         if ends is None:
             raise RequestError(f"--bound: {name} has no {what}; {hint}")
     return {name: ends for name, ends in found.items() if ends is not None}
-
-
-def _limits(transmission: str | None, size: str | None, motion_type: str | None, unit: str) -> Limits:
-    """What a design must keep; a size without a unit is in the file's."""
-    from sevenbar.design.synthesis.limits import Limits
-
-    least = 0.0 if transmission is None else angle("--transmission", transmission)
-    return Limits(least, None if size is None else lengths("--size", size, unit), motion_type)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.units import ANGLES, amount, length_sizes
+from sevenbar.text.units import amount, examples_of, sizes_of
 
 
 def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
@@ -13,12 +13,12 @@ def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
     A plain number is in degrees for a turn and in the length unit for a slide. Raises `RequestError`.
     """
     slides = linkage.column_kinds[column] == "slide"
-    plain = linkage.length_unit if slides else "deg"
-    value = amount(text, length_sizes(linkage.length_unit) if slides else ANGLES, plain)
+    unit, plain = (linkage.length_unit,) * 2 if slides else ("rad", "deg")
+    value = amount(text, sizes_of(unit), plain)
     if value is None:
         kind = "slides" if slides else "turns"
-        hint = f"12 or 12{plain}" if slides else "30, 30deg or 0.5rad"
         raise RequestError(
-            f"{key}: {shown(text)} is no value of {linkage.columns[column]}, which {kind}; give {hint}"
+            f"{key}: {shown(text)} is no value of {linkage.columns[column]}, which {kind}; "
+            f"give {examples_of(unit)}"
         )
     return value

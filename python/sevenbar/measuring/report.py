@@ -234,17 +234,7 @@ def calibration_report(
 
 
 def _write_parameters(calibration: Calibration, path: Path) -> None:
-    head = (
-        "parameter",
-        "unit",
-        "status",
-        "nominal",
-        "value",
-        "standard_error",
-        "low",
-        "high",
-        "undone_by",
-    )
+    head = ["parameter", "unit", "status", "nominal", "value", "standard_error", "low", "high", "undone_by"]
     lines = [
         (
             p.name,
