@@ -29,7 +29,7 @@ def sweep(
         ),
     ] = None,
     method: Annotated[
-        str | None, typer.Option(help="grid, random, latin or sobol; sobol where a span is to be sampled.")
+        str | None, typer.Option(help="grid, random or sobol; sobol where a span is to be sampled.")
     ] = None,
     count: Annotated[int | None, typer.Option(help="Linkages of a sample.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of a sample; 0 where none is given.")] = None,

@@ -63,7 +63,7 @@ def run(
     """Measures of many linkages: named dimensions over grids, lists and samples.
 
     `axes` names dimensions (`Draft.dimensions`) and what each takes: `grid(low, high, count)`, a list, or
-    `span(low, high)` of which `count` samples are drawn by `method` random, latin or sobol with `seed`.
+    `span(low, high)` of which `count` samples are drawn by `method` random or sobol with `seed`.
     `measures` are names of `measures.MEASURES` or functions of the Motion, taken with `samples` a turn.
     With `out` the rows go to a folder of Parquet parts of `part_size` linkages; `resume` goes on with the
     parts that are there, `mixed` also with those of other versions or vector units. It runs on `threads`
