@@ -16,6 +16,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.general import expanded, merged, pair, size_of, word
 from sevenbar.kinematics.geometry import Loop, following_coupler
 from sevenbar.kinematics.motion import Integers
+from sevenbar.text.printing import Printed
 
 #: The core's codes of motion types, and of dimensions that make no linkage.
 CODES = (
@@ -58,8 +59,8 @@ def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -
     return np.array([np.broadcast_to(rows[name], count) for name in RSSR_ROWS], dtype=np.float64)
 
 
-@dataclass(frozen=True, eq=False)
-class Motions:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motions(Printed):
     """What the motions of n linkages come to.
 
     `clear` (n,) tells which are told here; of the others, that have a reason to give or must be followed

@@ -14,6 +14,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.joints import FREEDOMS, Freedom, column_names
 from sevenbar.kinematics.rigid import inverse
+from sevenbar.text.printing import Printed
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,8 @@ class Drive:
     speed: float = 1.0
 
 
-@dataclass(frozen=True, eq=False)
-class Loop:
+@dataclass(frozen=True, eq=False, repr=False)
+class Loop(Printed):
     """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground`.
 
     `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,

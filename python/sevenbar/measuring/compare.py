@@ -20,6 +20,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Law
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
+from sevenbar.text.printing import Printed
 from sevenbar.text.units import sliding_speed, turning_speed
 
 #: What may be aligned.
@@ -73,8 +74,8 @@ class Spread:
     mean: float
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Printed):
     """Measured and computed values at the same inputs, (n,) each; NaN where the loop does not close.
 
     `input` [rad, or length] is that of the linkage: the measured one plus `chosen.phase`; `measured` has

@@ -18,6 +18,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, TableError, shown, suggestion
 from sevenbar.kinematics.motion import Integers
+from sevenbar.text.printing import Printed
 from sevenbar.text.ranges import split_name
 from sevenbar.text.table import Table, name_and_unit, read_table, read_text
 from sevenbar.text.units import MeasuredUnit, measured_unit
@@ -70,8 +71,8 @@ class Ends:
         return {"time": "s", "turn": "deg", "slide": "mm"}[kind] + ("", "/s", "/s^2")[order]
 
 
-@dataclass(frozen=True, eq=False)
-class Measured:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measured(Printed):
     """Measured rows: `values` (n,) by quantity, in s, rad (or the length unit) and their derivatives.
 
     `line` (n,) is the line of the file of each row; `labels` tell from which column each quantity came.
@@ -93,8 +94,8 @@ class Measured:
         return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredExtremes:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredExtremes(Printed):
     """The lowest and the highest measured value of each quantity, as the paper's Table 1 has them."""
 
     source: str

@@ -19,8 +19,9 @@ from sevenbar.measuring.extremes import Extent, ExtremesComparison
 from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns, word
 from sevenbar.measuring.measured import Ends
 from sevenbar.reporting.folder import fill_folder, write_columns, write_csv
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, number_table, opening
 from sevenbar.reporting.report import json_text
+from sevenbar.text.printing import text_of
 
 #: Candidates and notes are told in full in the JSON; of candidates the page has as many.
 MOST_CANDIDATES = 4
@@ -378,3 +379,14 @@ def _write_rows(
 
 def _suffix(unit: str) -> str:
     return unit.replace("/", "_").replace("\u00b2", "2")
+
+
+@text_of.register(Comparison)
+@text_of.register(ExtremesComparison)
+def _(comparison: Comparison | ExtremesComparison) -> str:
+    return opening("Comparison", comparison_text(comparison))
+
+
+@text_of.register(Calibration)
+def _(calibration: Calibration) -> str:
+    return opening("Calibration", calibration_text(calibration))

@@ -14,6 +14,7 @@ from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
 from sevenbar.simulation.joint_values import Bodies, JointValues, joint_values
 from sevenbar.simulation.prototype import Prototype
+from sevenbar.text.printing import Printed
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class PointValues:
     acceleration: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class Simulation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Simulation(Printed):
     """One run of an engine, row by row beside Sevenbar's.
 
     `input` (n,) and `time` (n,) [s] of the rows; `engine` and `theory` hold the joints' values, the theory's

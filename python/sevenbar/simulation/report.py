@@ -15,9 +15,10 @@ from rich.text import Text
 
 from sevenbar.drawing.skeleton import short
 from sevenbar.reporting.folder import check_targets, fill_folder, write_columns
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, number_table, opening
 from sevenbar.reporting.report import json_text, without_nan
 from sevenbar.simulation.agreement import Difference, Simulation
+from sevenbar.text.printing import text_of
 
 #: The names of figures that a run may have.
 FIGURES = ("output", "joints", "points")
@@ -180,3 +181,8 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
     found["closure_error_rad"] = run.engine.tilt.max(axis=1)
     return found
+
+
+@text_of.register(Simulation)
+def _(run: Simulation) -> str:
+    return opening("Simulation", text(run))

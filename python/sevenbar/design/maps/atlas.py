@@ -19,6 +19,7 @@ from sevenbar.design.maps.window import Axis, Range, axes_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.text.printing import Printed
 
 #: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
 GRID, LOOP_GRID = 61, 25
@@ -67,8 +68,8 @@ class Design:
     steps: tuple[Step, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Map:
+@dataclass(frozen=True, eq=False, repr=False)
+class Map(Printed):
     """The kinds of linkages over two dimensions of a draft.
 
     Boundaries and regions hold places (n, 2) in shares of the two ranges; `values` turns such into the

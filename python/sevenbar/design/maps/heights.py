@@ -16,6 +16,7 @@ from sevenbar.design.maps.plane import Take
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
 from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.text.printing import Printed
 
 #: About how many contour lines are drawn where none are asked for.
 LEVELS = 9
@@ -52,8 +53,8 @@ class Contour:
     places: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class Heights:
+@dataclass(frozen=True, eq=False, repr=False)
+class Heights(Printed):
     """A measure over a map.
 
     `take` tells which circuit counts; `unit` is that of the values, "" without one. `nodes` (n, 2) [shares]

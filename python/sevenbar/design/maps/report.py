@@ -14,8 +14,9 @@ from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map, Step
 from sevenbar.design.maps.heights import Heights
 from sevenbar.reporting.folder import fill_folder, write_csv
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, number_table, opening
 from sevenbar.reporting.report import json_text
+from sevenbar.text.printing import text_of
 
 
 def as_dict(of: Map, heights: Sequence[Heights] = ()) -> dict[str, Any]:
@@ -192,3 +193,8 @@ def targets(folder: Path, measures: Sequence[str], figures: Sequence[str]) -> li
     names = ["map.json", "boundaries.csv", *(["contours.csv"] if measures else [])]
     names += [f"{stem}.{ending}" for stem in ("map", *measures) for ending in figures]
     return [folder / name for name in names]
+
+
+@text_of.register(Map)
+def _(of: Map) -> str:
+    return opening("Map", text(of))

@@ -22,6 +22,7 @@ from sevenbar.design.points.polish import Polished, polished
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import Motion
+from sevenbar.text.printing import Printed
 
 #: The part of the greatest within which upper and lower bound have to agree.
 GAP = 1e-9
@@ -57,8 +58,8 @@ class Compared:
     value: float
 
 
-@dataclass(frozen=True, eq=False)
-class LeastPoint:
+@dataclass(frozen=True, eq=False, repr=False)
+class LeastPoint(Printed):
     """The point `at` [length, as points are written] of a link at which a rate is least over the cycle.
 
     `value` is the greatest over the cycle, or the root mean square, of the quantity `of` [length/s, /s^2,

@@ -18,8 +18,9 @@ from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles, poles_of
 from sevenbar.drawing.figure import save, slides
 from sevenbar.reporting.folder import fill_folder, write_columns
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, number_table, opening
 from sevenbar.reporting.report import json_text
+from sevenbar.text.printing import text_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -345,3 +346,18 @@ def _pole_columns(poles: AccelerationPoles) -> dict[str, Any]:
         for i, letter in enumerate(letters):
             columns[f"{letter}_{unit}"] = values[:, i]
     return columns | {f"remaining_{unit}_s2": poles.remaining, "condition": poles.condition}
+
+
+@text_of.register(LeastPoint)
+def _(found: LeastPoint) -> str:
+    return opening("Least point", least_text(found))
+
+
+@text_of.register(NearestPath)
+def _(found: NearestPath) -> str:
+    return opening("Nearest path", nearest_text(found))
+
+
+@text_of.register(Inertia)
+def _(found: Inertia) -> str:
+    return opening("Inertia", inertia_text(found))

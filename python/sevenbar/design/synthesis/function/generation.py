@@ -32,6 +32,7 @@ from sevenbar.design.synthesis.function.precision import designs_of, reflected, 
 from sevenbar.design.synthesis.function.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
 from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.text.printing import Printed
 
 #: What a design must keep to where nothing else is asked for.
 USUAL = Limits(transmission_lowest=math.radians(30))
@@ -52,8 +53,8 @@ START_APART = 0.15
 ENDS_APART = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
-class Synthesis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Synthesis(Printed):
     """Designs found for a wish, best first, and what was refused on the way.
 
     `searched` designs were looked at and `fitted` of them refined; `refusals` begin with the nearest.
