@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.table import Table, read_table
+from sevenbar.text.table import TextTable, read_table
 from sevenbar.text.units import measured_unit
 
 
@@ -54,11 +54,11 @@ def _plain(name: str) -> str:
     return re.sub(r"[^\w.]+|_", " ", name).lower().strip()
 
 
-def _names(table: Table) -> list[str]:
+def _names(table: TextTable) -> list[str]:
     return [_plain(table.name_and_unit(place)[0]) for place in range(len(table.names))]
 
 
-def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
+def _place(table: TextTable, letter: str, point: str, unit: str) -> int | None:
     """The column of a coordinate: of the point where it is named, else the one that is called so."""
     names = _names(table)
     if not any(names) and len(names) >= len("xyz"):
@@ -79,7 +79,7 @@ def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
     return found[0] if found else None
 
 
-def _input(table: Table, joint: str) -> int | None:
+def _input(table: TextTable, joint: str) -> int | None:
     """The column of the input; not that of its velocity, which has its name too."""
     names = _names(table)
     for wanted in (_plain(joint), "input"):
@@ -90,7 +90,7 @@ def _input(table: Table, joint: str) -> int | None:
     return None
 
 
-def _size(table: Table, place: int, length_unit: str, *, kind: str) -> float:
+def _size(table: TextTable, place: int, length_unit: str, *, kind: str) -> float:
     """What one of a column's unit is in the length unit, or in radians."""
     name, written = table.name_and_unit(place)
     what, example = ("a length", length_unit) if kind == "slide" else ("an angle", "deg")

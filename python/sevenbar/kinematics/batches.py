@@ -45,7 +45,7 @@ RATES = {"velocity": 1, "acceleration": 2, "jerk": 3}
 DRIVEN = 0
 
 #: Words of the motion types of linkages or circuits.
-Words = npt.NDArray[np.object_]
+MotionTypes = npt.NDArray[np.object_]
 
 
 def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -> Floats:
@@ -70,7 +70,7 @@ class Motions(Printed):
     """
 
     clear: npt.NDArray[np.bool_]
-    types: Words
+    types: MotionTypes
     limits: Floats
     circuits: Integers
     linkage: Integers

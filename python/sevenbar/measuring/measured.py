@@ -20,7 +20,7 @@ from sevenbar.errors import RequestError, TableError, shown, suggestion
 from sevenbar.kinematics.motion import Integers
 from sevenbar.text.printing import Printed
 from sevenbar.text.ranges import split_name
-from sevenbar.text.table import Table, name_and_unit, read_table, read_text
+from sevenbar.text.table import TextTable, name_and_unit, read_table, read_text
 from sevenbar.text.units import MeasuredUnit, measured_unit
 
 #: What the tables hold, as messages say it.
@@ -207,7 +207,7 @@ def _quantity(name: str, unit: MeasuredUnit | None, ends: Ends) -> str | None:
     return None
 
 
-def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, int]:
+def _places(table: TextTable, ends: Ends, columns: Mapping[str, str]) -> dict[str, int]:
     """The column of each quantity, named by the caller or found by its header."""
     places = {quantity: _named(table, quantity, text) for quantity, text in columns.items()}
     taken = set(places.values())
@@ -229,7 +229,7 @@ def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, i
     return places | {quantity: found[0] for quantity, found in candidates.items()}
 
 
-def _named(table: Table, quantity: str, text: str) -> int:
+def _named(table: TextTable, quantity: str, text: str) -> int:
     for wanted in (text, text.lower()):
         for place, name in enumerate(table.names):
             if name and wanted in (name, name.lower(), name_and_unit(name)[0]):
@@ -244,7 +244,7 @@ def _named(table: Table, quantity: str, text: str) -> int:
     )
 
 
-def _refuse_what_is_missing(table: Table, ends: Ends, places: Mapping[str, int]) -> None:
+def _refuse_what_is_missing(table: TextTable, ends: Ends, places: Mapping[str, int]) -> None:
     if not any(quantity in places for quantity in OUTPUTS):
         what = f"no column for the angle, velocity or acceleration of the output {shown(ends.output)}"
     elif "time" not in places and "input" not in places:
@@ -258,7 +258,7 @@ def _refuse_what_is_missing(table: Table, ends: Ends, places: Mapping[str, int])
     )
 
 
-def _size(table: Table, ends: Ends, quantity: str, place: int, units: Mapping[str, str]) -> float:
+def _size(table: TextTable, ends: Ends, quantity: str, place: int, units: Mapping[str, str]) -> float:
     """What one unit of a column is in the units that values come out in."""
     written, asked = table.name_and_unit(place)[1], units.get(quantity, "")
     label = table.labels[place]

@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.sweep.axes import Axis, Given, axis_of, whole_number
+from sevenbar.sweep.axes import Given, SweepAxis, axis_of, whole_number
 from sevenbar.sweep.sampling import MOST_SOBOL, random_points, sobol_points
 
 #: How linkages are chosen.
@@ -31,7 +31,7 @@ MOST_SEED = 2**63 - 1
 class Space:
     """The axes, how linkages are chosen among their values, how many, and the seed of what is random."""
 
-    axes: tuple[Axis, ...]
+    axes: tuple[SweepAxis, ...]
     method: str
     count: int
     seed: int | None
@@ -99,7 +99,7 @@ class Space:
         return np.stack([axis.within(share) for axis, share in zip(self.axes, points, strict=True)])
 
 
-def _grid(axes: tuple[Axis, ...], spans: list[Axis], count: int | None, seed: int | None) -> Space:
+def _grid(axes: tuple[SweepAxis, ...], spans: list[SweepAxis], count: int | None, seed: int | None) -> Space:
     counts = [axis.count or 1 for axis in axes]
     total = math.prod(counts)
     told = " x ".join(map(str, counts)) + (f" = {total}" if len(counts) > 1 else "")

@@ -11,7 +11,7 @@ from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
-from sevenbar.design.maps.atlas import Map, Step
+from sevenbar.design.maps.atlas import Map, NearestChange
 from sevenbar.design.maps.heights import Heights
 from sevenbar.reporting.folder import fill_folder, write_csv
 from sevenbar.reporting.page import Facts, number_table, opening
@@ -65,7 +65,7 @@ def as_dict(of: Map, heights: Sequence[Heights] = ()) -> dict[str, Any]:
     }
 
 
-def _step_dict(step: Step) -> dict[str, Any]:
+def _step_dict(step: NearestChange) -> dict[str, Any]:
     kind = None if step.kind is None else vars(step.kind)
     return {"dimension": step.axis.name, "way": step.way, "at": step.value, "becomes": kind}
 
@@ -137,7 +137,7 @@ def _precision(of: Map) -> str:
     )
 
 
-def _row(of: Map, step: Step) -> list[str]:
+def _row(of: Map, step: NearestChange) -> list[str]:
     axis = step.axis
     end = axis.low if step.way == "down" else axis.high
     if step.value is None or step.kind is None:

@@ -46,7 +46,7 @@ DECIDING = 1e-5
 #: A direction of the box in which no rate changes by more than this part of the greatest change is free.
 FREE = 1e-12
 
-Quantity = Literal["velocity", "acceleration", "jerk"]
+Rate = Literal["velocity", "acceleration", "jerk"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class LeastPoint(Printed):
     """
 
     cycle: Cycle
-    of: Quantity
+    of: Rate
     measure: Literal["greatest", "rms"]
     low: Floats
     high: Floats
@@ -158,7 +158,7 @@ def least_rms_point(
     link: int,
     box: npt.ArrayLike,
     *,
-    of: Quantity = "acceleration",
+    of: Rate = "acceleration",
     circuit: int = 0,
     branch: int = 0,
 ) -> LeastPoint:
@@ -178,7 +178,7 @@ def least_point(
     link: int,
     box: npt.ArrayLike,
     *,
-    of: Quantity = "acceleration",
+    of: Rate = "acceleration",
     measure: Literal["greatest", "rms"] = "greatest",
     circuit: int = 0,
     branch: int = 0,
@@ -227,7 +227,7 @@ def least_point(
 
 
 def _least_greatest(
-    cycle: Cycle, of: Quantity, box: tuple[Floats, Floats], free: Floats, around: float
+    cycle: Cycle, of: Rate, box: tuple[Floats, Floats], free: Floats, around: float
 ) -> tuple[Floats, float, float, Floats, Floats, int, ConeSolution]:
     """Point, value, bound, inputs that decide, their weights, rounds, the cones' last solution."""
     index, (low, high) = ORDERS.index(of), box
@@ -268,7 +268,7 @@ def _least_greatest(
 
 def _polished(
     cycle: Cycle,
-    of: Quantity,
+    of: Rate,
     at: Floats,
     rows: tuple[Floats, Floats],
     peaks: tuple[Floats, Floats],
