@@ -12,7 +12,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
-from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions, within
+from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
 from sevenbar.design.maps.rssr_plane import RssrPlane
 from sevenbar.design.maps.window import MapAxis, Range, axes_of
@@ -120,7 +120,7 @@ class Map(Printed):
         """
         found = np.full(len(places), -1, dtype=np.int64)
         for region in self.regions:
-            found[within([region.outline, *region.holes], places)] = region.kind
+            found[region.holds(places)] = region.kind
         speck = (found < 0) & ((places >= 0) & (places <= 1)).all(axis=1)
         found[speck] = self.plane.kinds_at(places[speck])
         return found
