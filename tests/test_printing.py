@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -68,6 +69,12 @@ def test_a_motion_prints_its_type_circuits_limits_completeness_and_closure_error
         "  redundant      no constraints\n"
         "  closure error  at most ~ mm"
     )
+
+
+def test_the_page_on_motions_shows_what_a_motion_prints(motion):
+    page = Path(__file__).parent.parent / "docs" / "api" / "motions.md"
+    shown = re.sub(r"\d\.\de[-+]\d\d", "~", page.read_text(encoding="utf-8"))
+    assert "".join(f"    {line}\n" for line in printed(motion).splitlines()) in shown
 
 
 def test_circuits_of_several_types_are_told_apart():
