@@ -7,13 +7,10 @@ kind, in the module that `SAID_IN` names for its folder, imported when the first
 from __future__ import annotations
 
 import importlib
-import io
-from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sized
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from functools import singledispatch
-from html import escape
 from textwrap import wrap
 from typing import Any
 
@@ -40,6 +37,11 @@ class Printed:
 
     def _repr_html_(self) -> str:
         """The lines, and beside them the picture."""
+        # only notebooks need these
+        import io
+        from base64 import b64encode
+        from html import escape
+
         lines = f'<pre style="margin: 0">{escape(repr(self))}</pre>'
         # matplotlib may be missing, and some results have no pose
         with suppress(ImportError, SevenbarError):
