@@ -6,7 +6,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.gallery import names
 from sevenbar.kinematics.poses import frames_of
-from sevenbar.simulation.joint_values import Bodies, joint_values
+from sevenbar.simulation.joint_values import BodyStates, joint_values
 
 #: Joints of every kind one after another; the loop need not close, for nothing here closes it.
 OPEN = sb.from_axes(
@@ -49,7 +49,7 @@ def bodies_at(t):
     spin = axial(first[..., :3, :3] @ back)
     # the rest of the second derivative is symmetric
     rate = axial(second[..., :3, :3] @ back)
-    return Bodies(around[2], first[..., :3, 3], second[..., :3, 3], spin, rate)
+    return BodyStates(around[2], first[..., :3, 3], second[..., :3, 3], spin, rate)
 
 
 def turn_z(angle):
@@ -147,7 +147,7 @@ def test_sevenbar_s_own_links_give_sevenbar_s_own_joint_values(name):
     def stacked(values):
         return np.stack([value[rows] for value in values], axis=1)
 
-    bodies = Bodies(
+    bodies = BodyStates(
         frames,
         stacked([origin.velocity for origin in origins]),
         stacked([origin.acceleration for origin in origins]),

@@ -17,7 +17,6 @@ import sevenbar as sb
 from sevenbar.design.maps import atlas
 from sevenbar.design.maps.atlas import Map, motion_map
 from sevenbar.design.maps.critical import NEARLY_REAL, critical_gaps
-from sevenbar.design.maps.outline import signed_area
 from sevenbar.design.maps.plane import Kind
 
 
@@ -115,6 +114,12 @@ def test_points_a_hair_beside_a_boundary_have_the_type_of_their_side_by_the_ordi
     assert looked > 10
 
 
+def signed_area(loop):
+    """The area within a closed loop (n, 2), negative where it runs clockwise."""
+    x, y = loop.T
+    return 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+
+
 @pytest.mark.parametrize("name", cases())
 def test_regions_fill_the_window_and_their_outlines_run_anticlockwise(name):
     of = made(name)
@@ -122,6 +127,8 @@ def test_regions_fill_the_window_and_their_outlines_run_anticlockwise(name):
     for region in of.regions:
         assert signed_area(region.outline) > 0
         assert all(signed_area(hole) < 0 for hole in region.holes)
+        whole = signed_area(region.outline) + sum(map(signed_area, region.holes))
+        assert region.area == pytest.approx(whole, abs=1e-12)
 
 
 def test_with_axes_in_one_plane_the_crank_turns_where_n_l3_is_more_than_twice_m_l1():

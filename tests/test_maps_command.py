@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -275,3 +277,16 @@ def test_the_example_of_the_page_on_maps_prints_what_its_comments_say(capsys):
     exec(code, {})
     promised = re.findall(r"print\(.*\)  # (.*)", code)
     assert capsys.readouterr().out.splitlines() == promised
+
+
+def test_without_shapely_the_extra_is_named():
+    hide = "import sys; sys.modules['shapely'] = None"
+    told = mistake("map", "rssr", *OVER, before=hide)
+    assert told == "maps need shapely; install it with: pip install 'sevenbar[design]'"
+
+
+def test_without_shapely_the_other_tools_of_design_are_there():
+    hide = "import sys; sys.modules['shapely'] = None"
+    code = f"{hide}\nimport sevenbar as sb\nprint(len(sb.design.tolerance.__all__), len(sb.design.points.__all__))"
+    run = [sys.executable, "-c", code]
+    assert subprocess.run(run, capture_output=True, text=True, check=True).stdout.split()[0] == "9"

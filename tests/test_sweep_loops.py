@@ -12,16 +12,16 @@ from sevenbar.sweep.axes import span
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.block import Block
 from sevenbar.sweep.ordinary import analysed
-from sevenbar.sweep.plan import Plan
+from sevenbar.sweep.plan import SweepPlan
 
 LINKAGES = ("seven_r", "rccc", "rscr", "rssp", "planar_4r", "six_bar", "five_bar")
 
 
-def plan_of(name: str, count: int) -> Plan:
+def plan_of(name: str, count: int) -> SweepPlan:
     linkage = sb.load(name)
     dimensions = [d for d in Draft.of_linkage(linkage).dimensions if d.kind == "length" and d.value]
     ends = sorted((0.9 * dimensions[-1].value, 1.1 * dimensions[-1].value))
-    return Plan.of(linkage, {dimensions[-1].name: span(*ends)}, list(MEASURES), count=count, seed=1)
+    return SweepPlan.of(linkage, {dimensions[-1].name: span(*ends)}, list(MEASURES), count=count, seed=1)
 
 
 @pytest.mark.parametrize("name", LINKAGES)
@@ -58,7 +58,7 @@ def test_threads_and_neighbours_change_no_bit() -> None:
 def test_loops_that_do_not_move_are_left_to_tell_why() -> None:
     # a Bennett whose first length alone is changed cannot be assembled
     linkage = sb.load("bennett")
-    plan = Plan.of(linkage, {"length_1": [0.9 * linkage.dimensions["length_1"]]}, ["motion_type"])
+    plan = SweepPlan.of(linkage, {"length_1": [0.9 * linkage.dimensions["length_1"]]}, ["motion_type"])
     blocks, rest = batched(plan, plan.space.values(0, 1), 1)
     assert rest.tolist() == [0]
     assert sum(len(block.linkage) for block in blocks) == 0

@@ -15,7 +15,7 @@ from sevenbar.kinematics.measures import MEASURES
 from sevenbar.sweep import grid, run, span
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.ordinary import analysed as analysed_by_themselves
-from sevenbar.sweep.plan import Plan
+from sevenbar.sweep.plan import SweepPlan
 from sevenbar.sweep.rows import part_table
 
 #: A crank too long, a drive that stands still, a linkage that cannot be assembled, crank-rockers, others.
@@ -228,7 +228,7 @@ def test_linkages_measured_all_at_once_have_the_rows_of_linkages_one_by_one(
         (sb.load("rssr"), places, {"method": "random", "count": 250, "seed": 1}),
         (draft, even, {}),
     ):
-        plan = Plan.of(linkage, axes, measures, input=input, part_size=300, **asked)
+        plan = SweepPlan.of(linkage, axes, measures, input=input, part_size=300, **asked)
         found = part_table(plan, 0).to_pylist()
         values = plan.space.values(0, plan.space.count)
         assert len(batched(plan, values, 1)[1]) < plan.space.count

@@ -14,7 +14,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.design.synthesis.closure import NAMES
 from sevenbar.design.synthesis.function.expression import function_of
-from sevenbar.design.synthesis.function.fitting import Fit, Point
+from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.report import synthesis_report
 from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
@@ -255,7 +255,7 @@ def test_wrong_pairs_are_told_in_a_line(a, b, words):
 def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
     wish = wish_of_function(function_of("x^2"), (0, 1), QUARTER, QUARTER)
     fit = Fit(wish, Limits())
-    point = Point(np.array([0.3, 5.0, 3.0, 6.5, 1.0, -2.0]), np.array([1.6, 1.7]), 1)
+    point = Estimate(np.array([0.3, 5.0, 3.0, 6.5, 1.0, -2.0]), np.array([1.6, 1.7]), 1)
     back = fit.unpacked(fit.packed(point), 1)
     np.testing.assert_array_equal(back.row, point.row)
     np.testing.assert_array_equal(back.zeros, point.zeros)

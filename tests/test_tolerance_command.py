@@ -1,4 +1,4 @@
-"""`sevenbar tolerance` as a person calls it, and the explanation of the paper's Table 1."""
+"""`sevenbar tolerance` as a person calls it, and its figures."""
 
 import csv
 import json
@@ -10,87 +10,12 @@ import pytest
 
 import sevenbar as sb
 from commands import mistake, sevenbar
-from sevenbar.design.tolerance.explain import explain
 from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import linear_estimate
 from sevenbar.design.tolerance.samples import monte_carlo
 from sevenbar.design.tolerance.sensitivities import sensitivities
-from sevenbar.measuring.compare import ends_of
-from sevenbar.measuring.extremes import compare_extremes
-from sevenbar.measuring.measured import read_measured
 
 ROOT = Path(__file__).parent.parent
-TABLE_1 = ROOT / "examples" / "rssr_table1.csv"
-
-
-@pytest.fixture(scope="module")
-def explained():
-    linkage = sb.load("rssr")
-    ends = ends_of(linkage)
-    return explain(linkage, read_measured(TABLE_1, ends), ends)
-
-
-def extremes(**changes):
-    """The six extremes of the paper's mechanism with changed dimensions, by the ordinary analysis."""
-    linkage = sb.load("rssr")
-    circuit = sb.rssr(**(dict(linkage.dimensions) | changes), speed=10.0).motion().circuits[0]
-    pairs = (circuit.angle, circuit.velocity, circuit.acceleration)
-    return np.array([value for e in pairs for value in (e.lowest, e.highest)])
-
-
-@pytest.mark.slow
-def test_the_equal_tolerances_cause_the_paper_s_differences_at_worst(explained):
-    nominal = extremes()
-    for place, one in enumerate(explained.differences):
-        most = 0.0
-        for corner in np.ndindex(*(2,) * 6):
-            signs = 1 - 2 * np.array(corner)
-            values = sb.load("rssr").dimensions
-            moved = {n: v + s * one.worst for (n, v), s in zip(values.items(), signs, strict=True)}
-            most = max(most, abs(extremes(**moved)[place] - nominal[place]))
-        # the estimate is linear, and the tolerances are some millimetres
-        assert most == pytest.approx(abs(one.error), rel=0.15), one.name
-
-
-def test_one_dimension_alone_leaves_the_misfit_that_it_is_told_to(explained):
-    linkage, ends = sb.load("rssr"), ends_of(sb.load("rssr"))
-    measured = read_measured(TABLE_1, ends)
-    for one in explained.alone[:3]:
-        ((name, change),) = one.changes.items()
-
-        def misfit(value, name=name):
-            other = sb.rssr(
-                **(dict(linkage.dimensions) | {name: linkage.dimensions[name] + value}), speed=10.0
-            )
-            return compare_extremes(other, measured, ends).misfits[0][1]
-
-        assert one.misfit == pytest.approx(misfit(change), rel=1e-9)
-        # steps of a fixed slope end near the least, not at it
-        assert min(misfit(change + step) for step in (-0.2, 0.2)) > one.misfit - 2e-5
-    assert [next(iter(one.changes)) for one in explained.alone[:3]] == ["M", "L2", "L1"]
-
-
-def test_the_finding_of_the_documentation_is_that_of_today(explained):
-    assert explained.misfit == pytest.approx(0.0256, abs=5e-5)
-    worst = {one.name: one.worst for one in explained.differences}
-    assert max(worst.values()) == pytest.approx(2.97, abs=0.01)
-    # neither fine nor medium nor coarse tolerances cause the greatest of them
-    for letter in "fmc":
-        assert min(one.classes[letter] for one in explained.differences) < 0.5
-    assert all(one.iso is None for one in explained.alone)
-    assert explained.without_class == ("D",)
-
-
-@pytest.mark.slow
-def test_the_explanation_is_printed_and_is_an_object():
-    told = sevenbar("tolerance", "rssr", "--explain", TABLE_1)
-    assert told.returncode == 0
-    assert "ISO 2768-m causes 19 % of acceleration highest at worst" in told.stdout
-    assert max(map(len, told.stdout.splitlines())) <= 80
-    assert "…" not in told.stdout
-    found = json.loads(sevenbar("tolerance", "rssr", "--explain", TABLE_1, "--json").stdout)
-    assert len(found["differences"]) == 6
-    assert found["alone"][0]["changes"] == pytest.approx({"M": -4.98}, abs=0.01)
 
 
 def test_the_command_writes_what_it_tells(tmp_path):
@@ -142,7 +67,6 @@ def test_a_point_s_coordinate_can_be_told():
             ["rssr", "--wanted", "1", "--tolerance", "L1=1"],
             "--wanted: --tolerance is given too; give one of them",
         ),
-        (["rssr", "--explain", "examples/rssr_bench.csv"], "has rows, which tell dimensions themselves"),
         (
             ["rssr", "--tolerance", "L1=1", "--count", "-1"],
             "count: -1 samples tell nothing; give 2 to 1000000",

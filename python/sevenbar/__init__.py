@@ -33,6 +33,7 @@ from sevenbar.kinematics.motion import (
     Search,
     Trace,
 )
+from sevenbar.text.printing import SAID_IN
 
 __all__ = [
     "ChangePoint",
@@ -72,6 +73,15 @@ _ON_DEMAND = {
     "simulation": "sevenbar.simulation",
     "sweep": "sevenbar.sweep",
 }
+
+# what results print is said where the reports' words are, which a program that prints none does without
+SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
+for _folder in ("design.maps", "design.points", "measuring", "simulation"):
+    SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"
+
+
+def __dir__() -> list[str]:
+    return sorted({*__all__, *_ON_DEMAND})
 
 
 def __getattr__(name: str) -> ModuleType:

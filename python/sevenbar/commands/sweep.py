@@ -33,7 +33,7 @@ def sweep(
         ),
     ] = None,
     method: Annotated[
-        str | None, typer.Option(help="grid, random, latin or sobol; sobol where a span is to be sampled.")
+        str | None, typer.Option(help="grid, random or sobol; sobol where a span is to be sampled.")
     ] = None,
     count: Annotated[int | None, typer.Option(help="Linkages of a sample.")] = None,
     seed: Annotated[int | None, typer.Option(help="Seed of a sample; 0 where none is given.")] = None,
@@ -67,7 +67,7 @@ def sweep(
     from sevenbar.description.files import text_of
     from sevenbar.sweep.axes import axis_from_text
     from sevenbar.sweep.parts import is_finished
-    from sevenbar.sweep.plan import Plan
+    from sevenbar.sweep.plan import SweepPlan
     from sevenbar.sweep.run import USUAL, carry_out
 
     pairs = [axis_from_text(text) for text in over or ()]
@@ -79,7 +79,7 @@ def sweep(
         if given and out is None:
             raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")
     draft = Draft.of(text_of(linkage), linkage)
-    plan = Plan.of(
+    plan = SweepPlan.of(
         draft, axes, words(measure or list(USUAL)), method=method, count=count, seed=seed,
         samples=samples, input=input_joint, output=output, part_size=part_size,
     )  # fmt: skip

@@ -39,12 +39,6 @@ def tolerance(
             help="In place of --tolerance: the error allowed of what is told, as in 0.5deg; finds tolerances."
         ),
     ] = None,
-    explain: Annotated[
-        Path | None,
-        typer.Option(
-            help="In place of --tolerance: a table of measured extremes whose differences are explained."
-        ),
-    ] = None,
     circuit: Annotated[int, typer.Option(help="The circuit.")] = 0,
     samples: Annotated[int, typer.Option(help="Inputs in a full turn.")] = 90,
     count: Annotated[int, typer.Option(help="Designs drawn at random; 0 for none.")] = 2000,
@@ -74,17 +68,9 @@ def tolerance(
 ) -> None:
     """What tolerances of the dimensions do to the motion: which matters most, worst case, Monte Carlo."""
     formats = figure_formats(figures, out)
-    ways = [
-        option
-        for option, value in (("--tolerance", given), ("--wanted", wanted), ("--explain", explain))
-        if value
-    ]
-    if len(ways) > 1:
-        raise RequestError(f"{ways[1]}: {ways[0]} is given too; give one of them")
+    if given and wanted is not None:
+        raise RequestError("--wanted: --tolerance is given too; give one of them")
     loaded = sb.load(linkage)
-    if explain is not None:
-        _explain(loaded, explain, input_joint, output, speed, out, json=json)
-        return
     from sevenbar.design.tolerance.inverse import tolerances_for
     from sevenbar.design.tolerance.linear import linear_estimate
     from sevenbar.design.tolerance.report import Findings, tolerance_report
@@ -118,35 +104,3 @@ def _wanted(text: str, unit: str) -> float:
             f"0.5{' ' * ('/' in plain)}{plain}"
         )
     return value
-
-
-def _explain(
-    linkage: sb.Linkage,
-    table: Path,
-    input_joint: str | None,
-    output: str | None,
-    speed: str | None,
-    out: Path | None,
-    *,
-    json: bool,
-) -> None:
-    """Explains a table of measured extremes."""
-    from sevenbar.design.tolerance.explain import explain
-    from sevenbar.design.tolerance.explain_report import explanation_json, print_explanation
-    from sevenbar.measuring.compare import ends_of
-    from sevenbar.measuring.measured import MeasuredExtremes, read_measured
-
-    if out is not None:
-        raise RequestError("--out: an explanation has no folder; print it, or keep what --json prints")
-    ends = ends_of(linkage, input_joint, output)
-    measured = read_measured(table, ends)
-    if not isinstance(measured, MeasuredExtremes):
-        raise RequestError(
-            f"{table}: has rows, which tell dimensions themselves: 'sevenbar calibrate' finds them; "
-            "--explain is for a table of lowest and highest values"
-        )
-    found = explain(linkage, measured, ends, speed=speed)
-    if json:
-        typer.echo(explanation_json(found))
-        return
-    print_explanation(found)

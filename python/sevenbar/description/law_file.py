@@ -13,7 +13,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
 from sevenbar.kinematics.motion import Law
-from sevenbar.text.table import Table, read_table
+from sevenbar.text.table import TextTable, read_table
 
 #: Degree of the spline: its third derivative, the jerk, is still smooth.
 DEGREE = 5
@@ -69,7 +69,7 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
     return Law.of(t, *_completed(table, t, [numbers[q] for q in QUANTITIES if q in numbers]))
 
 
-def _places(table: Table, linkage: Linkage, column: int) -> dict[str, int]:
+def _places(table: TextTable, linkage: Linkage, column: int) -> dict[str, int]:
     """The column of each quantity, told by its unit; by its name, too, where several have such a unit."""
     name, kind = linkage.columns[column], linkage.column_kinds[column]
     owners = [joint.name for joint in linkage.joints for _ in joint.columns]
@@ -100,7 +100,7 @@ def _places(table: Table, linkage: Linkage, column: int) -> dict[str, int]:
     return found
 
 
-def _refuse_what_is_missing(table: Table, found: Mapping[str, int], name: str, kind: str) -> None:
+def _refuse_what_is_missing(table: TextTable, found: Mapping[str, int], name: str, kind: str) -> None:
     value, moves, unit = ("an angle", "turns", "deg") if kind == "turn" else ("a position", "slides", "mm")
     if "time" not in found or "value" not in found:
         what = f"with {value} of {name}, which {moves}" if "time" in found else "for the time"
@@ -113,7 +113,7 @@ def _refuse_what_is_missing(table: Table, found: Mapping[str, int], name: str, k
         raise table.wrong(f"{alone}; add that, or leave this out")
 
 
-def _refuse_jumps(table: Table, numbers: Mapping[str, Floats], place: int) -> None:
+def _refuse_jumps(table: TextTable, numbers: Mapping[str, Floats], place: int) -> None:
     """Refuses an angle that begins anew after a full turn, through which no spline can go."""
     jumps = np.flatnonzero(np.abs(np.diff(numbers["value"])) > math.pi)
     if jumps.size and "velocity" not in numbers:
@@ -128,7 +128,7 @@ def _refuse_jumps(table: Table, numbers: Mapping[str, Floats], place: int) -> No
 
 
 def _refuse_other_rates(
-    table: Table, t: Floats, numbers: Mapping[str, Floats], places: Mapping[str, int]
+    table: TextTable, t: Floats, numbers: Mapping[str, Floats], places: Mapping[str, int]
 ) -> None:
     """Refuses a velocity that is not that of the values, nearly always a slip of its unit."""
     if "velocity" not in numbers or t.size < 2:
@@ -146,7 +146,7 @@ def _refuse_other_rates(
         )
 
 
-def _completed(table: Table, t: Floats, given: Sequence[Floats]) -> list[Floats]:
+def _completed(table: TextTable, t: Floats, given: Sequence[Floats]) -> list[Floats]:
     """The value and its three derivatives: the highest that is given is differentiated by a spline."""
     missing = len(QUANTITIES) - len(given)
     if missing == 0:

@@ -1,5 +1,15 @@
 """Design: maps, tolerances, linkages for a wanted motion, and points of links with wanted paths."""
 
-from sevenbar.design import maps, points, synthesis, tolerance
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
 
 __all__ = ["maps", "points", "synthesis", "tolerance"]
+
+
+def __getattr__(name: str) -> ModuleType:
+    # each at its first use, since each needs other extras
+    if name in __all__:
+        return importlib.import_module(f"sevenbar.design.{name}")
+    raise AttributeError(f"module 'sevenbar.design' has no attribute '{name}'")

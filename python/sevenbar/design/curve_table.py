@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.table import Table, plain_name, read_table
+from sevenbar.text.table import TextTable, plain_name, read_table
 
 
 def read_curve(
@@ -52,11 +52,11 @@ def read_curve(
     return np.column_stack(columns), inputs
 
 
-def _names(table: Table) -> list[str]:
+def _names(table: TextTable) -> list[str]:
     return [plain_name(table.name_and_unit(place)[0]) for place in range(len(table.names))]
 
 
-def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
+def _place(table: TextTable, letter: str, point: str, unit: str) -> int | None:
     """The column of a coordinate: of the point where it is named, else the one that is called so."""
     names = _names(table)
     if not any(names) and len(names) >= len("xyz"):
@@ -77,7 +77,7 @@ def _place(table: Table, letter: str, point: str, unit: str) -> int | None:
     return found[0] if found else None
 
 
-def _input(table: Table, joint: str) -> int | None:
+def _input(table: TextTable, joint: str) -> int | None:
     """The column of the input; not that of its velocity, which has its name too."""
     names = _names(table)
     for wanted in (plain_name(joint), "input"):

@@ -13,7 +13,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
-from sevenbar.export.mass import Mass, masses
+from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.joints import Step
@@ -38,10 +38,10 @@ def write_cmd(assembly: Assembly, path: Path) -> None:
     either part, so that `AZ(I, J)` is the joint's angle as Sevenbar counts it and `DZ(I, J, J)` its slide.
     No gravity acts.
     """
-    path.write_text(_Commands(assembly).text(), encoding="utf-8")
+    path.write_text(_AdamsCommands(assembly).text(), encoding="utf-8")
 
 
-class _Commands:
+class _AdamsCommands:
     """The commands as they are collected."""
 
     def __init__(self, assembly: Assembly) -> None:
@@ -133,7 +133,7 @@ class _Commands:
     def _name(self, body: int) -> str:
         return f"{self.model}.{_word(self.assembly.bodies[body], 'link')}"
 
-    def _part(self, body: int, mass: Mass) -> None:
+    def _part(self, body: int, mass: BodyMass) -> None:
         name = self._name(body)
         if self.assembly.bodies[body] != "ground":
             location, orientation = self._place(self.assembly.frames[body])

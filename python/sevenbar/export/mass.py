@@ -17,7 +17,7 @@ DENSITY = 7850.0
 
 
 @dataclass(frozen=True, eq=False)
-class Mass:
+class BodyMass:
     """Mass [kg]; its centre (3,) in the body's frame; inertia (3, 3) about the centre [kg length^2]."""
 
     mass: float
@@ -25,7 +25,7 @@ class Mass:
     inertia: Floats
 
 
-def masses(assembly: Assembly) -> list[Mass]:
+def masses(assembly: Assembly) -> list[BodyMass]:
     """The mass of each body, as if its solids of steel did not overlap and had no holes."""
     scale = LENGTHS[assembly.pose.linkage.length_unit]
     density = DENSITY * scale**3
@@ -35,7 +35,7 @@ def masses(assembly: Assembly) -> list[Mass]:
     ]
 
 
-def _sum(solids: Sequence[Solid], density: float) -> Mass:
+def _sum(solids: Sequence[Solid], density: float) -> BodyMass:
     single = [_of(solid, density) for solid in solids]
     mass = sum(one.mass for one in single)
     centre: Floats = np.sum([one.mass * one.centre for one in single], axis=0) / mass
@@ -43,13 +43,13 @@ def _sum(solids: Sequence[Solid], density: float) -> Mass:
     for one in single:
         arm = one.centre - centre
         inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return Mass(float(mass), centre, inertia)
+    return BodyMass(float(mass), centre, inertia)
 
 
-def _of(solid: Solid, density: float) -> Mass:
+def _of(solid: Solid, density: float) -> BodyMass:
     if isinstance(solid, Ball):
         mass = density * 4 / 3 * math.pi * solid.radius**3
-        return Mass(mass, solid.centre, 0.4 * mass * solid.radius**2 * np.eye(3))
+        return BodyMass(mass, solid.centre, 0.4 * mass * solid.radius**2 * np.eye(3))
     along = solid.end - solid.start
     length = float(np.linalg.norm(along))
     axis = along / length
@@ -60,4 +60,4 @@ def _of(solid: Solid, density: float) -> Mass:
         mass = density * solid.width**2 * length
         about, across = solid.width**2 / 6, (solid.width**2 + length**2) / 12
     inertia = mass * (across * np.eye(3) + (about - across) * np.outer(axis, axis))
-    return Mass(mass, (solid.start + solid.end) / 2, inertia)
+    return BodyMass(mass, (solid.start + solid.end) / 2, inertia)

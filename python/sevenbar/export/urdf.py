@@ -10,7 +10,7 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.export.mass import Mass, masses
+from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.kinematics.rigid import zyx_turns
 from sevenbar.text.units import LENGTHS
@@ -74,7 +74,7 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
             elif joint.row.has_cross:
                 _add_link(robot, assembly, cross, child, weights[cross], scale)
             else:
-                light = Mass(JOINING * weights[i].mass, np.zeros(3), JOINING * weights[i].inertia)
+                light = BodyMass(JOINING * weights[i].mass, np.zeros(3), JOINING * weights[i].inertia)
                 _add_link(robot, assembly, None, child, light, scale)
             parent, mount = child, np.eye(4)
         cross += joint.row.has_cross
@@ -128,7 +128,7 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
 
 
 def _add_link(
-    robot: Xml.Element, assembly: Assembly, body: int | None, name: str, mass: Mass | None, scale: float
+    robot: Xml.Element, assembly: Assembly, body: int | None, name: str, mass: BodyMass | None, scale: float
 ) -> None:
     """A link with what is drawn of it; one that only joins two freedoms has no body."""
     link = Xml.SubElement(robot, "link", name=name)

@@ -15,6 +15,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.general import expanded, merged, size_of
 from sevenbar.kinematics.geometry import Loop, following_coupler
 from sevenbar.kinematics.motion import Integers
+from sevenbar.text.printing import Printed
 
 #: The core's codes of motion types, and of dimensions that make no linkage.
 CODES = (
@@ -39,7 +40,7 @@ RSSR_ROWS = ("M", "N", "L1", "L2", "L3", "D")
 DRIVEN = 0
 
 #: Words of the motion types of linkages or circuits.
-Words = npt.NDArray[np.object_]
+MotionTypes = npt.NDArray[np.object_]
 
 
 def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -> Floats:
@@ -53,8 +54,8 @@ def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -
     return np.array([np.broadcast_to(rows[name], count) for name in RSSR_ROWS], dtype=np.float64)
 
 
-@dataclass(frozen=True, eq=False)
-class Motions:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motions(Printed):
     """What the motions of n linkages come to.
 
     `clear` (n,) tells which are told here; of the others, that have a reason to give or must be followed
@@ -64,7 +65,7 @@ class Motions:
     """
 
     clear: npt.NDArray[np.bool_]
-    types: Words
+    types: MotionTypes
     limits: Floats
     circuits: Integers
     linkage: Integers
@@ -155,7 +156,7 @@ def _limits(raw: _core.LoopBatch, linkage: Integers, linkages: Sequence[Loop], *
     return limits
 
 
-def _columns(raw: _core.RawMeasures, types: Words, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
+def _columns(raw: _core.RawMeasures, types: MotionTypes, *, turns: bool) -> dict[str, npt.NDArray[Any]]:
     """Measures (c,) of circuits of some types, by name; `turns`: the output does."""
     columns: dict[str, npt.NDArray[Any]] = {
         "turns": raw.turns.astype(np.float64),

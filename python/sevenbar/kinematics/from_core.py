@@ -123,6 +123,7 @@ def circuit_from(
         time_ratio=raw.time_ratio,
         input_column=input_column,
         output_column=output_column,
+        input_turns=linkage.column_kinds[input_column] == "turn",
         output_turns=linkage.column_kinds[output_column] == "turn",
         size=size,
         speed=speed if law is None else math.nan,

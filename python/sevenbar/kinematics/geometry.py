@@ -16,6 +16,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z, column_names
 from sevenbar.kinematics.rigid import about, inverse, pose
+from sevenbar.text.printing import Printed
 
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, joints as drawn.
 Form = Literal["rssr", "rows", "drawn"]
@@ -99,8 +100,8 @@ class Drive:
     speed: float = 1.0
 
 
-@dataclass(frozen=True, eq=False)
-class Loop:
+@dataclass(frozen=True, eq=False, repr=False)
+class Loop(Printed):
     """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground`.
 
     `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,

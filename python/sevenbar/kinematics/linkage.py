@@ -21,7 +21,7 @@ from sevenbar.text.units import sliding_speed, turning_speed
 MOST_SAMPLES = 1_000_000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Linkage(Solvable):
     """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground` that is asked for its modes and its motion.
 

@@ -15,6 +15,7 @@ from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.kinematics.columns import joint_column, point_column
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.rigid import axial
+from sevenbar.text.printing import Printed
 from sevenbar.text.units import LENGTHS
 
 if TYPE_CHECKING:
@@ -83,8 +84,8 @@ class ChangePoint:
         return self.ways == 0
 
 
-@dataclass(frozen=True, eq=False)
-class Output:
+@dataclass(frozen=True, eq=False, repr=False)
+class Output(Printed):
     """Both branches of the closed form on n inputs; arrays (2, n), `None` above the order asked for.
 
     `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without
@@ -110,8 +111,8 @@ def _none() -> Floats:
     return np.array([])
 
 
-@dataclass(frozen=True, eq=False)
-class Modes:
+@dataclass(frozen=True, eq=False, repr=False)
+class Modes(Printed):
     """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi].
 
     Turns of a ball that have no direction are NaN; `status` tells of such modes.
@@ -185,8 +186,8 @@ class Search:
     uncounted: Literal["searched", "lost", "still"] | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Trace:
+@dataclass(frozen=True, eq=False, repr=False)
+class Trace(Printed):
     """A point of a link along a circuit, in the report frame; arrays of shape (n, 3).
 
     `position` [length], `velocity` [length/s], `acceleration` [length/s^2], `jerk` [length/s^3]. Rows
@@ -200,8 +201,8 @@ class Trace:
     status: Words
 
 
-@dataclass(frozen=True, eq=False)
-class Law:
+@dataclass(frozen=True, eq=False, repr=False)
+class Law(Printed):
     """An input law: time [s], input [rad] and its derivatives by time, each of shape (n,).
 
     Laws of the same numbers are equal; its arrays are its own and read-only.
@@ -264,8 +265,8 @@ class Law:
         return np.column_stack([self.q, self.dq, self.ddq, self.dddq])
 
 
-@dataclass(frozen=True, eq=False)
-class Circuit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Circuit(Printed):
     """One connected motion, row by row along it.
 
     `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
@@ -311,7 +312,8 @@ class Circuit:
     time_ratio: float | None
     input_column: int
     output_column: int
-    #: Whether the output is an angle, not a slide.
+    #: Whether input and output are angles, not slides.
+    input_turns: bool
     output_turns: bool
     #: The size of the linkage [length].
     size: float
@@ -404,8 +406,8 @@ class Circuit:
         return frame
 
 
-@dataclass(frozen=True, eq=False)
-class LinkMotion:
+@dataclass(frozen=True, eq=False, repr=False)
+class LinkMotion(Printed):
     """How a link turns along a circuit, in the report frame.
 
     `rotation` (n, 3, 3), its axes as columns; `velocity` [rad/s] and `acceleration` [rad/s^2] are vectors
@@ -472,8 +474,8 @@ class Solvable(Loop):
         raise NotImplementedError
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Printed):
     """The circuits of a linkage over the whole input range."""
 
     linkage: Solvable

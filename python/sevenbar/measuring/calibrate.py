@@ -35,6 +35,7 @@ from sevenbar.kinematics.motion import Law
 from sevenbar.measuring.compare import Comparison, compare, ends_of, inputs_of
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.measuring.sensitivity import Closure, Response, RowsClosure, closure_of, followed, response
+from sevenbar.text.printing import Printed
 
 #: Zeros of the measured joints that may be free too: linkage input = measured input + input_offset,
 #: measured output = linkage output + output_offset.
@@ -78,8 +79,8 @@ class Parameter:
     undone_by: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class Calibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class Calibration(Printed):
     """What a measured curve tells of a linkage's dimensions.
 
     Arrays (n,) hold the rows that were used: `input` [rad, or length] as calibrated, `measured` as in the

@@ -20,6 +20,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Law
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
+from sevenbar.text.printing import Printed
 from sevenbar.text.units import sliding_speed, turning_speed
 
 #: What may be aligned.
@@ -48,7 +49,7 @@ SAME_MISFIT = 1e-12
 
 
 @dataclass(frozen=True)
-class Candidate:
+class PassFit:
     """A pass of a circuit: its misfit (root mean square of differences in parts of each measured range)."""
 
     circuit: int
@@ -73,8 +74,8 @@ class Spread:
     mean: float
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Printed):
     """Measured and computed values at the same inputs, (n,) each; NaN where the loop does not close.
 
     `input` [rad, or length] is that of the linkage: the measured one plus `chosen.phase`; `measured` has
@@ -85,8 +86,8 @@ class Comparison:
     ends: Ends
     source: str
     speed: float
-    chosen: Candidate
-    candidates: tuple[Candidate, ...]
+    chosen: PassFit
+    candidates: tuple[PassFit, ...]
     aligned: tuple[str, ...]
     line: np.ndarray[tuple[int], np.dtype[np.int64]]
     input: Floats
@@ -356,9 +357,7 @@ class _Problem:
         centre = math.atan2(float(np.sin(known).mean()), float(np.cos(known).mean()))
         return centre + float((known - centre - math.tau * np.round((known - centre) / math.tau)).mean())
 
-    def candidates(
-        self, phase: bool, offset: bool, circuit: int | None, branch: int | None
-    ) -> list[Candidate]:
+    def candidates(self, phase: bool, offset: bool, circuit: int | None, branch: int | None) -> list[PassFit]:
         """Every pass with its misfit, the best first."""
         here = self.passes(self.inputs)
         for name, word, value, known in (
@@ -393,11 +392,11 @@ class _Problem:
     def _at(self, key: tuple[int, int, int], phase: float) -> list[Floats]:
         return self.passes(self.inputs + phase + math.tau * key[2])[key[:2]]
 
-    def _judged(self, key: tuple[int, int, int], phase: float, offset: bool) -> Candidate:
+    def _judged(self, key: tuple[int, int, int], phase: float, offset: bool) -> PassFit:
         rates = self._at(key, phase)
         moved = self.offset(rates) if offset else 0.0
         misfit, open_rows = self.misfit(rates, moved)
-        return Candidate(*key, misfit, open_rows, phase, moved)
+        return PassFit(*key, misfit, open_rows, phase, moved)
 
     def _first_look(
         self, wanted: Sequence[tuple[int, int, int]], offset: bool
@@ -432,7 +431,7 @@ class _Problem:
             found[key] = best[1]
         return found
 
-    def _refined(self, candidate: Candidate, offset: bool) -> Candidate:
+    def _refined(self, candidate: PassFit, offset: bool) -> PassFit:
         """The phase and offset of least squares near those given, by Gauss and Newton's steps."""
         key = (candidate.circuit, candidate.branch, candidate.turn)
         best = candidate
@@ -461,7 +460,7 @@ class _Problem:
                 return best
         return best
 
-    def side_by_side(self, chosen: Candidate) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    def side_by_side(self, chosen: PassFit) -> tuple[dict[str, Floats], dict[str, Floats]]:
         """Computed and measured values of each quantity on the chosen pass."""
         rates = self._at((chosen.circuit, chosen.branch, chosen.turn), chosen.phase)
         apart = self.differences(rates, chosen.offset)
@@ -477,7 +476,7 @@ class _Problem:
 
     def curve(
         self,
-        chosen: Candidate,
+        chosen: PassFit,
         ends: tuple[float, float],
         measured: Mapping[str, Floats],
         computed: Mapping[str, Floats],

@@ -13,6 +13,7 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Circuit
 from sevenbar.measuring.measured import Ends, MeasuredExtremes
+from sevenbar.text.printing import Printed
 
 #: Below this share of the range a lowest or highest value has no per cent worth printing.
 NEAR_ZERO = 1e-9
@@ -44,8 +45,8 @@ class Extent:
         return rows
 
 
-@dataclass(frozen=True)
-class ExtremesComparison:
+@dataclass(frozen=True, repr=False)
+class ExtremesComparison(Printed):
     """The paper's Table 1: measured extremes beside those of a circuit, exact ones by root finding."""
 
     linkage: Linkage

@@ -18,8 +18,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, TableError, shown, suggestion
 from sevenbar.kinematics.motion import Integers
+from sevenbar.text.printing import Printed
 from sevenbar.text.ranges import split_name
-from sevenbar.text.table import Table, name_and_unit, plain_name, read_table, read_text, unit_size
+from sevenbar.text.table import TextTable, name_and_unit, plain_name, read_table, read_text, unit_size
 from sevenbar.text.units import MeasuredUnit
 
 #: What the tables hold, as messages say it.
@@ -70,8 +71,8 @@ class Ends:
         return {"time": "s", "turn": "deg", "slide": "mm"}[kind] + ("", "/s", "/s^2")[order]
 
 
-@dataclass(frozen=True, eq=False)
-class Measured:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measured(Printed):
     """Measured rows: `values` (n,) by quantity, in s, rad (or the length unit) and their derivatives.
 
     `line` (n,) is the line of the file of each row; `labels` tell from which column each quantity came.
@@ -93,8 +94,8 @@ class Measured:
         return tuple(quantity for quantity in OUTPUTS if quantity in self.values)
 
 
-@dataclass(frozen=True, eq=False)
-class MeasuredExtremes:
+@dataclass(frozen=True, eq=False, repr=False)
+class MeasuredExtremes(Printed):
     """The lowest and the highest measured value of each quantity, as the paper's Table 1 has them."""
 
     source: str
@@ -216,7 +217,7 @@ def _quantity(name: str, unit: MeasuredUnit | None, ends: Ends) -> str | None:
     return None
 
 
-def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, int]:
+def _places(table: TextTable, ends: Ends, columns: Mapping[str, str]) -> dict[str, int]:
     """The column of each quantity, named by the caller or found by its header."""
     places = {quantity: _named(table, quantity, text) for quantity, text in columns.items()}
     taken = set(places.values())
@@ -237,7 +238,7 @@ def _places(table: Table, ends: Ends, columns: Mapping[str, str]) -> dict[str, i
     return places | {quantity: found[0] for quantity, found in candidates.items()}
 
 
-def _named(table: Table, quantity: str, text: str) -> int:
+def _named(table: TextTable, quantity: str, text: str) -> int:
     for wanted in (text, text.lower()):
         for place, name in enumerate(table.names):
             if name and wanted in (name, name.lower(), name_and_unit(name)[0]):
@@ -252,7 +253,7 @@ def _named(table: Table, quantity: str, text: str) -> int:
     )
 
 
-def _refuse_what_is_missing(table: Table, ends: Ends, places: Mapping[str, int]) -> None:
+def _refuse_what_is_missing(table: TextTable, ends: Ends, places: Mapping[str, int]) -> None:
     if not any(quantity in places for quantity in OUTPUTS):
         what = f"no column for the angle, velocity or acceleration of the output {shown(ends.output)}"
     elif "time" not in places and "input" not in places:

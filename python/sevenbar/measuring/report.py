@@ -20,7 +20,8 @@ from sevenbar.measuring.figures import calibration_figure, comparison_figure, tu
 from sevenbar.measuring.measured import Ends
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, json_text, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
-from sevenbar.reporting.page import Facts, drive_text, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table, opening
+from sevenbar.text.printing import text_of
 
 #: Candidates and notes are told in full in the JSON; of candidates the page has as many.
 MOST_CANDIDATES = 4
@@ -404,3 +405,14 @@ def _rows(ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, A
 
 def _suffix(unit: str) -> str:
     return unit.replace("/", "_").replace("\u00b2", "2")
+
+
+@text_of.register(Comparison)
+@text_of.register(ExtremesComparison)
+def _(comparison: Comparison | ExtremesComparison) -> str:
+    return opening("Comparison", comparison_text(comparison))
+
+
+@text_of.register(Calibration)
+def _(calibration: Calibration) -> str:
+    return opening("Calibration", calibration_text(calibration))

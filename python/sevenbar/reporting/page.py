@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from io import StringIO
 
 from rich.box import SIMPLE_HEAD
+from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
+
+from sevenbar.text.printing import WIDTH
 
 
 class Facts:
@@ -41,3 +45,14 @@ def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: 
     for row in rows:
         table.add_row(*map(Text, row))
     return table
+
+
+def opening(kind: str, page: RenderableType) -> str:
+    """What a result of this kind prints of itself: the title of its page, and the facts below it."""
+    parts = page.renderables[:2] if isinstance(page, Group) else [page]
+    console = Console(file=StringIO(), width=WIDTH, color_system=None)
+    with console.capture() as told:
+        for part in parts:
+            console.print(part)
+    title, *facts = told.get().splitlines()
+    return "\n".join([f"{kind} of '{title.strip()}'", *(f"  {line}".rstrip() for line in facts)])

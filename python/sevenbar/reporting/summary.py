@@ -103,7 +103,7 @@ def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
 
 def joint_text(linkage: Loop, column: int, value: float) -> str:
     """A joint's value with its unit."""
-    return _Shown("rad" if linkage.column_kinds[column] == "turn" else linkage.length_unit)(value)
+    return Shown("rad" if linkage.column_kinds[column] == "turn" else linkage.length_unit)(value)
 
 
 def side_lengths(linkage: Solvable) -> dict[str, float]:
@@ -122,11 +122,9 @@ def closure_error(circuits: Iterable[Circuit]) -> float:
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
     """What the report tells of the motion as a whole: names and words."""
     linkage = motion.linkage
-    facts = [("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))]
-    numbers = {} if linkage.form == "rows" else dict(linkage.dimensions) or side_lengths(linkage)
-    if numbers:
-        told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
-        facts.append(("dimensions", f"{told}  [{linkage.length_unit}]"))
+    facts = [("loop", joints_text(linkage))]
+    if numbers := dimensions_text(linkage):
+        facts.append(("dimensions", numbers))
     speed = motion.speed if motion.law is None else None
     facts.append(("drive", drive_text(motion.input, speed, _units(motion)[0], motion.output)))
     if motion.law is not None:
@@ -138,7 +136,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         facts.append(("", told))
     facts.append(("circuits", _circuit_count(motion)))
     if motion.circuits or motion.limits.size:
-        show = _Shown(_units(motion)[0])
+        show = Shown(_units(motion)[0])
         facts.append(("input limits", "  ".join(show(x) for x in motion.limits) or _no_limits(motion)))
     facts.extend(_change_points(motion))
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
@@ -153,9 +151,27 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     return facts
 
 
+def joints_text(linkage: Loop) -> str:
+    """The joints in loop order: kinds and names."""
+    return "  ".join(f"{joint.kind} {joint.name}" for joint in linkage.joints)
+
+
+def dimensions_text(linkage: Solvable) -> str:
+    """The dimensions by name; nothing of Denavit-Hartenberg rows, which want a table."""
+    numbers = {} if linkage.form == "rows" else dict(linkage.dimensions) or side_lengths(linkage)
+    told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
+    return f"{told}  [{linkage.length_unit}]" if told else ""
+
+
+def speed_text(linkage: Loop, input: str, speed: float) -> str:
+    """The speed at which a joint drives."""
+    turns = linkage.column_kinds[linkage.columns.index(input)] == "turn"
+    return f"at {speed:.6g} {'rad' if turns else linkage.length_unit}/s"
+
+
 def _change_points(motion: Motion) -> list[tuple[str, str]]:
     """Lines for the poses at which branches meet, and for those that stand alone."""
-    show = _Shown(_units(motion)[0])
+    show = Shown(_units(motion)[0])
     lines = []
     meeting = [point for point in motion.change_points if not point.isolated]
     if meeting:
@@ -299,7 +315,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     """All that is told of circuits, in order."""
     first, second = motion.input, motion.output
     in_unit, out_unit = _units(motion)
-    place, result = _Shown(in_unit), _Shown(out_unit)
+    place, result = Shown(in_unit), Shown(out_unit)
 
     def ends(extremes: Extremes | None, show: Callable[[float], str], otherwise: str) -> Texts:
         if extremes is None:
@@ -312,7 +328,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
             return ends(extremes, _plain, "no row within the range")
         return ends(extremes, _plain, "change point" if circuit.goes_round else "no bound at limits")
 
-    def range_of(circuit: Circuit, end: int, show: _Shown) -> Texts:
+    def range_of(circuit: Circuit, end: int, show: Shown) -> Texts:
         extent = circuit.output_range if end else circuit.input_range
         if extent is not None and words_of(circuit.motion_type)[end] == "spindle":
             return ("without end",)
@@ -320,7 +336,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
 
     def way(circuit: Circuit) -> Texts:
         words = (circuit.motion_type,) if motion.motion_type == "mixed" else ()
-        return (*words, _way_round(circuit)) if len({_way_round(c) for c in motion}) > 1 else words or ("-",)
+        return (*words, way_round(circuit)) if len({way_round(c) for c in motion}) > 1 else words or ("-",)
 
     def swing(circuit: Circuit) -> Texts:
         return ("-",) if circuit.swing is None else (result(circuit.swing),)
@@ -383,7 +399,8 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     ]
 
 
-def _way_round(circuit: Circuit) -> str:
+def way_round(circuit: Circuit) -> str:
+    """How a circuit closes: after so many turns of the input, to and fro, or not."""
     if not circuit.closed:
         return "open"
     return _turns(circuit.turns) if circuit.turns else "to and fro"
@@ -487,7 +504,7 @@ def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts
     return Sheet((where.ljust(width), *names), tuple((label, *cells) for label, cells in lines))
 
 
-class _Shown:
+class Shown:
     """How a joint's value is written: an angle in degrees, a slide in the length unit."""
 
     def __init__(self, unit: str) -> None:
@@ -496,7 +513,7 @@ class _Shown:
     def __call__(self, value: float, *, whole: bool = False) -> str:
         """The value with its unit; `whole` takes an angle into [0, 360)."""
         if self._unit != "rad":
-            return f"{value:.6g} {self._unit}"
+            return f"{value:.6g} {self._unit}".rstrip()
         return _degrees(value, whole=whole)
 
     def same(self, a: float, b: float) -> bool:
@@ -514,7 +531,7 @@ def _degrees(angle: float, *, whole: bool = False) -> str:
     return f"{(degrees % 360 if whole else degrees) + 0.0:.3f}\u00b0"
 
 
-def _dead_centres(circuit: Circuit, kind: str, show: _Shown, *, within: bool = False) -> Texts:
+def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = False) -> Texts:
     """Where the input or the output stands still; `within`: but for the ends of its range."""
     found: Sequence[DeadCentre] = [d for d in circuit.dead_centres if d.kind == kind]
     if within:

@@ -12,8 +12,9 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
-from sevenbar.simulation.joint_values import Bodies, JointValues, joint_values
+from sevenbar.simulation.joint_values import BodyStates, JointValues, joint_values
 from sevenbar.simulation.prototype import Prototype
+from sevenbar.text.printing import Printed
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class PointValues:
     acceleration: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class Simulation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Simulation(Printed):
     """One run of an engine, row by row beside Sevenbar's.
 
     `input` (n,) and `time` (n,) [s] of the rows; `engine` and `theory` hold the joints' values, the theory's
@@ -126,7 +127,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
     return replace(found, differences=tuple(_differences(found)))
 
 
-def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> Bodies:
+def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyStates:
     """The links of a record from one row on, the ground last; crosses left out."""
     kept = [number for number, body in enumerate(model.bodies) if body.link]
     rows = len(record.time) - first
@@ -136,7 +137,7 @@ def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> Bodie
         return np.concatenate([values[first:, kept], own], axis=1)
 
     still = np.zeros(3)
-    return Bodies(
+    return BodyStates(
         with_ground(record.frames, linkage.ground),
         with_ground(record.velocity, still),
         with_ground(record.acceleration, still),

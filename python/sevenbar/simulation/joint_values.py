@@ -16,7 +16,7 @@ from sevenbar.kinematics.rigid import axial, zyx_turns
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class BodyStates:
     """Links at n times, the ground last: frames (n, links, 4, 4), the rest (n, links, 3) as in a record."""
 
     frames: Floats
@@ -52,7 +52,7 @@ class JointValues:
     tilt: Floats
 
 
-def joint_values(linkage: Loop, bodies: Bodies) -> JointValues:
+def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
     """The values of all joints of a linkage whose links stand and move so."""
     rows = len(bodies.frames)
     still = np.zeros((rows, 3))
@@ -121,7 +121,7 @@ def _dot(a: Floats, b: Floats) -> Floats:
 
 
 def _slide_acceleration(
-    bodies: Bodies,
+    bodies: BodyStates,
     i: int,
     way: Floats,
     axis: Floats,
@@ -139,7 +139,7 @@ def _slide_acceleration(
 
 
 def _universal(
-    joint: Joint, turn: Floats, before: Floats, bodies: Bodies, i: int, spin: Floats, spin_rate: Floats
+    joint: Joint, turn: Floats, before: Floats, bodies: BodyStates, i: int, spin: Floats, spin_rate: Floats
 ) -> list[tuple[Floats, Floats, Floats]]:
     """Both turns of a universal joint: z of the frame before, then z of the frame after."""
     c, s = math.cos(joint.angle), math.sin(joint.angle)

@@ -25,8 +25,9 @@ from sevenbar.reporting.files import (
     text_file,
     without_nan,
 )
-from sevenbar.reporting.page import Facts, drive_text, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.simulation.agreement import Difference, Simulation
+from sevenbar.text.printing import text_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -175,3 +176,8 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
     found["closure_error_rad"] = run.engine.tilt.max(axis=1)
     return found
+
+
+@text_of.register(Simulation)
+def _(run: Simulation) -> str:
+    return opening("Simulation", text(run))

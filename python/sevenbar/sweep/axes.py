@@ -65,7 +65,7 @@ def span(low: float | str, high: float | str) -> Span:
 
 
 @dataclass(frozen=True)
-class Axis:
+class SweepAxis:
     """A dimension of a sweep and its values, in the file's unit: listed, counted, or of a span.
 
     `listed` are its values; else they lie from `low` to `high`, `count` of them, or any where that is `None`.
@@ -109,7 +109,7 @@ class Axis:
         return {"name": own.name, "column": own.column, "unit": own.unit, **values}
 
 
-def axis_of(dimension: Dimension, given: Given) -> Axis:
+def axis_of(dimension: Dimension, given: Given) -> SweepAxis:
     """The axis that a caller gave for a dimension.
 
     Raises `RequestError` for values that do not fit, an empty range, a count that is none.
@@ -125,9 +125,9 @@ def axis_of(dimension: Dimension, given: Given) -> Axis:
         if not math.isfinite(high - low):
             raise RequestError(f"{name}: {given.low} to {given.high} is too wide; give ends nearer together")
         if isinstance(given, Span):
-            return Axis(dimension, low, high, None)
+            return SweepAxis(dimension, low, high, None)
         count = whole_number(name, given.count, 2, MOST_COUNTED, "a count of values", ", or one value alone")
-        return Axis(dimension, low, high, count)
+        return SweepAxis(dimension, low, high, count)
     if isinstance(given, str | bytes) or not hasattr(given, "__len__"):
         raise RequestError(
             f"{name}: {shown(given)} is not what a dimension takes; give grid(low, high, count), "
@@ -137,7 +137,7 @@ def axis_of(dimension: Dimension, given: Given) -> Axis:
         told = "no values are" if len(given) == 0 else f"{len(given)} values are"
         raise RequestError(f"{name}: {told} listed; give 1 to {MOST_LISTED}, or a grid")
     listed = tuple(_value(dimension, one) for one in given)
-    return Axis(dimension, min(listed), max(listed), len(listed), listed)
+    return SweepAxis(dimension, min(listed), max(listed), len(listed), listed)
 
 
 def _value(dimension: Dimension, given: object) -> float:

@@ -15,7 +15,7 @@ from sevenbar.kinematics.batches import (
     RSSR_ROWS,
     WORDS,
     Motions,
-    Words,
+    MotionTypes,
     loop_motions,
     rssr_motions,
     rssr_rows,
@@ -24,13 +24,13 @@ from sevenbar.kinematics.batches import (
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Integers
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
-from sevenbar.sweep.plan import OF_TYPES, Plan
+from sevenbar.sweep.plan import OF_TYPES, SweepPlan
 
 #: Sizes [file's units] between which nothing is refused by the description; others are left to be looked at.
 LEAST, GREATEST = 1e-50, 1e50
 
 
-def batched(plan: Plan, values: Floats, threads: int) -> tuple[list[Block], Integers]:
+def batched(plan: SweepPlan, values: Floats, threads: int) -> tuple[list[Block], Integers]:
     """The rows of linkages (axes, n) that the core measures, and which are left to be analysed one by one.
 
     Left are those that a description refuses or that do not move, which have their reason to tell, change
@@ -51,7 +51,7 @@ def batched(plan: Plan, values: Floats, threads: int) -> tuple[list[Block], Inte
     return [block], np.flatnonzero(rest)
 
 
-def _of_rssrs(plan: Plan, values: Floats, threads: int) -> Block:
+def _of_rssrs(plan: SweepPlan, values: Floats, threads: int) -> Block:
     """The rows of the RSSRs (axes, n) that are clear."""
     dimensions, speed = _dimensions(plan, values)
     sizes = np.abs([*dimensions, speed, *values])
@@ -67,7 +67,7 @@ def _of_rssrs(plan: Plan, values: Floats, threads: int) -> Block:
     return replace(block, linkage=which[block.linkage])
 
 
-def _of_loops(plan: Plan, values: Floats, threads: int) -> Block | None:
+def _of_loops(plan: SweepPlan, values: Floats, threads: int) -> Block | None:
     """The rows of the loops (axes, n) that are clear; `None` where no description makes one."""
     linkages: list[Linkage] = []
     which: list[int] = []
@@ -84,7 +84,7 @@ def _of_loops(plan: Plan, values: Floats, threads: int) -> Block | None:
     return replace(block, linkage=np.array(which)[block.linkage])
 
 
-def _dimensions(plan: Plan, values: Floats) -> tuple[Floats, Floats]:
+def _dimensions(plan: SweepPlan, values: Floats) -> tuple[Floats, Floats]:
     """The core's rows (6, n) of dimensions, and the speed of the input (n,) [rad/s]."""
     linkage = plan.draft.linkage
     swept = {axis.dimension.place: row for axis, row in zip(plan.space.axes, values, strict=True)}
@@ -95,7 +95,7 @@ def _dimensions(plan: Plan, values: Floats) -> tuple[Floats, Floats]:
     return rssr_rows(own, count, follows=follows), np.broadcast_to(speed, count)
 
 
-def _of_types(plan: Plan, dimensions: Floats, threads: int) -> Block:
+def _of_types(plan: SweepPlan, dimensions: Floats, threads: int) -> Block:
     """A row for each linkage, of what its dimensions tell without its circuits."""
     codes, limits = rssr_types(dimensions, plan.input, threads)
     linkage = np.flatnonzero(codes != INVALID)
@@ -103,7 +103,7 @@ def _of_types(plan: Plan, dimensions: Floats, threads: int) -> Block:
     return Block(linkage, np.full(len(linkage), NO_CIRCUIT), _ok(linkage), columns)
 
 
-def _of_circuits(plan: Plan, motions: Motions) -> Block:
+def _of_circuits(plan: SweepPlan, motions: Motions) -> Block:
     """A row for each linkage, or for each of its circuits where one of the measures is of circuits."""
     own = [measure for measure in plan.measured if measure.per == "circuit"]
     if not own:
@@ -124,7 +124,9 @@ def _of_circuits(plan: Plan, motions: Motions) -> Block:
     return Block(linkage, circuit, _ok(linkage), columns)
 
 
-def _of_linkages(plan: Plan, linkage: Integers, types: Words, limits: Floats) -> dict[str, npt.NDArray[Any]]:
+def _of_linkages(
+    plan: SweepPlan, linkage: Integers, types: MotionTypes, limits: Floats
+) -> dict[str, npt.NDArray[Any]]:
     """Columns (r,) of motion type and limits, of the linkage of each row."""
     columns: dict[str, npt.NDArray[Any]] = {}
     if "motion_type" in plan.measures:

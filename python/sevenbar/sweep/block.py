@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from sevenbar.kinematics.measures import Measure
 from sevenbar.kinematics.motion import Integers
-from sevenbar.sweep.plan import Plan
+from sevenbar.sweep.plan import SweepPlan
 
 #: The status of a linkage that was measured.
 OK = "ok"
@@ -55,7 +55,7 @@ def per_circuit(measures: tuple[Measure, ...]) -> bool:
     return any(measure.per == "circuit" for measure in measures)
 
 
-def limit_names(plan: Plan) -> tuple[str, ...]:
+def limit_names(plan: SweepPlan) -> tuple[str, ...]:
     """Columns that hold the limits themselves, where those are asked for: of an RSSR at most four."""
     if "limits" not in plan.measures or plan.draft.linkage.kind != "RSSR":
         return ()

@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Any, NoReturn
 
 from sevenbar.errors import EngineError, MissingExtraError, RequestError, SevenbarError, shown
-from sevenbar.sweep.plan import Plan, maker
+from sevenbar.sweep.plan import SweepPlan, maker
 from sevenbar.sweep.rows import part_bytes
 
 #: Time [s] in which a scheduler must answer.
@@ -32,7 +32,7 @@ IN_FLIGHT = 2
 class Cluster:
     """The workers of a scheduler, for one sweep; closed after use, whatever happened."""
 
-    def __init__(self, address: str, plan: Plan) -> None:
+    def __init__(self, address: str, plan: SweepPlan) -> None:
         """Calls the scheduler at an address, as in "tcp://host:8786".
 
         Raises `MissingExtraError` without dask, `RequestError` for an address where none answers, and for
@@ -190,7 +190,7 @@ class Cluster:
         ) from None
 
 
-def _made_by(plan: Plan, part: int) -> tuple[bytes, Mapping[str, str]]:
+def _made_by(plan: SweepPlan, part: int) -> tuple[bytes, Mapping[str, str]]:
     """A part and what made it: run by a worker."""
     return part_bytes(plan, part), maker()
 

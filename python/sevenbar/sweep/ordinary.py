@@ -13,13 +13,13 @@ from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.measures import Measure, rows_of
 from sevenbar.kinematics.motion import Integers, Motion
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
-from sevenbar.sweep.plan import Plan
+from sevenbar.sweep.plan import SweepPlan
 
 #: Measures of a linkage or circuit, by name.
 Row = dict[str, float | int | str | None]
 
 
-def analysed(plan: Plan, values: Floats, first: int, which: Integers) -> Block:
+def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Block:
     """The rows of some linkages of a part: `values` (axes, n) of all, the first one's number, and which.
 
     Raises `RequestError` for a function of the caller that does not take a motion.

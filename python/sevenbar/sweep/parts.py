@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from sevenbar.errors import OutputError, shown
-from sevenbar.sweep.plan import FORMAT, Plan
+from sevenbar.sweep.plan import FORMAT, SweepPlan
 from sevenbar.sweep.rows import MARK
 
 #: The description's file.
@@ -66,7 +66,7 @@ class PartsFolder:
     """A folder that a sweep fills; held against a second run as long as it is open."""
 
     def __init__(
-        self, path: Path, plan: Plan, makers: Sequence[Mapping[str, str]], *, resume: bool, mixed: bool
+        self, path: Path, plan: SweepPlan, makers: Sequence[Mapping[str, str]], *, resume: bool, mixed: bool
     ):
         """Makes the folder, or takes that of the same sweep up again.
 

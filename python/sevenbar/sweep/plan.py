@@ -36,7 +36,7 @@ OF_TYPES = frozenset({"motion_type", "limits"})
 
 
 @dataclass(frozen=True)
-class Plan:
+class SweepPlan:
     """A sweep as it was asked for: which linkages, which measures, how many linkages to a part.
 
     `measures` are names, or measures that have none of the known names. `input` and `output` are columns.
@@ -63,7 +63,7 @@ class Plan:
         input: str | None = None,
         output: str | None = None,
         part_size: int | None = None,
-    ) -> Plan:
+    ) -> SweepPlan:
         """The plan of what a caller asks for.
 
         Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a linkage that is not
@@ -79,7 +79,7 @@ class Plan:
         size = whole_number("part_size", part_size, 1, MOST_IN_A_PART, "a count of linkages")
         names = tuple(m.name if MEASURES.get(m.name) is m else m for m in found)
         bare = replace(draft)  # without what it has cached
-        return Plan(bare, space, names, motion.samples, motion.input, motion.output, size)
+        return SweepPlan(bare, space, names, motion.samples, motion.input, motion.output, size)
 
     @property
     def measured(self) -> tuple[Measure, ...]:

@@ -16,6 +16,7 @@ from sevenbar.errors import MissingExtraError, OutputError, RequestError
 from sevenbar.sweep.block import OK
 from sevenbar.sweep.parts import part_name, parts_there, read_description
 from sevenbar.sweep.rows import need_pyarrow
+from sevenbar.text.printing import Printed, lines, text_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,8 +48,8 @@ class Totals:
     ranges: Mapping[str, Range | None]
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Printed):
     """A sweep with all its parts: `description` is what `sweep.json` holds.
 
     `folder` is where the parts lie, `None` for a sweep in memory.
@@ -159,3 +160,19 @@ def _wider(known: Range | None, numbers: Any, linkage: Any) -> Range | None:
     higher = max(known, own, key=lambda r: r.highest)
     rows = known.rows + own.rows
     return Range(lower.lowest, lower.lowest_at, higher.highest, higher.highest_at, rows)
+
+
+@text_of.register(Sweep)
+def _(sweep: Sweep) -> str:
+    told = sweep.description
+    sampling = told["sampling"]
+    return lines(
+        f"Sweep of {told['linkages']} linkages",
+        [
+            ("dimensions", ", ".join(axis["column"] for axis in told["dimensions"])),
+            ("method", sampling["method"]),
+            ("seed", "" if sampling["seed"] is None else str(sampling["seed"])),
+            ("measures", ", ".join(m if isinstance(m, str) else m["name"] for m in told["measures"])),
+            ("folder", "none, in memory" if sweep.folder is None else str(sweep.folder)),
+        ],
+    )

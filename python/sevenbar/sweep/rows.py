@@ -13,7 +13,7 @@ from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.sweep.batches import batched
 from sevenbar.sweep.block import NO_CIRCUIT, Block, limit_names, per_circuit
 from sevenbar.sweep.ordinary import analysed
-from sevenbar.sweep.plan import Plan
+from sevenbar.sweep.plan import SweepPlan
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -40,7 +40,7 @@ def need_pyarrow() -> None:
         ) from None
 
 
-def schema(plan: Plan) -> pa.Schema:
+def schema(plan: SweepPlan) -> pa.Schema:
     """Names with units and types of a sweep's columns, and its mark.
 
     Raises `RequestError` for a name that would stand twice.
@@ -68,7 +68,7 @@ def schema(plan: Plan) -> pa.Schema:
     return pa.schema(fields, metadata={MARK: plan.digest()})
 
 
-def part_table(plan: Plan, part: int, threads: int = 1) -> pa.Table:
+def part_table(plan: SweepPlan, part: int, threads: int = 1) -> pa.Table:
     """The rows of a part, by linkage and circuit."""
     linkages = plan.linkages(part)
     values = plan.space.values(linkages.start, linkages.stop)
@@ -78,7 +78,7 @@ def part_table(plan: Plan, part: int, threads: int = 1) -> pa.Table:
     return _table(plan, linkages.start, values, Block.joined(blocks))
 
 
-def part_bytes(plan: Plan, part: int, threads: int = 1) -> bytes:
+def part_bytes(plan: SweepPlan, part: int, threads: int = 1) -> bytes:
     """The Parquet file of a part: the same bits wherever it is made by the same `maker`."""
     import pyarrow.parquet as pq
 
@@ -89,7 +89,7 @@ def part_bytes(plan: Plan, part: int, threads: int = 1) -> bytes:
     return sink.getvalue()
 
 
-def _table(plan: Plan, first: int, values: Floats, block: Block) -> pa.Table:
+def _table(plan: SweepPlan, first: int, values: Floats, block: Block) -> pa.Table:
     import pyarrow as pa
 
     linkage = block.linkage

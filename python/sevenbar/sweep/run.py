@@ -17,7 +17,7 @@ from sevenbar.kinematics.measures import Measure
 from sevenbar.kinematics.motion import Motion
 from sevenbar.sweep.axes import Given, whole_number
 from sevenbar.sweep.parts import PartsFolder, other_maker
-from sevenbar.sweep.plan import Plan, maker
+from sevenbar.sweep.plan import SweepPlan, maker
 from sevenbar.sweep.result import Sweep
 from sevenbar.sweep.rows import need_pyarrow, part_bytes, schema
 
@@ -63,7 +63,7 @@ def run(
     """Measures of many linkages: named dimensions over grids, lists and samples.
 
     `axes` names dimensions (`Draft.dimensions`) and what each takes: `grid(low, high, count)`, a list, or
-    `span(low, high)` of which `count` samples are drawn by `method` random, latin or sobol with `seed`.
+    `span(low, high)` of which `count` samples are drawn by `method` random or sobol with `seed`.
     `measures` are names of `measures.MEASURES` or functions of the Motion, taken with `samples` a turn.
     With `out` the rows go to a folder of Parquet parts of `part_size` linkages; `resume` goes on with the
     parts that are there, `mixed` also with those of other versions or vector units. It runs on `threads`
@@ -79,7 +79,7 @@ def run(
         >>> found.table()["motion_type"].to_pylist()
         ['crank-rocker', 'double-rocker', 'double-rocker', 'double-rocker']
     """
-    plan = Plan.of(
+    plan = SweepPlan.of(
         linkage, axes, measures, method=method, count=count, seed=seed, samples=samples,
         input=input, output=output, part_size=part_size,
     )  # fmt: skip
@@ -89,7 +89,7 @@ def run(
 
 
 def carry_out(
-    plan: Plan,
+    plan: SweepPlan,
     *,
     out: str | os.PathLike[str] | None = None,
     resume: bool = False,
@@ -127,7 +127,7 @@ def _threads(threads: object) -> int:
 
 
 def _filled(
-    plan: Plan,
+    plan: SweepPlan,
     makers: Sequence[Mapping[str, str]],
     made: Making,
     out: str | os.PathLike[str] | None,
@@ -172,7 +172,7 @@ def _filled(
     return Sweep(plan.description(known), None, [contents[part] for part in range(plan.parts)])
 
 
-def _on_threads(plan: Plan, threads: int, parts: Iterable[int]) -> Generator[Made, None, None]:
+def _on_threads(plan: SweepPlan, threads: int, parts: Iterable[int]) -> Generator[Made, None, None]:
     """The parts as they are finished, by threads of this process."""
     here = maker()
     rest = iter(parts)

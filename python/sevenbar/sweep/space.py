@@ -11,11 +11,11 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.sweep.axes import Axis, Given, axis_of, whole_number
-from sevenbar.sweep.sampling import MOST_SOBOL, latin_points, random_points, sobol_points
+from sevenbar.sweep.axes import Given, SweepAxis, axis_of, whole_number
+from sevenbar.sweep.sampling import MOST_SOBOL, random_points, sobol_points
 
 #: How linkages are chosen.
-METHODS = ("grid", "random", "latin", "sobol")
+METHODS = ("grid", "random", "sobol")
 
 #: Most linkages: their indices are exact in every number that is formed from them.
 MOST_LINKAGES = 10**15
@@ -31,7 +31,7 @@ MOST_SEED = 2**63 - 1
 class Space:
     """The axes, how linkages are chosen among their values, how many, and the seed of what is random."""
 
-    axes: tuple[Axis, ...]
+    axes: tuple[SweepAxis, ...]
     method: str
     count: int
     seed: int | None
@@ -79,7 +79,7 @@ class Space:
         if count is None:
             raise RequestError(f"count: missing; a {method} sample needs one, as in 1000")
         most = MOST_SOBOL if method == "sobol" else MOST_LINKAGES
-        hint = ", or the method random or latin" if method == "sobol" else ""
+        hint = ", or the method random" if method == "sobol" else ""
         return Space(found, method, whole_number("count", count, 1, most, "a count", hint), number)
 
     def values(self, first: int, stop: int) -> Floats:
@@ -94,21 +94,19 @@ class Space:
         seed, axes = self.seed or 0, len(self.axes)
         if self.method == "random":
             points = random_points(seed, axes, first, stop)
-        elif self.method == "latin":
-            points = latin_points(seed, axes, first, stop, self.count)
         else:
             points = sobol_points(seed, axes, first, stop)
         return np.stack([axis.within(share) for axis, share in zip(self.axes, points, strict=True)])
 
 
-def _grid(axes: tuple[Axis, ...], spans: list[Axis], count: int | None, seed: int | None) -> Space:
+def _grid(axes: tuple[SweepAxis, ...], spans: list[SweepAxis], count: int | None, seed: int | None) -> Space:
     counts = [axis.count or 1 for axis in axes]
     total = math.prod(counts)
     told = " x ".join(map(str, counts)) + (f" = {total}" if len(counts) > 1 else "")
     if spans:
         raise RequestError(
             f"{spans[0].name}: {spans[0].low:g} to {spans[0].high:g} is a span, which a grid does not walk; "
-            "give LOW:HIGH:COUNT, or a method random, latin or sobol"
+            "give LOW:HIGH:COUNT, or the method random or sobol"
         )
     if count is not None and count != total:
         raise RequestError(

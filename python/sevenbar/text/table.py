@@ -44,7 +44,7 @@ _NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
 
 @dataclass(frozen=True)
-class Table:
+class TextTable:
     """Text cells: `names` and `units` of the columns ("" where not given), rows with their lines."""
 
     source: str
@@ -246,7 +246,7 @@ def read_text(path: Path, of: str) -> str:
     )
 
 
-def read_table(path: Path, of: str) -> Table:
+def read_table(path: Path, of: str) -> TextTable:
     """The table of a file, `of` what messages say; `TableError` with the line where it is none."""
     source = str(path)
     lines = read_text(path, of).splitlines()
@@ -279,7 +279,7 @@ def read_table(path: Path, of: str) -> Table:
         rows.append(tuple(cells))
         numbers.append(i)
     decimal_comma = delimiter != "," and _decimal_comma(rows)
-    return Table(source, names, units, header_line, tuple(numbers), tuple(rows), decimal_comma)
+    return TextTable(source, names, units, header_line, tuple(numbers), tuple(rows), decimal_comma)
 
 
 def _is_remark(line: str) -> bool:

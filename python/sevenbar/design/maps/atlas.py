@@ -12,13 +12,14 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
-from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions, within
+from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
 from sevenbar.design.maps.rssr_plane import RssrPlane
-from sevenbar.design.maps.window import Axis, Range, axes_of
+from sevenbar.design.maps.window import MapAxis, Range, axes_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.text.printing import Printed
 
 #: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
 GRID, LOOP_GRID = 61, 25
@@ -44,13 +45,13 @@ EXACT = 1e-10
 
 
 @dataclass(frozen=True)
-class Step:
+class NearestChange:
     """How far the design is from a change along one dimension: the boundary's `value`, and the kind beyond.
 
     `value` [the dimension's unit] is `None`, and so is `kind`, where no boundary is met inside the window.
     """
 
-    axis: Axis
+    axis: MapAxis
     way: Literal["down", "up"]
     value: float | None
     kind: Kind | None
@@ -64,11 +65,11 @@ class Design:
     y: float
     inside: bool
     kind: Kind
-    steps: tuple[Step, ...]
+    steps: tuple[NearestChange, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Map:
+@dataclass(frozen=True, eq=False, repr=False)
+class Map(Printed):
     """The kinds of linkages over two dimensions of a draft.
 
     Boundaries and regions hold places (n, 2) in shares of the two ranges; `values` turns such into the
@@ -79,7 +80,7 @@ class Map:
 
     draft: Draft
     input: str
-    axes: tuple[Axis, Axis]
+    axes: tuple[MapAxis, MapAxis]
     kinds: tuple[Kind, ...]
     grid: Integers
     boundaries: tuple[Boundary, ...]
@@ -119,7 +120,7 @@ class Map:
         """
         found = np.full(len(places), -1, dtype=np.int64)
         for region in self.regions:
-            found[within([region.outline, *region.holes], places)] = region.kind
+            found[region.holds(places)] = region.kind
         speck = (found < 0) & ((places >= 0) & (places <= 1)).all(axis=1)
         found[speck] = self.plane.kinds_at(places[speck])
         return found
@@ -218,7 +219,7 @@ def _grid(mesh: Mesh) -> Integers:
 
 
 def _design(
-    plane: Plane, axes: tuple[Axis, Axis], motion: Motion, lines: tuple[Boundary, ...], tolerance: float
+    plane: Plane, axes: tuple[MapAxis, MapAxis], motion: Motion, lines: tuple[Boundary, ...], tolerance: float
 ) -> Design:
     values = [axis.dimension.value for axis in axes]
     here = np.array([float(axis.share(value)) for axis, value in zip(axes, values, strict=True)])
@@ -227,7 +228,7 @@ def _design(
         kind = Kind("change-point", 0)
     else:
         kind = Kind(motion.motion_type, len(motion.circuits))
-    steps: list[Step] = []
+    steps: list[NearestChange] = []
     for place, axis in enumerate(axes) if inside else ():
         crossings = _crossings(lines, here, place)
         for way, sign in (("down", -1), ("up", 1)):
@@ -235,12 +236,12 @@ def _design(
                 (sign * (at - here[place]), at, k) for at, *k in crossings if sign * (at - here[place]) > 0
             ]
             if not ahead:
-                steps.append(Step(axis, way, None, None))  # type: ignore[arg-type]
+                steps.append(NearestChange(axis, way, None, None))  # type: ignore[arg-type]
                 continue
             _, at, (low, high) = min(ahead)
             exact = _exact(plane, here, place, at, tolerance)
             beyond = plane.kinds[high if sign > 0 else low]
-            steps.append(Step(axis, way, float(axis.value(exact)), beyond))  # type: ignore[arg-type]
+            steps.append(NearestChange(axis, way, float(axis.value(exact)), beyond))  # type: ignore[arg-type]
     return Design(values[0], values[1], inside, kind, tuple(steps))
 
 

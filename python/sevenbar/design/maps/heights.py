@@ -11,11 +11,12 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
-from sevenbar.design.maps.outline import joined, within
+from sevenbar.design.maps.outline import Region, joined
 from sevenbar.design.maps.plane import Take
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
 from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.text.printing import Printed
 
 #: About how many contour lines are drawn where none are asked for.
 LEVELS = 9
@@ -52,8 +53,8 @@ class Contour:
     places: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class Heights:
+@dataclass(frozen=True, eq=False, repr=False)
+class Heights(Printed):
     """A measure over a map.
 
     `take` tells which circuit counts; `unit` is that of the values, "" without one. `nodes` (n, 2) [shares]
@@ -170,12 +171,10 @@ def _net(of: Map) -> tuple[Floats, Integers, Integers]:
     nodes, kinds, triangles = [], [], []
     count = 0
     for kind in range(len(of.kinds)):
-        loops = [
-            loop for region in of.regions if region.kind == kind for loop in (region.outline, *region.holes)
-        ]
-        if not loops or not of.kinds[kind].circuits:
+        regions = [region for region in of.regions if region.kind == kind]
+        if not regions or not of.kinds[kind].circuits:
             continue
-        own, corners = _triangles(of, kind, loops, crossings[numbers == kind], step)
+        own, corners = _triangles(of, kind, regions, crossings[numbers == kind], step)
         nodes.append(own)
         kinds.append(np.full(len(own), kind))
         triangles.append(corners + count)
@@ -186,12 +185,20 @@ def _net(of: Map) -> tuple[Floats, Integers, Integers]:
 
 
 def _triangles(
-    of: Map, kind: int, loops: Sequence[Floats], inner: Floats, step: float
+    of: Map, kind: int, regions: Sequence[Region], inner: Floats, step: float
 ) -> tuple[Floats, Integers]:
     """Triangles between places of one kind, given ones and others along the boundary, and those places."""
     from matplotlib.tri import Triangulation
 
-    parts = [_beside(loop, step / DENSER, _margin(of)) for loop in loops]
+    parts = [
+        _beside(loop, step / DENSER, _margin(of))
+        for region in regions
+        for loop in (region.outline, *region.holes)
+    ]
+
+    def within(places: Floats) -> np.ndarray:
+        return np.asarray(np.any([region.holds(places) for region in regions], axis=0))
+
     chosen = np.concatenate([np.arange(len(part)) % DENSER == 0 for part in parts])
     beside = np.concatenate(parts)
     right = of.plane.kinds_at(beside) == kind
@@ -206,10 +213,10 @@ def _triangles(
         clockwise = ax * by < bx * ay
         corners[clockwise] = corners[clockwise][:, ::-1]
         middle = own[corners].mean(axis=1)
-        tests = [within(loops, middle)]
+        tests = [within(middle)]
         for a, b in ((0, 1), (1, 2), (2, 0)):
             side = own[corners[:, [a, b]]].mean(axis=1)
-            tests.append(within(loops, side + SHRUNK * (middle - side)))
+            tests.append(within(side + SHRUNK * (middle - side)))
         inside = np.all(tests, axis=0)
         crossing = own[corners[np.any(tests, axis=0) & ~inside]]
         corners = corners[inside]
@@ -273,8 +280,8 @@ def _contours(
             zip(edges, _crossed(of, measure, take, level, spacing, nodes, values, edges), strict=True)
         )
         for kind, own in sorted(pieces.items()):
-            for line in joined(own):
-                yield from _inside(of, level, kind, np.array([places[edge] for edge in line]))
+            for line in joined(np.array([[places[first], places[second]] for first, second in own])):
+                yield from _inside(of, level, kind, line)
 
 
 def _inside(of: Map, level: float, kind: int, places: Floats) -> Iterable[Contour]:

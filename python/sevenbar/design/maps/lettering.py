@@ -10,7 +10,6 @@ from matplotlib.patheffects import withStroke
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
-from sevenbar.design.maps.outline import within
 
 #: Places across a map where the name of a region is tried.
 RASTER = 160
@@ -33,15 +32,11 @@ def names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[fl
     """Writes the name of each region where it fits, lying or standing, in the place with most room."""
     ticks = (np.arange(RASTER) + 0.5) / RASTER
     x, y = np.meshgrid(ticks, ticks)
-    numbers = np.full(x.size, -1)
     places = np.column_stack([x.ravel(), y.ravel()])
-    for index, region in enumerate(of.regions):
-        numbers[within([region.outline, *region.holes], places)] = index
-    owner = numbers.reshape(RASTER, RASTER)
     box = axes.get_position()
     size = np.array([box.width * inches[0], box.height * inches[1]])
-    for index, region in enumerate(of.regions):
-        free = (owner == index) & ~taken
+    for region in of.regions:
+        free = region.holds(places).reshape(RASTER, RASTER) & ~taken
         name = of.name(of.kinds[region.kind])
         for points in (15.0, 12.0, 9.5):
             letter = points * scale / 72

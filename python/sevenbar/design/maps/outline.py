@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections import defaultdict
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TypeVar
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
+import shapely
+from shapely.geometry.polygon import orient
 
 from sevenbar.arrays import Floats
-from sevenbar.design.maps.mesh import Mesh, Node
-
-Place = tuple[float, float]
-
-Name = TypeVar("Name", bound=Hashable)
+from sevenbar.design.maps.mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,161 +27,76 @@ class Boundary:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """A connected part of a map of one kind: its outline, anticlockwise, and its holes [shares], (n, 2)."""
+    """A connected part of a map of one kind: a `polygon` [shares of the ranges]."""
 
     kind: int
-    outline: Floats
-    holes: tuple[Floats, ...]
+    polygon: shapely.Polygon
 
     @property
     def area(self) -> float:
         """Its share of the map."""
-        return signed_area(self.outline) + sum(signed_area(hole) for hole in self.holes)
+        return float(self.polygon.area)
+
+    @cached_property
+    def outline(self) -> Floats:
+        """Its outline (n, 2), anticlockwise."""
+        return _loop(self.polygon.exterior)
+
+    @cached_property
+    def holes(self) -> tuple[Floats, ...]:
+        """Its holes, each (n, 2), clockwise."""
+        return tuple(_loop(hole) for hole in self.polygon.interiors)
+
+    def holds(self, places: Floats) -> np.ndarray:
+        """Whether places (n, 2) are in it, or on its outline (n,)."""
+        shapely.prepare(self.polygon)
+        return np.asarray(shapely.intersects_xy(self.polygon, *places.T))
 
     def without(self, speck: float) -> Region:
         """The region without holes that are not wider than a speck [share]."""
-        kept = tuple(hole for hole in self.holes if np.ptp(hole, axis=0).max() > speck)
-        return Region(self.kind, self.outline, kept)
+        kept = [hole for hole in self.polygon.interiors if np.ptp(_loop(hole), axis=0).max() > speck]
+        return Region(self.kind, shapely.Polygon(self.polygon.exterior, kept))
 
 
-def signed_area(loop: Floats) -> float:
-    """The area within a closed loop (n, 2), negative where it runs clockwise."""
-    x, y = loop.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+def _loop(ring: shapely.LinearRing) -> Floats:
+    places: Floats = shapely.get_coordinates(ring)[:-1]
+    return places
 
 
 def boundaries(mesh: Mesh) -> tuple[Boundary, ...]:
     """The chords joined to lines, each between two kinds; they end where kinds meet, or at the border."""
-    pairs: dict[tuple[int, int], list[tuple[Node, Node]]] = defaultdict(list)
+    pairs: dict[tuple[int, int], list[Floats]] = defaultdict(list)
     for chord in mesh.chords:
+        ends = np.array([mesh.places[chord.start], mesh.places[chord.end]])
         if chord.left < chord.right:
-            pairs[chord.left, chord.right].append((chord.start, chord.end))
+            pairs[chord.left, chord.right].append(ends)
         else:
-            pairs[chord.right, chord.left].append((chord.end, chord.start))
-    found = []
-    for (left, right), pieces in sorted(pairs.items()):
-        for line in joined(pieces):
-            found.append(Boundary(left, right, np.array([mesh.places[node] for node in line])))
-    return tuple(found)
+            pairs[chord.right, chord.left].append(ends[::-1])
+    return tuple(Boundary(*pair, line) for pair, own in sorted(pairs.items()) for line in joined(own))
 
 
-def joined(pieces: Iterable[tuple[Name, Name]]) -> list[list[Name]]:
-    """Directed pieces joined end to start, as far as only one follows another."""
-    after: dict[Name, list[Name]] = defaultdict(list)
-    before: dict[Name, int] = defaultdict(int)
-    for start, end in pieces:
-        after[start].append(end)
-        before[end] += 1
-    through = {node for node in after if len(after[node]) == 1 and before[node] == 1}
-    lines = []
-    for start in [node for node in after if node not in through]:
-        for end in after[start]:
-            line = [start, end]
-            while line[-1] in through:
-                line.append(after[line[-1]].pop())
-                through.discard(line[-2])
-            lines.append(line)
-    while through:
-        line = [through.pop()]
-        while after[line[-1]]:
-            line.append(after[line[-1]].pop())
-            through.discard(line[-1])
-        lines.append(line)
-    return lines
+def joined(pieces: Iterable[Floats]) -> list[Floats]:
+    """Directed pieces (2, 2) joined end to start, as far as only one follows another: lines (n, 2)."""
+    lines = shapely.multilinestrings(shapely.linestrings(np.array(list(pieces))))
+    parts = shapely.get_parts(shapely.line_merge(lines, directed=True))
+    return [shapely.get_coordinates(line) for line in parts]
 
 
 def regions(mesh: Mesh) -> tuple[Region, ...]:
     """The parts of the window by kind, the largest first."""
-    pieces: dict[int, list[tuple[Node, Node]]] = defaultdict(list)
-    places: dict[Node, Place] = dict(mesh.places)
+    hands: dict[tuple[tuple[float, float], ...], int] = {}
     for chord in mesh.chords:
-        pieces[chord.left].append((chord.start, chord.end))
-        pieces[chord.right].append((chord.end, chord.start))
-    for kind, start, end in _border(mesh, places):
-        pieces[kind].append((start, end))
+        start, end = mesh.places[chord.start], mesh.places[chord.end]
+        hands[start, end], hands[end, start] = chord.left, chord.right
+    ends = np.array([(mesh.places[chord.start], mesh.places[chord.end]) for chord in mesh.chords])
+    chords = shapely.linestrings(ends.reshape(-1, 2, 2))
+    lines = shapely.union_all([shapely.box(0, 0, 1, 1).exterior, *chords])
     found = []
-    for kind, own in sorted(pieces.items()):
-        loops = [np.array([places[node] for node in loop]) for loop in _loops(own, places)]
-        loops = [loop for loop in loops if len(loop) > 2]
-        outer = [loop for loop in loops if signed_area(loop) > 0]
-        holes = [loop for loop in loops if signed_area(loop) < 0]
-        owner = [_around(hole, outer) for hole in holes]
-        for i, outline in enumerate(outer):
-            mine = tuple(hole for hole, o in zip(holes, owner, strict=True) if o == i)
-            found.append(Region(kind, outline, mine))
+    for face in map(orient, shapely.get_parts(shapely.polygonize(shapely.get_parts(lines)))):
+        rings = [shapely.get_coordinates(ring).tolist() for ring in (face.exterior, *face.interiors)]
+        sides = [(tuple(a), tuple(b)) for ring in rings for a, b in pairwise(ring)]
+        kinds = Counter(hands[side] for side in sides if side in hands)
+        # without a boundary all the window is one
+        kind = kinds.most_common(1)[0][0] if kinds else mesh.corners[0, 0]
+        found.append(Region(kind, face))
     return tuple(sorted(found, key=lambda region: -region.area))
-
-
-def _border(mesh: Mesh, places: dict[Node, Place]) -> list[tuple[int, Node, Node]]:
-    """The window's own edge, anticlockwise, in pieces of one kind."""
-    size = mesh.scheme.size
-    cuts = [node for node in mesh.places if len(node) == 2]
-    ring = [(0, 0), (size, 0), (size, size), (0, size)]
-    found: list[tuple[int, Node, Node]] = []
-    for index, start in enumerate(ring):
-        end = ring[(index + 1) % 4]
-        axis = 0 if start[1] == end[1] else 1
-        sign = 1 if end[axis] > start[axis] else -1
-        own = [n for n in cuts if n[0][1 - axis] == n[1][1 - axis] == start[1 - axis]]
-        own.sort(key=lambda node: sign * mesh.places[node][axis])
-        here: Node = (start,) * 3
-        places[here] = (start[0] / size, start[1] / size)
-        kind = mesh.corners[start]
-        for node in own:
-            found.append((kind, here, node))
-            here, kind = node, mesh.corners[node[1] if sign > 0 else node[0]]
-        found.append((kind, here, (end,) * 3))
-    return found
-
-
-def _loops(pieces: Sequence[tuple[Node, Node]], places: Mapping[Node, Place]) -> list[list[Node]]:
-    """Closed loops of directed pieces that keep one kind on the left."""
-    after: dict[Node, list[Node]] = defaultdict(list)
-    for start, end in pieces:
-        after[start].append(end)
-    loops = []
-    for first in list(after):
-        while after[first]:
-            loop, here = [first], after[first].pop()
-            while here != first:
-                before, ways = loop[-1], after[here]
-                loop.append(here)
-                turn = [_turn(places[before], places[here], places[way]) for way in ways]
-                here = ways.pop(turn.index(max(turn)))
-            loops.append(loop)
-    return loops
-
-
-def _turn(before: Place, here: Place, after: Place) -> float:
-    """The turn to the left from one piece to the next, in (-pi, pi]: the sharpest keeps to one region."""
-    came = math.atan2(here[1] - before[1], here[0] - before[0])
-    goes = math.atan2(after[1] - here[1], after[0] - here[0])
-    turn = (goes - came) % math.tau
-    return turn - math.tau if turn > math.pi else turn
-
-
-def _around(hole: Floats, outer: Sequence[Floats]) -> int:
-    """The place of the smallest outline round a hole."""
-    # a hole may touch its outline in a corner, so one of its corners is no witness
-    inside = [i for i, loop in enumerate(outer) if within([loop], hole).mean() > 0.5]
-    return min(inside, key=lambda i: signed_area(outer[i]), default=-1)
-
-
-def within(loops: Iterable[Floats], points: Floats) -> np.ndarray:
-    """Whether points (n, 2) lie within an odd number of closed loops."""
-    order = np.argsort(points[:, 1], kind="stable")
-    x, y = points[order].T
-    crossings = np.zeros(len(points), dtype=np.int64)
-    for loop in loops:
-        start, end = loop, np.roll(loop, -1, axis=0)
-        low, high = np.minimum(start[:, 1], end[:, 1]), np.maximum(start[:, 1], end[:, 1])
-        first, last = np.searchsorted(y, low, side="left"), np.searchsorted(y, high, side="left")
-        edge = np.repeat(np.arange(len(loop)), last - first)
-        # the points from `first` to `last` of every edge, one after the other
-        point = np.arange(len(edge)) - np.repeat(np.cumsum(last - first) - last, last - first)
-        rise = (y[point] - start[edge, 1]) / (end[edge, 1] - start[edge, 1])
-        right = start[edge, 0] + rise * (end[edge, 0] - start[edge, 0]) > x[point]
-        crossings += np.bincount(point[right], minlength=len(points))
-    inside = np.empty(len(points), dtype=bool)
-    inside[order] = crossings % 2 == 1
-    return inside

@@ -12,7 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.design.maps.window import Axis
+from sevenbar.design.maps.window import MapAxis
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.measures import Measure, rows_of
 from sevenbar.kinematics.motion import Integers, Motion
@@ -61,7 +61,7 @@ class Plane(ABC):
     nudges: tuple[float, ...]
 
     def __init__(
-        self, draft: Draft, axes: tuple[Axis, Axis], input: str, samples: int, progress: Progress | None
+        self, draft: Draft, axes: tuple[MapAxis, MapAxis], input: str, samples: int, progress: Progress | None
     ) -> None:
         self.draft, self.axes, self.input, self.samples = draft, axes, input, samples
         self.kinds: list[Kind] = []

@@ -14,12 +14,13 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
-from sevenbar.design.maps.atlas import Map, Step
+from sevenbar.design.maps.atlas import Map, NearestChange
 from sevenbar.design.maps.figures import draw
 from sevenbar.design.maps.heights import Heights
 from sevenbar.reporting.files import Report, Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
-from sevenbar.reporting.page import Facts, number_table
+from sevenbar.reporting.page import Facts, number_table, opening
+from sevenbar.text.printing import text_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +78,7 @@ def as_dict(findings: MapFindings) -> dict[str, Any]:
     }
 
 
-def _step_dict(step: Step) -> dict[str, Any]:
+def _step_dict(step: NearestChange) -> dict[str, Any]:
     kind = None if step.kind is None else vars(step.kind)
     return {"dimension": step.axis.name, "way": step.way, "at": step.value, "becomes": kind}
 
@@ -140,7 +141,7 @@ def _precision(of: Map) -> str:
     )
 
 
-def _row(of: Map, step: Step) -> list[str]:
+def _row(of: Map, step: NearestChange) -> list[str]:
     axis = step.axis
     end = axis.low if step.way == "down" else axis.high
     if step.value is None or step.kind is None:
@@ -194,3 +195,8 @@ def _columns(of: Map) -> list[str]:
 def _rows(of: Map, lines: Sequence[tuple[Floats, tuple[Any, ...]]]) -> list[list[Any]]:
     """Rows of a table of lines: what each line is, and one after the other its places."""
     return [[*told, *place] for places, told in lines for place in np.asarray(of.values(places)).tolist()]
+
+
+@text_of.register(Map)
+def _(of: Map) -> str:
+    return opening("Map", text(MapFindings(of)))

@@ -10,7 +10,7 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.critical import NEARLY_REAL, ROUNDING, critical_gaps
 from sevenbar.design.maps.plane import Kind, Plane, Progress, Take
-from sevenbar.design.maps.window import Axis
+from sevenbar.design.maps.window import MapAxis
 from sevenbar.kinematics.batches import CODES, RSSR_ROWS, rssr_motions, rssr_rows, rssr_types
 from sevenbar.kinematics.measures import Measure
 from sevenbar.kinematics.motion import Integers
@@ -34,7 +34,7 @@ class RssrPlane(Plane):
     nudges = (1e-9, 1e-8, 1e-7, 1e-6)
 
     def __init__(
-        self, draft: Draft, axes: tuple[Axis, Axis], input: str, samples: int, progress: Progress | None
+        self, draft: Draft, axes: tuple[MapAxis, MapAxis], input: str, samples: int, progress: Progress | None
     ) -> None:
         super().__init__(draft, axes, input, samples, progress)
         self._constant = {row: draft.dimension(f"rssr.{row}").value for row in RSSR_ROWS}

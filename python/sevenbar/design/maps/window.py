@@ -21,7 +21,7 @@ NARROWEST = 1e-9
 
 
 @dataclass(frozen=True)
-class Axis:
+class MapAxis:
     """A dimension and its range, `low` < `high` [the dimension's unit]."""
 
     dimension: Dimension
@@ -65,7 +65,7 @@ def split_ranges(given: Sequence[str]) -> dict[str, str]:
     return split_named("over", given, "a range of a dimension", f"give NAME=LOW:HIGH, {EXAMPLE}")
 
 
-def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[Axis, Axis]:
+def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[MapAxis, MapAxis]:
     """The two axes of a map, the first along x.
 
     `over` has a range for each of two dimensions of the draft: two numbers in the dimension's unit, or a text
@@ -83,7 +83,7 @@ def axes_of(draft: Draft, over: Mapping[str, Range]) -> tuple[Axis, Axis]:
     return first, second
 
 
-def _axis(dimension: Dimension, given: Range) -> Axis:
+def _axis(dimension: Dimension, given: Range) -> MapAxis:
     where = f"over: {dimension.name}"
     if isinstance(given, str):
         ends = split_range(given)
@@ -109,4 +109,4 @@ def _axis(dimension: Dimension, given: Range) -> Axis:
         )
     if dimension.positive and low <= 0:
         raise RequestError(f"{where}: {told} holds values that are no length; give a range above 0")
-    return Axis(dimension, low, high)
+    return MapAxis(dimension, low, high)

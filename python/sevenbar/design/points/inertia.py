@@ -23,6 +23,7 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.motion import Motion
+from sevenbar.text.printing import Printed
 from sevenbar.text.units import LENGTHS
 
 
@@ -36,8 +37,8 @@ class Mass:
     mass: float
 
 
-@dataclass(frozen=True, eq=False)
-class Inertia:
+@dataclass(frozen=True, eq=False, repr=False)
+class Inertia(Printed):
     """What k masses do over a cycle of n rows; `input` (n,) [rad, or length], `time` (n,) [s].
 
     `force` (k, n, 3) [N] are the inertia forces in the report frame, `acceleration` (k, n, 3) [m/s^2],

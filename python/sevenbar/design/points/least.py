@@ -22,6 +22,7 @@ from sevenbar.design.points.polish import Polished, polished
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import Motion
+from sevenbar.text.printing import Printed
 
 #: The part of the greatest within which upper and lower bound have to agree.
 GAP = 1e-9
@@ -45,7 +46,7 @@ DECIDING = 1e-5
 #: A direction of the box in which no rate changes by more than this part of the greatest change is free.
 FREE = 1e-12
 
-Quantity = Literal["velocity", "acceleration", "jerk"]
+Rate = Literal["velocity", "acceleration", "jerk"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +58,8 @@ class Compared:
     value: float
 
 
-@dataclass(frozen=True, eq=False)
-class LeastPoint:
+@dataclass(frozen=True, eq=False, repr=False)
+class LeastPoint(Printed):
     """The point `at` [length, as points are written] of a link at which a rate is least over the cycle.
 
     `value` is the greatest over the cycle, or the root mean square, of the quantity `of` [length/s, /s^2,
@@ -70,7 +71,7 @@ class LeastPoint:
     """
 
     cycle: Cycle
-    of: Quantity
+    of: Rate
     measure: Literal["greatest", "rms"]
     low: Floats
     high: Floats
@@ -157,7 +158,7 @@ def least_rms_point(
     link: int,
     box: npt.ArrayLike,
     *,
-    of: Quantity = "acceleration",
+    of: Rate = "acceleration",
     circuit: int = 0,
     branch: int = 0,
 ) -> LeastPoint:
@@ -177,7 +178,7 @@ def least_point(
     link: int,
     box: npt.ArrayLike,
     *,
-    of: Quantity = "acceleration",
+    of: Rate = "acceleration",
     measure: Literal["greatest", "rms"] = "greatest",
     circuit: int = 0,
     branch: int = 0,
@@ -226,7 +227,7 @@ def least_point(
 
 
 def _least_greatest(
-    cycle: Cycle, of: Quantity, box: tuple[Floats, Floats], free: Floats, around: float
+    cycle: Cycle, of: Rate, box: tuple[Floats, Floats], free: Floats, around: float
 ) -> tuple[Floats, float, float, Floats, Floats, int, ConeSolution]:
     """Point, value, bound, inputs that decide, their weights, rounds, the cones' last solution."""
     index, (low, high) = ORDERS.index(of), box
@@ -267,7 +268,7 @@ def _least_greatest(
 
 def _polished(
     cycle: Cycle,
-    of: Quantity,
+    of: Rate,
     at: Floats,
     rows: tuple[Floats, Floats],
     peaks: tuple[Floats, Floats],

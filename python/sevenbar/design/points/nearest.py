@@ -22,6 +22,7 @@ from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, tol
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.text.printing import Printed
 
 #: Starts along each side of the box: from the 27 points of a grid the basins of a closed curve are met.
 STARTS = 3
@@ -36,8 +37,8 @@ FOLLOWED = 4
 STEPS = 4
 
 
-@dataclass(frozen=True, eq=False)
-class NearestPath:
+@dataclass(frozen=True, eq=False, repr=False)
+class NearestPath(Printed):
     """The point `at` [length, as points are written] whose path is nearest m wanted places (m, 3).
 
     `path` (m, 3) are the places of its path compared with them, at `inputs` (m,) [rad, or length];

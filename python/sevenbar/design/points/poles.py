@@ -20,6 +20,7 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.motion import Motion, Words
+from sevenbar.text.printing import Printed
 
 #: The least singular value of G, in parts of its greatest, of a single pole. G is known to some 1e-12; a pole
 #: that is known to less than three digits is told as a line.
@@ -30,8 +31,8 @@ RANK = 1e-9
 STILL = 1e-10
 
 
-@dataclass(frozen=True, eq=False)
-class AccelerationPoles:
+@dataclass(frozen=True, eq=False, repr=False)
+class AccelerationPoles(Printed):
     """The pole of a link row by row over a cycle of n rows; `input` [rad, or length], `time` [s], each (n,).
 
     `status` (n,): "pole", one point without acceleration; "line", a line of points with the least, of which

@@ -20,7 +20,8 @@ from sevenbar.design.points.poles import poles_of
 from sevenbar.drawing.figure import slides
 from sevenbar.kinematics.columns import joint_column
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
-from sevenbar.reporting.page import Facts, drive_text, number_table
+from sevenbar.reporting.page import Facts, drive_text, number_table, opening
+from sevenbar.text.printing import text_of
 
 #: Most inputs that are told; more are a rate that is as great at all of them.
 MOST_TOLD = 6
@@ -346,3 +347,18 @@ def _pole_columns(found: LeastPoint) -> dict[str, Any]:
         for i, letter in enumerate(letters):
             columns[f"{letter}_{unit}"] = values[:, i]
     return columns | {f"remaining_{unit}_s2": poles.remaining, "condition": poles.condition}
+
+
+@text_of.register(LeastPoint)
+def _(found: LeastPoint) -> str:
+    return opening("Least point", least_text(found))
+
+
+@text_of.register(NearestPath)
+def _(found: NearestPath) -> str:
+    return opening("Nearest path", nearest_text(found))
+
+
+@text_of.register(Inertia)
+def _(found: Inertia) -> str:
+    return opening("Inertia", inertia_text(found))

@@ -17,6 +17,7 @@ from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Circuit, Integers, Motion
+from sevenbar.text.printing import Printed, brief, lines, text_of
 
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.
 CHECK_SAMPLES = 720
@@ -64,8 +65,8 @@ class Refusal:
     told: str
 
 
-@dataclass(frozen=True, eq=False)
-class Candidate:
+@dataclass(frozen=True, eq=False, repr=False)
+class Candidate(Printed):
     """A design that keeps what is claimed of it, with what was measured of it.
 
     `error_greatest`, `error_rms` [rad, or length]; `transmission_lowest` [rad] over the used range of the
@@ -349,3 +350,9 @@ def renamed(candidates: Sequence[Candidate], title: str) -> list[Candidate]:
         replace(c, draft=c.draft.with_value(("name",), f"{title}, design {i}"))
         for i, c in enumerate(candidates, 1)
     ]
+
+
+@text_of.register(Candidate)
+def _(candidate: Candidate) -> str:
+    told = candidate.columns.items()
+    return lines(f"Candidate '{candidate.name}'", [(n, brief(v)) for n, v in told if v is not None])

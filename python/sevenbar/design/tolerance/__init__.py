@@ -1,6 +1,5 @@
 """What tolerances of the dimensions do to the motion: exact sensitivities, worst case, Monte Carlo."""
 
-from sevenbar.design.tolerance.explain import explain
 from sevenbar.design.tolerance.inverse import tolerances_for
 from sevenbar.design.tolerance.linear import Linear, linear_estimate
 from sevenbar.design.tolerance.samples import MonteCarlo, monte_carlo
@@ -12,7 +11,6 @@ __all__ = [
     "MonteCarlo",
     "Sensitivities",
     "WorstCase",
-    "explain",
     "linear_estimate",
     "monte_carlo",
     "sensitivities",

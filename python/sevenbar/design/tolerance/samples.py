@@ -26,6 +26,7 @@ from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.printing import Printed
 
 #: Quantiles that are kept: the median, 95 % and the 3 sigma of a normal distribution.
 LEVELS = (0.00135, 0.025, 0.5, 0.975, 0.99865)
@@ -47,8 +48,8 @@ LOOKED_AT = 40
 MOST = 1_000_000
 
 
-@dataclass(frozen=True, eq=False)
-class MonteCarlo:
+@dataclass(frozen=True, eq=False, repr=False)
+class MonteCarlo(Printed):
     """Designs with errors at random, and what they tell of the linear estimate.
 
     Along the `linear.rows` (n,): `quantiles` (levels, n) of the deviations, at `LEVELS`, `mean` and

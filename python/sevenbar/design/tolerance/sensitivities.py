@@ -16,6 +16,7 @@ from sevenbar.design.tolerance.outputs import QUANTITIES, Output, outputs_of, sl
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Circuit, Words, chosen_circuit
+from sevenbar.text.printing import Printed, lines, text_of
 
 #: A change that counts as small where no tolerance is given [parts of the linkage's size, rad].
 SMALL = 1e-3
@@ -29,8 +30,8 @@ CLEAR = 3.0
 NEAR = "near-dead-centre"
 
 
-@dataclass(frozen=True, eq=False)
-class Sensitivities:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sensitivities(Printed):
     """The outputs of a circuit, and their derivatives by all dimensions.
 
     `values` (rows, outputs) and `slopes` (rows, outputs, dimensions) are in the outputs' units (angles in
@@ -197,3 +198,20 @@ def sensitivities(
     if np.isnan(found.of()).all() and not all(opens):
         raise RequestError(f"output: {motion.input} does not determine {motion.output}; give another output")
     return found
+
+
+@text_of.register(Sensitivities)
+def _(found: Sensitivities) -> str:
+    names = [dimension.name for dimension in found.dimensions]
+    greatest = [f"{dimension.name} {effect:.3g}" for dimension, effect, _ in found.ranking()[:3]]
+    return lines(
+        f"Sensitivities of '{found.linkage.name}', circuit {found.circuit.index}",
+        [
+            ("slopes", f"{found.slopes.shape}: rows, outputs, dimensions"),
+            ("outputs", ", ".join(dict.fromkeys(output.owner for output in found.outputs))),
+            ("dimensions", ", ".join(names)),
+            ("open the loop", ", ".join(found.opening)),
+            ("greatest", f"of a small change on {found.output_name}: {', '.join(greatest)}"),
+            ("measures", ", ".join(measure.name for measure in found.measures)),
+        ],
+    )

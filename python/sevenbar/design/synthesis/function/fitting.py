@@ -30,7 +30,7 @@ from sevenbar.design.synthesis.closure import (
     transmission_slopes,
     transmissions,
 )
-from sevenbar.design.synthesis.function.programs import MISSED, Heights, lowered
+from sevenbar.design.synthesis.function.programs import MISSED, MinimaxValues, lowered
 from sevenbar.design.synthesis.function.wish import Wish
 from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits, size_room, turning_room
 
@@ -54,7 +54,7 @@ MET, MOST_NEWTON = 1e-14, 12
 
 
 @dataclass(frozen=True, eq=False)
-class Point:
+class Estimate:
     """A design on the way: its row (6,) with L3 = 1, zeros (2,) [rad], branch."""
 
     row: Floats
@@ -79,12 +79,12 @@ class Fit:
         if wish.function is None:
             self.used = np.linspace(wish.input[0], wish.input[-1], 41)
 
-    def packed(self, point: Point) -> Floats:
+    def packed(self, point: Estimate) -> Floats:
         """The unknowns of a design."""
         zeros = np.empty(0) if self.wish.zeros is not None else point.zeros
         return np.concatenate([point.row[list(FREE)], zeros])
 
-    def unpacked(self, z: Floats, branch: int) -> Point:
+    def unpacked(self, z: Floats, branch: int) -> Estimate:
         """The design of unknowns, lengths positive; a negative L1 is half a turn of the input's zero."""
         row = np.ones(6)
         row[list(FREE)] = z[:5]
@@ -92,7 +92,7 @@ class Fit:
         row[3] = abs(row[3])
         if row[2] < 0:
             row[2], zeros = -row[2], zeros + np.array([math.pi, 0.0])
-        return Point(row, zeros, branch)
+        return Estimate(row, zeros, branch)
 
     def errors(self, z: Floats, branch: int) -> tuple[Floats, Floats]:
         """The errors (1) (m + n,) [rad] at samples and precision points, and their slopes (m + n, k)."""
@@ -137,7 +137,7 @@ class Fit:
         row[0, list(FREE)] = z[:5]
         return row, np.asarray(self.wish.zeros if self.wish.zeros is not None else z[5:], dtype=float)
 
-    def least_squares(self, start: Point) -> Point:
+    def least_squares(self, start: Estimate) -> Estimate:
         """The design of least squared error near another; missed limits and precision points weigh more."""
         from scipy.optimize import least_squares
 
@@ -177,7 +177,7 @@ class Fit:
             )
         return self.unpacked(found.x, start.branch)
 
-    def equalised(self, start: Point, *, hold: bool = False) -> Point:
+    def equalised(self, start: Estimate, *, hold: bool = False) -> Estimate:
         """The design of least greatest error near another, within the limits; its precision points met.
 
         With `hold` the input's zero stays: designs lie along valleys, and so each start keeps its place.
@@ -186,7 +186,7 @@ class Fit:
         z = lowered(lambda z: self._heights(z, start.branch), self.packed(start), held)
         return self.unpacked(z, start.branch)
 
-    def _heights(self, z: Floats, branch: int) -> Heights:
+    def _heights(self, z: Floats, branch: int) -> MinimaxValues:
         """What is to be made low, and what is to stay at or above zero, with slopes."""
         room, room_slopes = self.room(z)
         error, slopes = self.errors(z, branch)
@@ -197,14 +197,14 @@ class Fit:
             square, square_slopes = self.transmission(z)
             height, height_slopes = 1.0 - square, -square_slopes
         at, at_slopes = error[self.points], slopes[self.points]
-        return Heights(
+        return MinimaxValues(
             height,
             height_slopes,
             np.concatenate([room, at, -at]),
             np.concatenate([room_slopes, at_slopes, -at_slopes]),
         )
 
-    def exact(self, start: Point) -> Point:
+    def exact(self, start: Estimate) -> Estimate:
         """The design near by that meets the precision points to rounding, by Newton's shortest steps."""
         z = self.packed(start)
         for _ in range(MOST_NEWTON):

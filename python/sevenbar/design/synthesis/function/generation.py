@@ -27,11 +27,12 @@ from sevenbar.design.synthesis.candidates import (
 )
 from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
 from sevenbar.design.synthesis.function.expression import function_of
-from sevenbar.design.synthesis.function.fitting import Fit, Point
+from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.precision import designs_of, reflected, system, through
 from sevenbar.design.synthesis.function.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
 from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.text.printing import Printed
 
 #: What a design must keep to where nothing else is asked for.
 USUAL = Limits(transmission_lowest=math.radians(30))
@@ -52,8 +53,8 @@ START_APART = 0.15
 ENDS_APART = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
-class Synthesis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Synthesis(Printed):
     """Designs found for a wish, best first, and what was refused on the way.
 
     `searched` designs were looked at and `fitted` of them refined; `refusals` begin with the nearest.
@@ -193,10 +194,10 @@ def starts(wish: Wish, seed: int) -> tuple[Floats, Floats]:
     return (both, pairs) if wish.zeros is not None else reflected(both, pairs)
 
 
-def _chosen(fit: Fit, rows: Floats, zeros: Floats, most: int) -> list[Point]:
+def _chosen(fit: Fit, rows: Floats, zeros: Floats, most: int) -> list[Estimate]:
     """The most promising starts that differ: little error, limits nearly kept, all points on one branch."""
     wish, limits = fit.wish, fit.limits
-    scored: list[tuple[float, Point]] = []
+    scored: list[tuple[float, Estimate]] = []
     square = transmissions(rows, zeros[:, :1] + fit.used)
     ratio = np.abs(rows).max(axis=1) / rows[:, 2:5].min(axis=1)
     missed = np.maximum(
@@ -212,9 +213,9 @@ def _chosen(fit: Fit, rows: Floats, zeros: Floats, most: int) -> list[Point]:
         at_points = np.abs(off[:, fit.points]).max(axis=1) if wish.exact else np.zeros(len(rows))
         rms = np.sqrt((off[:, fit.range] ** 2).mean(axis=1)) + missed
         good = np.isfinite(off).all(axis=1) & (square.min(axis=1) > 0) & (at_points < ON_BRANCH)
-        scored += [(float(rms[i]), Point(rows[i], zeros[i], branch)) for i in np.flatnonzero(good)]
+        scored += [(float(rms[i]), Estimate(rows[i], zeros[i], branch)) for i in np.flatnonzero(good)]
     scored.sort(key=lambda pair: pair[0])
-    chosen: list[Point] = []
+    chosen: list[Estimate] = []
     seen = np.empty((0, 8))
     for _, point in scored:
         own = np.concatenate([np.arctan(point.row), np.cos(point.zeros)])
@@ -226,7 +227,7 @@ def _chosen(fit: Fit, rows: Floats, zeros: Floats, most: int) -> list[Point]:
     return chosen
 
 
-def _refined(fit: Fit, chosen: list[Point], *, hold: bool) -> Iterator[tuple[Point, float]]:
+def _refined(fit: Fit, chosen: list[Estimate], *, hold: bool) -> Iterator[tuple[Estimate, float]]:
     """The designs that starts lead to, with their greatest errors before these were equalised [rad]."""
     seen: list[Floats] = []
     for start in chosen:
@@ -246,7 +247,7 @@ def _refined(fit: Fit, chosen: list[Point], *, hold: bool) -> Iterator[tuple[Poi
 
 
 def _judged(
-    wish: Wish, point: Point, before: float, limits: Limits, tolerance: float
+    wish: Wish, point: Estimate, before: float, limits: Limits, tolerance: float
 ) -> tuple[float, Candidate | Refusal]:
     """A design as the ordinary analysis finds it, and its greatest error [rad], infinite without one."""
     rows, zeros = point.row[None], point.zeros[None]

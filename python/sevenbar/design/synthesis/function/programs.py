@@ -39,7 +39,7 @@ KEPT_LITTLE, KEPT_MOST = 0.1, 0.7
 
 
 @dataclass(frozen=True, eq=False)
-class Heights:
+class MinimaxValues:
     """Heights (h,) whose greatest is made least, rooms (r,) that must not be negative, and their slopes."""
 
     height: Floats
@@ -59,7 +59,7 @@ class Heights:
 
 
 def lowered(
-    heights: Callable[[Floats], Heights | None],
+    heights: Callable[[Floats], MinimaxValues | None],
     start: Floats,
     held: tuple[int, ...] = (),
     *,
@@ -99,19 +99,19 @@ def lowered(
     return z
 
 
-def _gained(now: Heights, then: Heights | None) -> float:
+def _gained(now: MinimaxValues, then: MinimaxValues | None) -> float:
     """By how much a place is better than another, in parts of its unit."""
     return -np.inf if then is None else now.merit(now.unit) - then.merit(now.unit)
 
 
-def _bent(now: Heights, then: Heights, step: Floats) -> Heights:
+def _bent(now: MinimaxValues, then: MinimaxValues, step: Floats) -> MinimaxValues:
     """The heights and rooms of a place, moved so that its slopes lead to those at the end of a step."""
     return replace(
         now, height=then.height - now.height_slopes @ step, room=then.room - now.room_slopes @ step
     )
 
 
-def _step(now: Heights, reach: float, held: tuple[int, ...]) -> tuple[Floats, float]:
+def _step(now: MinimaxValues, reach: float, held: tuple[int, ...]) -> tuple[Floats, float]:
     """The step (k,) of one program, and the gain it promises in parts of the unit."""
     from scipy.optimize import linprog
 

@@ -33,7 +33,7 @@ from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmi
 from sevenbar.design.synthesis.function.fitting import FREE
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, need_scipy
 from sevenbar.design.synthesis.function.precision import reflected
-from sevenbar.design.synthesis.function.programs import Heights, lowered
+from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
 from sevenbar.design.synthesis.limits import Limits, size_room, turning_room
 from sevenbar.errors import RequestError
 
@@ -67,7 +67,7 @@ MOST_TIME_RATIO = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Ends:
+class SwingEnds:
     """The ends of a swing, the high one last: crank and output (2,) [rad] and their slopes (2, 6)."""
 
     crank: Floats
@@ -91,7 +91,7 @@ class Ends:
         return max(self.stroke, math.tau - self.stroke) / min(self.stroke, math.tau - self.stroke)
 
 
-def ends_of_swing(row: Floats, branch: int) -> Ends | None:
+def ends_of_swing(row: Floats, branch: int) -> SwingEnds | None:
     """The ends of the swing of a design (6,) on a branch; `None` where crank or output does not fit."""
     inputs = np.linspace(0.0, math.tau, END_SAMPLES)
     angles = np.unwrap(outputs(row[None], inputs, branch)[0])
@@ -101,7 +101,7 @@ def ends_of_swing(row: Floats, branch: int) -> Ends | None:
     low, high = (_end(row, inputs[i], angles[i]) for i in (angles.argmin(), angles.argmax()))
     if low is None or high is None:
         return None
-    return Ends(*(np.array([a, b]) for a, b in zip(low, high, strict=True)))
+    return SwingEnds(*(np.array([a, b]) for a, b in zip(low, high, strict=True)))
 
 
 def _end(row: Floats, alpha: float, beta: float) -> tuple[float, float, Floats, Floats] | None:
@@ -195,18 +195,18 @@ class _Wish:
     slow: float
     limits: Limits
 
-    def missed(self, ends: Ends, rising: bool) -> tuple[Floats, Floats]:
+    def missed(self, ends: SwingEnds, rising: bool) -> tuple[Floats, Floats]:
         """How far off swing and stroke are (2,) [rad], and slopes (2, 5); `rising`: that stroke is slow."""
         stroke = self.slow if rising else math.tau - self.slow
         off = np.array([ends.swing - self.swing, ends.stroke - stroke])
         slopes = [ends.output_slopes[1] - ends.output_slopes[0], ends.crank_slopes[1] - ends.crank_slopes[0]]
         return off, np.array(slopes)[:, FREE]
 
-    def refined(self, row: Floats, branch: int, ends: Ends) -> Floats:
+    def refined(self, row: Floats, branch: int, ends: SwingEnds) -> Floats:
         """The design (6,) near another that meets the wish with the greatest least transmission angle."""
         rising = abs(ends.stroke - self.slow) <= abs(ends.stroke - math.tau + self.slow)
 
-        def heights(z: Floats) -> Heights | None:
+        def heights(z: Floats) -> MinimaxValues | None:
             moved = _row(z)
             there = ends_of_swing(moved, branch) if (moved[2:5] > 0).all() else None
             if there is None:
@@ -214,7 +214,7 @@ class _Wish:
             square, slopes = turning_room(moved)
             size, size_slopes = size_room(moved, self.limits, scale_free=True)
             off, off_slopes = self.missed(there, rising)
-            return Heights(
+            return MinimaxValues(
                 1.0 - square,
                 -slopes[:, FREE],
                 np.concatenate([size - MARGIN, off, -off]),
@@ -242,7 +242,7 @@ def _row(z: Floats) -> Floats:
     return row
 
 
-def _chosen(wish: _Wish, most: int, seed: int) -> tuple[list[tuple[Floats, int, Ends]], int]:
+def _chosen(wish: _Wish, most: int, seed: int) -> tuple[list[tuple[Floats, int, SwingEnds]], int]:
     """Crank-rockers of a Sobol sequence that are nearest to the wish and differ; how many were looked at."""
     from scipy.stats import qmc
 
@@ -267,7 +267,7 @@ def _chosen(wish: _Wish, most: int, seed: int) -> tuple[list[tuple[Floats, int, 
         far = np.abs(np.ptp(angles, axis=1) - wish.swing) + off + missed
         rocks = np.abs(angles[:, -1] - angles[:, 0]) < 1.0
         scored += [(float(far[i]), int(i), branch) for i in np.flatnonzero(rocks)]
-    chosen: list[tuple[Floats, int, Ends]] = []
+    chosen: list[tuple[Floats, int, SwingEnds]] = []
     seen: list[Floats] = []
     for _, i, branch in sorted(scored):
         own = np.abs(np.arctan(rows[i]))

@@ -1,0 +1,241 @@
+"""What linkages, modes, motions, circuits and traces print of themselves, and their pictures in notebooks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Circuit, Extremes, Modes, Motion, Output, Trace, Words
+from sevenbar.reporting.summary import (
+    COMPLETE,
+    Shown,
+    circuit_facts,
+    closure_error,
+    dimensions_text,
+    facts_of,
+    joints_text,
+    speed_text,
+    way_round,
+)
+from sevenbar.text.printing import lines, picture_of, text_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+#: Facts of a report that a motion prints, by their names there; the others are its linkage's.
+OF_MOTION = (
+    *("drive", "law", "motion type", "circuits", "input limits", "change point", "isolated pose"),
+    *("completeness", "idle freedom", "redundant", "closure error"),
+)
+
+#: Circuits of a motion that are printed one by one.
+MOST_CIRCUITS = 8
+
+#: Size of a picture [inch].
+SIZE = (4.6, 2.8)
+
+
+@text_of.register(Linkage)
+def _(linkage: Linkage) -> str:
+    drive = linkage.drive
+    speed = speed_text(linkage, drive.joint, drive.speed)
+    return lines(
+        f"Linkage '{linkage.name}'",
+        [
+            ("loop", joints_text(linkage)),
+            ("dimensions", dimensions_text(linkage) or _rows(linkage)),
+            (
+                "drive",
+                f"{drive.joint} {speed}, output {drive.output}",
+            ),
+            ("points", ", ".join(f"{point.name} on link {point.link}" for point in linkage.points)),
+            ("length unit", linkage.length_unit),
+        ],
+    )
+
+
+def _rows(linkage: Linkage) -> str:
+    """Denavit-Hartenberg rows: which numbers there are of each link."""
+    words = dict.fromkeys(name.partition("_")[0] for name in linkage.dimensions)
+    return f"{' '.join(words)} of {len(linkage.joints)} links" if words else ""
+
+
+@text_of.register(Modes)
+def _(modes: Modes) -> str:
+    count = len(modes)
+    worst = f"at most {modes.residual.max():.1e}" if count else ""
+    return lines(
+        f"{count} assembly mode{'s' * (count != 1)} at input {modes.input:.6g}",
+        [
+            ("q", f"{modes.q.shape}: {', '.join(modes.columns)}"),
+            ("status", _counts(modes.status)),
+            ("residual", worst),
+            ("completeness", f"{modes.completeness}: {COMPLETE[modes.completeness]}"),
+        ],
+    )
+
+
+@text_of.register(Motion)
+def _(motion: Motion) -> str:
+    facts: list[tuple[str, str]] = []
+    kept = False
+    for label, text in facts_of(motion):
+        # a line without a name goes on with the one above
+        kept = label in OF_MOTION if label else kept
+        if kept:
+            facts.append((label, text))
+        if label == "circuits":
+            facts += _circuits(motion)
+    return lines(f"Motion of '{motion.linkage.name}'", facts)
+
+
+def _circuits(motion: Motion) -> list[tuple[str, str]]:
+    """A line for each circuit: its type where they differ, its ranges; one line where all agree."""
+    told = []
+    for circuit in motion.circuits[:MOST_CIRCUITS]:
+        facts = circuit_facts(motion, circuit)
+        texts = [text for label, text in facts if label == "motion type"]
+        ranges = [(label, text) for label, text in facts if label.startswith("range of ")]
+        texts += [f"{label.removeprefix('range of ')} {text}" for label, text in ranges]
+        told.append((f"  {circuit.index}", ", ".join(texts)))
+    if len({text for _, text in told}) == 1:
+        return [("", told[0][1])]
+    more = len(motion.circuits) - len(told)
+    return told + [("", f"and {more} more")] * (more > 0)
+
+
+@text_of.register(Circuit)
+def _(circuit: Circuit) -> str:
+    place, result = (Shown("rad" if turns else "") for turns in (circuit.input_turns, circuit.output_turns))
+
+    def extent(ends: tuple[float, float] | None, show: Shown) -> str:
+        return "full turns" if ends is None else f"{show(ends[0])} to {show(ends[1])}"
+
+    def still(kind: str) -> str:
+        places = [place(d.input, whole=True) for d in circuit.dead_centres if d.kind == kind]
+        return ", ".join(places[:MOST_CIRCUITS]) + (" .." if len(places) > MOST_CIRCUITS else "")
+
+    def range_of(extremes: Extremes | None, show: Shown | None = None) -> str:
+        if extremes is None:
+            return ""
+        low, high = (show(x) if show else f"{x:.6g}" for x in (extremes.lowest, extremes.highest))
+        return f"{low} to {high}"
+
+    return lines(
+        f"Circuit {circuit.index}: {circuit.motion_type}, {way_round(circuit)}",
+        [
+            ("rows", f"{len(circuit.time)}: {_counts(circuit.status)}"),
+            ("columns", ", ".join(circuit.columns)),
+            (circuit.columns[circuit.input_column], extent(circuit.input_range, place)),
+            (circuit.columns[circuit.output_column], extent(circuit.output_range, result)),
+            ("input dead centres", still("input")),
+            ("output dead centres", still("output")),
+            ("time ratio", "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"),
+            ("transmission angle", range_of(circuit.transmission, Shown("rad"))),
+            ("velocity", range_of(circuit.velocity)),
+            ("acceleration", range_of(circuit.acceleration)),
+            ("closure error", f"at most {closure_error([circuit]):.1e}"),
+        ],
+    )
+
+
+@text_of.register(Trace)
+def _(trace: Trace) -> str:
+    return lines(
+        f"Trace of a point: {len(trace.position)} rows",
+        [
+            ("status", _counts(trace.status)),
+            *((axis, _extent(values)) for axis, values in zip("xyz", trace.position.T, strict=True)),
+            ("speed", _extent(np.linalg.norm(trace.velocity, axis=1))),
+            ("acceleration", _extent(np.linalg.norm(trace.acceleration, axis=1))),
+        ],
+    )
+
+
+@text_of.register(Output)
+def _(output: Output) -> str:
+    return lines(
+        f"Output of both branches at {output.position.shape[1]} inputs",
+        [
+            ("status", _counts(output.status.ravel())),
+            ("position", _extent(output.position)),
+            *(
+                (name, _extent(values))
+                for name in ("velocity", "acceleration", "jerk")
+                if (values := getattr(output, name)) is not None
+            ),
+        ],
+    )
+
+
+def _counts(status: Words) -> str:
+    """How many rows have each status."""
+    words, counts = np.unique(status, return_counts=True)
+    return ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
+
+
+def _extent(values: Floats) -> str:
+    known = values[np.isfinite(values)]
+    return f"{known.min() + 0.0:.6g} to {known.max() + 0.0:.6g}" if known.size else "no value"
+
+
+def _axes() -> tuple[Figure, Axes]:
+    from sevenbar.drawing.figure import new_figure
+
+    figure = new_figure(*SIZE)
+    figure.set_layout_engine("constrained")
+    return figure, figure.add_subplot()
+
+
+@picture_of.register(Linkage)
+def _(linkage: Linkage) -> Figure | None:
+    from sevenbar.drawing.paths import modes_overview
+
+    # only what closes at once: a loop with screws is searched for its modes
+    if "H" in linkage.kind:
+        return None
+    modes = linkage.assembly_modes(0.0)
+    if not len(modes):
+        return None
+    figure = modes_overview(linkage, replace(modes, q=modes.q[:1], residual=modes.residual[:1]))
+    figure.suptitle("")
+    figure.axes[0].set_title(f"{linkage.drive.joint} at 0, one of {len(modes)}", fontsize=10)
+    return figure
+
+
+@picture_of.register(Motion)
+def _(motion: Motion) -> Figure | None:
+    from sevenbar.drawing.plot import panel, passes
+
+    if not motion.circuits:
+        return None
+    figure, axes = _axes()
+    panel(axes, motion, passes(motion), "angle", "input")
+    return figure
+
+
+@picture_of.register(Circuit)
+def _(circuit: Circuit) -> Figure:
+    figure, axes = _axes()
+    axes.plot(
+        np.degrees(circuit.input) if circuit.input_turns else circuit.input,
+        np.degrees(circuit.output) if circuit.output_turns else circuit.output,
+    )
+    axes.set_xlabel(circuit.columns[circuit.input_column] + " [deg]" * circuit.input_turns)
+    axes.set_ylabel(circuit.columns[circuit.output_column] + " [deg]" * circuit.output_turns)
+    return figure
+
+
+@picture_of.register(Trace)
+def _(trace: Trace) -> Figure:
+    figure, axes = _axes()
+    for axis, values in zip("xyz", trace.position.T, strict=True):
+        axes.plot(values, label=axis)
+    axes.set_xlabel("row")
+    axes.legend(frameon=False)
+    return figure

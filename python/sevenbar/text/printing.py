@@ -1,0 +1,106 @@
+"""How results print themselves: what it is, then what a person asks first; arrays by their shape.
+
+What is said of a result is written where its words are: `text_of` and `picture_of` take one function for each
+kind, in the module that `SAID_IN` names for its folder, imported when the first one is printed.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterable, Mapping, Sized
+from contextlib import suppress
+from dataclasses import fields, is_dataclass
+from functools import singledispatch
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+
+from sevenbar.errors import SevenbarError
+
+#: Characters of a line.
+WIDTH = 100
+
+#: Dots an inch of a picture in a notebook.
+DPI = 64
+
+#: Folders of results, and the module that says what is printed of them; filled by the package.
+SAID_IN: dict[str, str] = {}
+
+
+class Printed:
+    """A result that prints itself in a few lines, in notebooks with a picture where one helps."""
+
+    def __repr__(self) -> str:
+        _import_words(self)
+        return text_of(self)
+
+    def _repr_html_(self) -> str:
+        """The lines, and beside them the picture."""
+        # only notebooks need these
+        import io
+        from base64 import b64encode
+        from html import escape
+
+        lines = f'<pre style="margin: 0">{escape(repr(self))}</pre>'
+        # matplotlib may be missing, and some results have no pose
+        with suppress(ImportError, SevenbarError):
+            figure = picture_of(self)
+            if figure is not None:
+                file = io.BytesIO()
+                figure.savefig(file, format="png", dpi=DPI)
+                data = b64encode(file.getvalue()).decode("ascii")
+                lines += f'<img alt="" src="data:image/png;base64,{data}">'
+        return f'<div style="display: flex; gap: 1em; align-items: center">{lines}</div>'
+
+    def __dir__(self) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
+
+
+def _import_words(value: object) -> None:
+    folder = type(value).__module__.rpartition(".")[0]
+    if folder in SAID_IN:
+        importlib.import_module(SAID_IN[folder])
+
+
+@singledispatch
+def text_of(value: Any) -> str:
+    """The lines that a result prints: by default its fields."""
+    told = [(f.name, brief(getattr(value, f.name))) for f in fields(value) if f.repr]
+    return lines(type(value).__name__, told)
+
+
+@singledispatch
+def picture_of(value: object) -> Any:  # noqa: ARG001
+    """A small matplotlib figure of a result; `None` where there is nothing to draw."""
+    return None
+
+
+def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
+    """A head, and below it facts: labels and texts in two columns, long texts in several lines."""
+    kept = [(label, text) for label, text in facts if text]
+    left = max((len(label) for label, _ in kept), default=0)
+    told = [head]
+    for label, text in kept:
+        parts = wrap(text, WIDTH - left - 4, break_long_words=False) or [""]
+        told.append(f"  {label:{left}}  {parts[0]}")
+        told += [f"  {'':{left}}  {part}" for part in parts[1:]]
+    return "\n".join(told)
+
+
+def brief(value: object) -> str:
+    """A value on one line: an array by its shape, a result by its head, much by its count."""
+    if isinstance(value, np.ndarray):
+        return f"array {value.shape}"
+    if isinstance(value, Printed):
+        return repr(value).partition("\n")[0]
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if is_dataclass(value) and hasattr(value, "name"):
+        return str(value.name)
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}: {brief(item)}" for key, item in value.items())
+    text = value if isinstance(value, str) else repr(value)
+    if len(text) > WIDTH and isinstance(value, Sized):
+        return f"{len(value)} of them"
+    return text
