@@ -129,9 +129,10 @@ class Loop:
         """From the joints and the fixed transforms of a linkage."""
         closing = inverse(np.asarray(linkage.ground)) @ linkage.base
         turns, slides, fixed, ends, backs = [], [], [], [], []
+        fronts: dict[int, np.ndarray] = {}
         for joint, after in zip(linkage.joints, [*linkage.links, closing], strict=True):
             between: list[np.ndarray] = []
-            back = np.eye(4)
+            front = back = np.eye(4)
             match joint.kind:
                 case "R":
                     rates = [(1.0, 0.0)]
@@ -143,23 +144,30 @@ class Loop:
                     rates, between = [(1.0, 0.0), (0.0, 1.0)], [np.eye(4)]
                 case "U":
                     rates, between = [(1.0, 0.0)] * 2, [turn(0, joint.angle)]
+                case "E":
+                    rates = [(0.0, 1.0), (0.0, 1.0), (1.0, 0.0)]
+                    front, between = _Z_TO_X, [_Z_TO_X.T @ _Z_TO_Y, _Z_TO_Y.T]
                 case "S":
                     rates, between = [(1.0, 0.0)] * 3, [_Z_TO_Y, _Z_TO_Y.T @ _Z_TO_X]
                     back = _Z_TO_X.T
                 case kind:
                     raise ValueError(f"no joint {kind}")
+            fronts[len(turns) - 1] = front
             turns += [rate[0] for rate in rates]
             slides += [rate[1] for rate in rates]
             fixed += [*between, back @ after]
             ends.append(len(turns) - 1)
             backs.append(back[:3, :3])
+        # the frame of a joint's first freedom, seen from the transform before it; of the first joint from the last one
+        for number, front in fronts.items():
+            fixed[number] = fixed[number] @ front
         return Loop(
             turns=np.array(turns),
             slides=np.array(slides),
             fixed=np.array(fixed, dtype=np.float64),
             ends=tuple(ends),
             backs=np.array(backs),
-            base=np.asarray(linkage.base, dtype=np.float64),
+            base=np.asarray(linkage.base @ fronts[-1], dtype=np.float64),
             point_frames=np.asarray(linkage.point_frames, dtype=np.float64),
         )
 

@@ -110,12 +110,13 @@ FAMILIES: dict[str, Draw] = {
     "shuffled kinds": shuffled,
     "round rows": rows,
     "worn gallery": worn,
+    "planar joints": _of_case(random_loops.planar),
 }
 
 SCREWS: dict[str, Draw] = {"screws": _of_case(random_loops.screws)}
 
 #: Patterns of the batches: each goes through the core as one call.
-PATTERNS = ("RRRRRRR", "RCCC", "RSCR", "RSSP", "RRSRR", "RUURR", "PRRRRRR", "RRRR", "RSPRR", "RSUR")
+PATTERNS = ("RRRRRRR", "RCCC", "RSCR", "RSSP", "RRSRR", "RUURR", "PRRRRRR", "RRRR", "RSPRR", "RSUR", "RERC")
 
 
 def of_pattern(rng: np.random.Generator, kinds: str) -> Description:

@@ -16,6 +16,7 @@ import numpy as np
 
 import sevenbar as sb
 from fuzz.random_linkages import random_rotation
+from sevenbar.kinematics.joints import KINDS
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,10 +299,14 @@ COMPOUND = (
 )  # fmt: skip
 
 
+#: Loops of Gruebler count 1 with joints that slide in a plane.
+PLANAR = ("RURE", "RERC", "ERRRR", "RRERR", "RRRER", "REUP", "PERRR", "EUC", "CEU", "RRCE")
+
+
 def place(rng: np.random.Generator, kind: str) -> dict[str, Any]:
     """A joint of a kind anywhere."""
     joint: dict[str, Any] = {"kind": kind, "at": rng.normal(size=3)}
-    if kind in "RPHC":
+    if "axis" in KINDS[kind].drawn_keys:
         joint["axis"] = direction(rng)
     if kind == "H":
         joint["pitch"] = float(rng.choice([-1, 1]) * 10 ** rng.uniform(-1, 1))
@@ -332,6 +337,11 @@ def compound(rng: np.random.Generator, kinds: str = "") -> Drawn:
 def drawn(rng: np.random.Generator, kinds: str = "RRRRRRR") -> Drawn:
     """Axes anywhere in space."""
     return Drawn(tuple(place(rng, kind) for kind in kinds), _near_or_at(rng))
+
+
+def planar(rng: np.random.Generator) -> Drawn:
+    """A joint that slides in a plane among others, anywhere."""
+    return drawn(rng, str(rng.choice(PLANAR)))
 
 
 def screws(rng: np.random.Generator) -> Drawn:

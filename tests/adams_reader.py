@@ -27,6 +27,7 @@ COMMANDS = {
     "constraint create joint revolute": "!joint_name !i_marker_name !j_marker_name",
     "constraint create joint translational": "!joint_name !i_marker_name !j_marker_name",
     "constraint create joint cylindrical": "!joint_name !i_marker_name !j_marker_name",
+    "constraint create joint planar": "!joint_name !i_marker_name !j_marker_name",
     "constraint create joint spherical": "!joint_name !i_marker_name !j_marker_name",
     "constraint create joint hooke": "!joint_name !i_marker_name !j_marker_name",
     "constraint create joint screw": "!joint_name !i_marker_name !j_marker_name !pitch",

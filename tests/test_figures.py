@@ -39,7 +39,7 @@ def test_the_joints_values_lead_to_the_links_places(motions: dict[str, sb.Motion
 @pytest.mark.parametrize("name", GENERAL)
 def test_drawn_links_are_rigid_and_meet_in_the_joints(motions: dict[str, sb.Motion], name: str) -> None:
     motion = motions[name]
-    slide = {i for i, joint in enumerate(motion.linkage.joints) if joint.kind in "PCH"}
+    slide = {i for i, joint in enumerate(motion.linkage.joints) if joint.kind in "PCHE"}
     for circuit in motion:
         frame = skeleton.skeleton(motion, circuit)
         assert isinstance(frame, skeleton.Chain)

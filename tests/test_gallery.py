@@ -75,6 +75,7 @@ FACTS = {
     "seven_r": Facts("RRRRRRR", *alike("double-crank", 8), modes=8, gruebler=1, rank=6),
     "six_bar": Facts("RRRRRC", *alike("crank-rocker", 4), modes=4, gruebler=1, rank=6),
     "spherical_4r": Facts("RRRR", *alike("crank-rocker", 2), modes=2, gruebler=-2, rank=3),
+    "swash_plate": Facts("REUP", *alike("crank-slider", 2), modes=2, gruebler=1, rank=6),
     "universal_joint": Facts("RUR", *alike("double-crank", 2), modes=2, gruebler=-2, rank=3),
 }
 
@@ -543,6 +544,26 @@ def test_sarrus_platform_goes_straight_and_does_not_turn() -> None:
         root = np.sqrt(l2**2 - (e - l1 * np.cos(angle)) ** 2)
         assert np.abs(height - (l1 * np.sin(angle) + ways[-1] * root)).max() < EXACT * l2
     assert sorted(ways) == [-1, -1, 1, 1]
+
+
+def test_swash_plate_lifts_its_piston_by_the_height_of_the_plate_below_the_knuckle() -> None:
+    """The knuckle stays as far above the plate as drawn: normal . (radius, 0, height) = distance, the normal turning."""
+    name = "swash_plate"
+    knuckle, normal = drawn(name, "knuckle"), drawn(name, "slipper", "axis")
+    distance = normal @ knuckle
+    for circuit in moved(name).circuits:
+        shaft, piston = of(circuit, "shaft", "piston")
+        first, second, turn = of(circuit, "slipper.1", "slipper.2", "slipper.3")
+        height = (distance - normal[0] * knuckle[0] * np.cos(shaft)) / normal[2]
+        assert np.abs(piston - (height - knuckle[2])).max() < EXACT
+        # the foot of the knuckle's perpendicular on the plate, by the plate's turn and by the slipper's place
+        seen = np.stack([knuckle[0] * np.cos(shaft), -knuckle[0] * np.sin(shaft), height]).T
+        foot = drawn(name, "slipper")
+        beside = np.linalg.norm(knuckle - distance * normal - foot)
+        outward, across = np.array([normal[2], 0.0, -normal[0]]), np.array([0.0, 1.0, 0.0])
+        out, along = first + beside * np.cos(turn), second + beside * np.sin(turn)
+        want = foot + out[:, None] * outward + along[:, None] * across
+        assert np.abs(seen - distance * normal - want).max() < EXACT
 
 
 def test_screw_drill_turns_its_spindle_by_the_law_of_cosines() -> None:

@@ -36,6 +36,7 @@ GALLERY = {
     "rssp": "RSSP",
     "rssr": "RSSR",
     "screw_drill": "RRRHR",
+    "swash_plate": "RPPRRRP",
 }
 
 BY_LOOP = ("status", "circuits", "rank", "finite", "complete", "still", "input_rests", "modes")

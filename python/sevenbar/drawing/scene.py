@@ -280,6 +280,7 @@ def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
         "cylinder": {"color": colour, "lw": 8 * scale, "solid_capstyle": "butt", "path_effects": outline},
         "thread": {"color": "white", "lw": 7 * scale, "ls": (0, (0.22, 0.22)), "dash_capstyle": "butt"},
         "arm": {"color": colour, "lw": 5 * scale, "solid_capstyle": "butt"},
+        "plate": {"color": colour, "lw": 1.6 * scale},
         "block": {"color": colour, "ls": "", "marker": "s", "ms": 9 * scale, "mec": "#202020", "mew": 0.8},
         "ball": {"color": "#f4f4f4", "ls": "", "marker": "o", "ms": 8 * scale, "mec": "#303030", "mew": 2.4},
     }[word]
@@ -371,6 +372,7 @@ def chain_keys(linkage: Loop, ends: tuple[str, str]) -> list[Line2D]:
             style = {
                 "cylinder": {"marker": "s", "ms": 7},
                 "thread": {"marker": "s", "ms": 6, "mfc": "white", "mew": 2.4},
+                "plate": {"marker": "D", "ms": 7, "mfc": "white", "mew": 1.6},
             }
             look = style.get(mark) or ({"marker": "P", "ms": 8} if mark == "arm" else _mark(mark, JOINT))
             keys.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=kind.legend))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -146,7 +146,8 @@ class Chain(Skeleton):
 
     `axes` (n, 3) are those of the first row, through each joint. `links` holds the places along each link,
     the ground's last; `marks` what is drawn of each joint: a word and the places it joins. `paths` are the
-    places whose paths are drawn, `points` the named ones among them.
+    places whose paths are drawn, `points` the named ones among them. `reach` is how far joints slide across
+    their axes, least and most (2,) by the joint's number.
     """
 
     links: tuple[tuple[int, ...], ...]
@@ -154,6 +155,7 @@ class Chain(Skeleton):
     joints: tuple[int, ...]
     points: tuple[int, ...]
     extent: float
+    reach: Mapping[int, tuple[Floats, Floats]]
 
     @property
     def solid(self) -> int:
@@ -178,8 +180,9 @@ class Chain(Skeleton):
         return [seen[list(pair)] for pair in ends]
 
 
-#: Half the length of a joint's drawn axis and of its cylinder, as shares of the linkage's extent.
-AXIS, CYLINDER = 0.075, 0.032
+#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate reaches past what slides
+#: on it, as shares of the linkage's extent.
+AXIS, CYLINDER, PLATE = 0.075, 0.032, 0.04
 
 
 def chain(
@@ -187,13 +190,13 @@ def chain(
     frames: Floats,
     points: Sequence[tuple[str, int, Floats]] = (),
     *,
-    extent: float | None = None,
+    like: Chain | None = None,
 ) -> Chain:
     """The places of a loop from the frames (n, moving links, 4, 4) of its links along a walk.
 
     `points` are named places on links, (n, 3) each. Each joint is drawn where its axis was placed, each
     link from joint to joint; in Denavit-Hartenberg rows along the offset, then along the common normal.
-    `extent` is that of the linkage where the frames show only a part of its motion.
+    `like` is that of the whole motion where the frames show only a part of it.
     """
     rows, count = len(frames), len(linkage.joints)
     after = np.concatenate([frames, np.broadcast_to(linkage.ground, (rows, 1, 4, 4))], axis=1)
@@ -211,9 +214,10 @@ def chain(
 
     # a loop whose axes meet where all frames lie is shown on a sphere round that place
     radius = 1.0 if spherical else 0.0
-    span = extent or (1.6 if spherical else spread)
+    span = like.extent if like else 1.6 if spherical else spread
     feet: list[tuple[int, int]] = []
     marks: list[tuple[int, str, tuple[int, ...]]] = []
+    reach: dict[int, tuple[Floats, Floats]] = {}
     links: list[tuple[int, ...]] = []
     for i, joint in enumerate(linkage.joints):
         first, second = before[:, i, :3, 2], after[:, i, :3, 2]
@@ -229,6 +233,19 @@ def chain(
             return add(middle - half * span * way), add(end + half * span * way)
 
         shape = joint.row.shape
+        if shape == "plate":
+            # as wide as it slides
+            across = before[:, i, :3, :2]
+            slid = np.einsum("nij,ni->nj", across, far - near)
+            low, high = np.nanmin(slid, axis=0, initial=0.0), np.nanmax(slid, axis=0, initial=0.0)
+            low, high = reach[i] = like.reach[i] if like else (low, high)
+            ends = np.stack([low - PLATE * span, high + PLATE * span])
+            corners = [(ends[a, 0], ends[b, 1]) for a, b in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
+            marks.append((i, "axis", along(near + across @ ((low + high) / 2), first, AXIS)))
+            marks.append((i, "axis", along(far, second, AXIS)))
+            marks.append((i, shape, tuple(add(near + across @ np.array(corner)) for corner in corners)))
+            marks.append((i, "block", (feet[i][1],)))
+            continue
         if shape != "ball":
             marks.append((i, "axis", along(near, first, AXIS, far)))
         if joint.row.has_cross:
@@ -272,6 +289,7 @@ def chain(
         joints=joints,
         points=own,
         extent=span,
+        reach=reach,
     )
 
 
@@ -363,7 +381,7 @@ def places_of(linkage: Loop, q: Floats, frame: Skeleton) -> Floats:
     frames = frames_of(linkage, q)
     points = [(point.name, point.link, _carried(linkage, frames, point)) for point in linkage.points]
     if isinstance(frame, Chain):
-        return chain(linkage, frames, points, extent=frame.extent).places
+        return chain(linkage, frames, points, like=frame).places
     traces = [trace for _, _, trace in points]
     centres = [np.broadcast_to(frame.pose(0)[centre], traces[0].shape) for centre in (A0, B0)]
     return np.stack([centres[0], traces[0], traces[1], centres[1], *traces[2:]], axis=1)

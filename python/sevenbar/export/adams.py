@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError
+from sevenbar.errors import RequestError, shown
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
@@ -80,6 +80,11 @@ class _Commands:
         if motion.law is not None:
             raise RequestError(
                 "cmd: a motion driven by a law has no constant speed; give one that is driven at a speed"
+            )
+        if any(motion.input in joint.columns for joint in self.linkage.joints if joint.row.has_plane):
+            raise RequestError(
+                f"cmd: ADAMS has no motion for {shown(motion.input)}, a part of a planar joint; "
+                "give another input"
             )
         ends = circuit.pass_range(self.pose.branch)
         if ends is None:

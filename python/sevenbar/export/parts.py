@@ -1,7 +1,8 @@
 """The parts of a linkage as it would be built, from rods, bars and balls: what meshes, CAD and others share.
 
 Each turning or sliding joint has a hub with a hole on either link, side by side on the axis, and a shaft
-through both; a universal joint a cross between two hubs; a ball joint a ball in an open socket.
+through both; a universal joint a cross between two hubs; a ball joint a ball in an open socket; a joint that
+slides in a plane a disc, as wide as it slides, and a slipper on it.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ AWAY = -0.35
 REACH = 1.5
 #: Below this cosine between an arm and the axis, the arm first goes so far off, round the other hub.
 PAST_THE_OTHER, ELBOW = -0.35, 1.6
+#: The thickness of a disc and of the slipper that slides on it, and the gap between the two.
+DISC, SLIPPER, GAP = 0.4, 0.6, 0.04
 #: Above this cosine between an arm and the axis, the arm leaves through the hub's end, which then has a lid.
 THROUGH_THE_END = 0.5
 
@@ -159,16 +162,10 @@ def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
         else:
             # what is long stands on the ground where it can
             carrier_is_near = i != count - 1
-            shaft, middles = _axial(before, after, pose, i, (near, far), seat, unit, carrier_is_near)
-            extra.append(
-                Part(
-                    f"shaft_{_word(joint.name)}",
-                    (i - 1) % count if carrier_is_near else i,
-                    (shaft,),
-                    (),
-                    JOINT,
-                )
-            )
+            make = _plane if joint.row.has_plane else _axial
+            shafts, middles = make(before, after, pose, i, (near, far), seat, unit, carrier_is_near)
+            carrier = (i - 1) % count if carrier_is_near else i
+            extra += [Part(f"shaft_{_word(joint.name)}", carrier, (shaft,), (), JOINT) for shaft in shafts]
             ends[i - 1][1], ends[i][0] = middles
     arms = [
         np.vstack([first, _bent(line, first, last, linkage.base[:3, 3]), last])
@@ -269,8 +266,8 @@ def _axial(
     seat: Seat,
     unit: float,
     carrier_is_near: bool,
-) -> tuple[Solid, tuple[Floats, Floats]]:
-    """Hubs and shaft of a joint R, P, C or H; returns the shaft and the middles of both hubs."""
+) -> tuple[list[Solid], tuple[Floats, Floats]]:
+    """Hubs and shaft of a joint on one axis; returns the shaft and the middles of both hubs."""
     # each hub by the frame on its own link, so that the two are in line only as far as the loop closes
     frames = (pose.near[i], pose.far[i]) if carrier_is_near else (pose.far[i], pose.near[i])
     bases = [
@@ -297,7 +294,40 @@ def _axial(
         shaft: Solid = Bar(first, last, 1.7 * SHAFT * unit, side_way)
     else:
         shaft = Rod(first, last, SHAFT * unit)
-    return shaft, ((carrier, sleeve) if carrier_is_near else (sleeve, carrier))
+    return [shaft], ((carrier, sleeve) if carrier_is_near else (sleeve, carrier))
+
+
+def _plane(
+    before: _Build,
+    after: _Build,
+    pose: Pose,
+    i: int,
+    feet: tuple[Floats, Floats],
+    seat: Seat,
+    unit: float,
+    carrier_is_near: bool,
+) -> tuple[list[Solid], tuple[Floats, Floats]]:
+    """Disc and slipper of a joint E, parts of its links; returns no shaft, and where the arms end."""
+    joint, own = pose.linkage.joints[i], pose.linkage.places[i]
+    q = np.vstack([pose.circuit.q, pose.q])[:, own]
+    moves = joint.motion(q[~np.isnan(q).any(axis=1)])
+    slid = moves if carrier_is_near else np.linalg.inv(moves)
+    places = slid[:, :2, 3]
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2
+    radius = np.linalg.norm(places - middle, axis=1).max() + 1.2 * HUB * unit
+    frame, other = (pose.near[i], pose.far[i]) if carrier_is_near else (pose.far[i], pose.near[i])
+    foot, slipper = feet if carrier_is_near else feet[::-1]
+    way = seat.side * frame[:3, 2]
+    top = foot + frame[:3, :2] @ middle + seat.shift * unit * frame[:3, 2]
+    disc = Rod(top - DISC * unit * way, top, float(radius))
+    # the slipper by the frame on its own link, so that it lies on the disc only as far as the loop closes
+    up = unit * seat.side * other[:3, 2]
+    face = slipper + seat.shift * unit * other[:3, 2] + GAP * up
+    near, far = (before, after) if carrier_is_near else (after, before)
+    near.add.append(disc)
+    far.add.append(Rod(face, face + SLIPPER * up, HUB * unit))
+    held, holds = top - 0.5 * DISC * unit * way, face + 0.5 * SLIPPER * up
+    return [], ((held, holds) if carrier_is_near else (holds, held))
 
 
 def _universal(

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 Freedom = Literal["turn", "slide"]
 
 #: What marks a joint in drawings, and is made of it in models of bodies.
-Shape = Literal["cylinder", "block", "thread", "arm", "ball"]
+Shape = Literal["cylinder", "block", "thread", "arm", "ball", "plate"]
 
 #: The axes of a frame.
 X, Y, Z = 0, 1, 2
@@ -64,33 +65,38 @@ class JointKind:
     row_keys: tuple[str, ...] = ()
     as_rows: str = ""
 
-    @property
+    @cached_property
     def freedoms(self) -> tuple[Freedom, ...]:
         """What each of its columns is."""
         return tuple(step.freedom for step in self.steps if not step.driven)
 
-    @property
+    @cached_property
     def free(self) -> tuple[bool, ...]:
         """Which of the six freedoms of a body it lets go, seen from the frame before it."""
         numbers = {step.number for step in self.steps}
         return tuple(number in numbers for number in range(6))
 
-    @property
+    @cached_property
     def is_ball(self) -> bool:
         """Whether it turns any way about a place: such a joint is not driven, and its turns are no output."""
         return self.freedoms == ("turn",) * 3
 
-    @property
+    @cached_property
     def rides(self) -> bool:
         """Whether it slides along its axis, as on a rail."""
         return any(step.freedom == "slide" and step.axis == Z for step in self.steps)
 
-    @property
+    @cached_property
+    def has_plane(self) -> bool:
+        """Whether it slides across its axis, so that x of its frame counts."""
+        return any(step.freedom == "slide" and step.axis != Z for step in self.steps)
+
+    @cached_property
     def has_cross(self) -> bool:
         """Whether a body of its own stands between its steps."""
         return any(step.tilted for step in self.steps)
 
-    @property
+    @cached_property
     def is_screw(self) -> bool:
         """Whether its slide follows from its turn."""
         return any(step.driven for step in self.steps)
@@ -100,7 +106,7 @@ class JointKind:
         names = iter(column_names(joint, self.freedoms))
         return [(f"{joint}.slide" if step.driven else next(names), step) for step in self.steps]
 
-    @property
+    @cached_property
     def moving_key(self) -> str:
         """The key of a row that is its variable, and so is not written."""
         return "offset" if "angle" in self.row_keys else "angle"
@@ -142,6 +148,11 @@ KINDS: Mapping[str, JointKind] = {
             "S", "ball", ("spherical", "sphere", "ball"),
             (Step("turn", Z), Step("turn", Y), Step("turn", X)), (), "ball", "spherical",
             as_rows="R, R and R through one point",
+        ),
+        JointKind(
+            "E", "slides in a plane", ("planar", "plane", "flat"),
+            (Step("slide", X), Step("slide", Y), _TURN), _AXIS, "plate", "planar",
+            as_rows="P, P and R, the slides square to each other and to the turn",
         ),
     )
 }  # fmt: skip

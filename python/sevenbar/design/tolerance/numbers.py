@@ -19,6 +19,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Dimension, Draft
+from sevenbar.description.forms import NO_LENGTH
 from sevenbar.design.tolerance.rigid import (
     Numbers,
     Rigid,
@@ -210,6 +211,13 @@ def _drawn(parts: _Parts) -> Built:
             z = unit(parts.vector("joint", i, "axis"))
             across = np.eye(3)[np.argmin(np.abs(np.asarray(tables[i]["axis"], dtype=np.float64)))]
             x = unit(cross(parts.constant(across), z))
+            if joint.row.has_plane:
+                # x counts: as `forms` has it, towards the joint after, of the last joint that before
+                beside = i + 1 if i + 1 < len(tables) else i - 1
+                towards = parts.vector("joint", beside, "at") - at
+                aside = cross(cross(z, towards), z)
+                far = np.linalg.norm(aside.real) > NO_LENGTH * np.linalg.norm(towards.real)
+                x = unit(aside) if far else unit(cross(cross(z, parts.constant(across)), z))
             first = second = np.stack([x, cross(z, x), z], axis=1)
         before.append((first, at))
         after.append((second, at))

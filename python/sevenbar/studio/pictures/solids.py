@@ -33,6 +33,7 @@ NO_LINK = 0.02
 LINK, POINT, STAY, RAIL, STEM = 0.55, 0.9, 0.2, 0.45, 0.6
 HINGE, PIN, SLEEVE, NUT, ARM = (1.05, 3.4), (0.5, 4.1), (1.05, 5.0), (1.75, 2.2), (0.62, 5.0)
 BALL, SOCKET, KNUCKLE, THREAD = 1.2, 1.5, 0.95, 0.85
+PLATE, SLIPPER = 0.4, (1.5, 1.4)
 #: The sides of a block across and along its rail, of a foot across and along, and its distance, in units.
 BLOCK, FOOT, REACH = (1.9, 5.0), (5.4, 0.6), 4.2
 #: Strokes behind a foot: how many, how far each leans out as a share of its width, how thick in units.
@@ -119,7 +120,7 @@ def plan(linkage: Loop, frame: Skeleton, ends: tuple[str, str], size: float) -> 
         if joint.kind.rides:
             _add_slide(solids, i, joint, colour, every, unit)
         else:
-            _add_joint(solids, i, joint, colour, links, unit)
+            _add_joint(solids, i, joint, colour, links, every, unit)
     for joint, link in ((where.joints[0], 0), (where.joints[-1], len(links) - 2)):
         if not joint.kind.rides:
             _add_ground(solids, joint, link, every, unit, size)
@@ -171,13 +172,26 @@ def _labels(frame: Skeleton, pose: Floats, size: float) -> tuple[tuple[str, int]
 
 
 def _add_joint(
-    solids: _Solids, index: int, joint: JointPlaces, colour: str, links: list[str], unit: float
+    solids: _Solids,
+    index: int,
+    joint: JointPlaces,
+    colour: str,
+    links: list[str],
+    every: Floats,
+    unit: float,
 ) -> None:
     """The solids of a joint that does not slide."""
     spin, far = joint.spin, joint.far
     if joint.kind.shape == "cylinder":
         solids.add("cylinder", spin, HINGE[0] * unit, colour, length=HINGE[1] * unit)
         solids.add("cylinder", spin, PIN[0] * unit, STEEL, length=PIN[1] * unit)
+    elif joint.kind.has_plane:
+        # a slipper on a plate as wide as it slides
+        lower, upper = joint.axes
+        away = every[:, far] - every[:, list(lower)].mean(axis=1)
+        wide = float(np.linalg.norm(away, axis=1).max()) + SLIPPER[0] * unit
+        solids.add("cylinder", lower, wide, STEEL, length=PLATE * unit)
+        solids.add("cylinder", upper, SLIPPER[0] * unit, colour, length=SLIPPER[1] * unit)
     elif joint.kind.has_cross:
         for axis in joint.axes:
             solids.add("cylinder", axis, ARM[0] * unit, colour, length=ARM[1] * unit)

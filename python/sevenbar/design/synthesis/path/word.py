@@ -19,6 +19,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.geometry import Point, following_coupler
 from sevenbar.kinematics.linkage import Linkage
 
@@ -81,6 +82,11 @@ class PointWord:
     def __init__(self, draft: Draft, point: Point, varied: Sequence[int] = ()) -> None:
         self._raw = draft.raw
         self._linkage = draft.linkage
+        if plane := next((joint for joint in self._linkage.joints if joint.row.has_plane), None):
+            raise NotCoveredError(
+                f"linkage: {plane.name} slides in a plane, and no path is sought with such a joint; "
+                "draw it as P, P and R"
+            )
         self._point = point
         self.dimensions = tuple(d for d in draft.dimensions if d.name != "speed")
         self.start = np.array([d.value for d in self.dimensions])
