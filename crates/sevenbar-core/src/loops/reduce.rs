@@ -153,7 +153,7 @@ impl Described<'_> {
         };
         let count = self.kinds.len();
         let others = (1..count).map(|k| (ball + k) % count);
-        let ways = others
+        let mut ways = others
             .filter(|&other| self.kinds[other] == Kind::Ball)
             .filter_map(|other| {
                 let &[first, second] = &self.moving(other, ball)[..] else {
@@ -166,7 +166,7 @@ impl Described<'_> {
                 ];
                 Some(Way { kinds: [self.kinds[first], self.kinds[second]], poses })
             });
-        ways.last()
+        ways.next()
             .map_or(before, |way| spin_axis(before, &way, norm(line)))
     }
 

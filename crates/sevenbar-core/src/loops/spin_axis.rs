@@ -135,10 +135,11 @@ fn lines(way: &Way, length: f64, first: f64) -> Option<[Vec3; 2]> {
         _ => {
             let (a, b) = (start[0].hypot(start[1]), end[0].hypot(end[1]));
             let above = start[2] - end[2];
-            let cosine = (a * a + b * b + above * above - length * length) / (2.0 * a * b);
-            if !(cosine.abs() <= 1.0) {
+            let (near, far) = (2.0 * a * b, a * a + b * b + above * above - length * length);
+            if near == 0.0 || far.abs() > near {
                 return None;
             }
+            let cosine = far / near;
             let between = start[1].atan2(start[0]) - end[1].atan2(end[0]);
             [-1.0, 1.0].map(|side| between + side * cosine.acos())
         }
