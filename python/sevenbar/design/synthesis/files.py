@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Designs(Protocol):
+class DesignSet(Protocol):
     """What a search found: the best design first."""
 
     @property
@@ -25,7 +25,7 @@ class Designs(Protocol):
         ...
 
 
-T = TypeVar("T", bound=Designs)
+T = TypeVar("T", bound=DesignSet)
 
 
 def design_files(
@@ -59,7 +59,7 @@ def _write_design(found: T, path: Path, *, place: int, head: Callable[[T], Seque
         path.write_text(text, encoding="utf-8")
 
 
-def write_summary(found: Designs, path: Path) -> None:
+def write_summary(found: DesignSet, path: Path) -> None:
     """Writes a table with a line for each design; a column that one does not have is empty there."""
     rows = [{"design": i, **c.columns} for i, c in enumerate(found.candidates, 1)]
     names = list(dict.fromkeys(name for row in rows for name in row))
