@@ -62,7 +62,7 @@ def test_one_dimension_alone_leaves_the_misfit_that_it_is_told_to(explained):
             other = sb.rssr(
                 **(dict(linkage.dimensions) | {name: linkage.dimensions[name] + value}), speed=10.0
             )
-            return compare_extremes(other, measured, ends).misfits[0][1]
+            return compare_extremes(other, measured, ends).residuals[0][1]
 
         assert one.misfit == pytest.approx(misfit(change), rel=1e-9)
         # steps of a fixed slope end near the least, not at it

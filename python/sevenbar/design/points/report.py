@@ -1,4 +1,4 @@
-"""What is told of points that were found, and of masses: printed, as JSON, and as files in a folder."""
+"""The report of points that were found, and of masses: printed, as JSON, and as files in a folder."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
-from sevenbar.design.points.cycle import Cycle, told_input
+from sevenbar.design.points.cycle import Cycle, input_text
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import LeastPoint
 from sevenbar.design.points.nearest import NearestPath
@@ -24,8 +24,8 @@ from sevenbar.reporting.report import json_text
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: Most inputs that are told; more are a rate that is as great at all of them.
-MOST_TOLD = 6
+#: Most inputs that are listed; more are a rate that is as great at all of them.
+MOST_LISTED = 6
 
 
 def print_found(found: LeastPoint | NearestPath | Inertia) -> None:
@@ -72,10 +72,10 @@ def least_text(found: LeastPoint) -> RenderableType:
 
 
 def _met(found: LeastPoint) -> str:
-    pairs = zip(found.inputs[:MOST_TOLD], found.weights, strict=False)
-    told = ", ".join(f"{told_input(found.cycle.motion, float(x))} (weight {w:.3f})" for x, w in pairs)
-    more = f" and {len(found.inputs) - MOST_TOLD} more" if len(found.inputs) > MOST_TOLD else ""
-    return f"{found.cycle.motion.input} = {told}{more}"
+    pairs = zip(found.inputs[:MOST_LISTED], found.weights, strict=False)
+    text = ", ".join(f"{input_text(found.cycle.motion, float(x))} (weight {w:.3f})" for x, w in pairs)
+    more = f" and {len(found.inputs) - MOST_LISTED} more" if len(found.inputs) > MOST_LISTED else ""
+    return f"{found.cycle.motion.input} = {text}{more}"
 
 
 def _times(value: float, found: LeastPoint) -> str:
@@ -110,7 +110,7 @@ def inertia_text(found: Inertia) -> RenderableType:
     if any(found.gravity):
         facts.add("gravity", f"({_numbers(found.gravity)}) m/s^2")
     for word, row in (("highest", int(found.torque.argmax())), ("lowest", int(found.torque.argmin()))):
-        at = told_input(motion, float(found.input[row]))
+        at = input_text(motion, float(found.input[row]))
         facts.add(f"{word} {what}", f"{found.torque[row]:.6g} {found.unit} at {motion.input} = {at}")
     facts.add(f"mean {what}", f"{found.mean:.2g} {found.unit}")
     rms = float(np.sqrt(found.cycle.mean(found.torque**2)))
@@ -121,7 +121,7 @@ def inertia_text(found: Inertia) -> RenderableType:
     for mass, sizes in zip(found.masses, found.sizes, strict=True):
         cells = [mass.name, str(mass.link), f"{mass.mass:g}"]
         for place in (int(sizes.argmax()), int(sizes.argmin())):
-            cells += [f"{sizes[place]:.6g}", told_input(motion, float(found.input[place]))]
+            cells += [f"{sizes[place]:.6g}", input_text(motion, float(found.input[place]))]
         rows.append(cells)
     head = ["mass", "link", "kg", "greatest force [N]", "at", "least force [N]", "at"]
     return Group(_title(found.cycle), facts.grid, Text(), number_table(head, rows))
@@ -129,13 +129,13 @@ def inertia_text(found: Inertia) -> RenderableType:
 
 def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
     """What a reader has to know besides: a spin that the linkage leaves open."""
-    told = []
+    text = []
     for freedom in cycle.motion.idle:
         if any(f"link {link})" in freedom or f"link {link} " in freedom for link in links or [cycle.link]):
-            told.append(
+            text.append(
                 f"the {freedom} is open in the linkage; points off that line move as the rule for it has it"
             )
-    return told
+    return text
 
 
 def _title(cycle: Cycle) -> Text:
@@ -284,7 +284,7 @@ def write_nearest(
     def fill(staging: Path) -> None:
         _begin(found, toml, staging)
         unit = found.cycle.motion.linkage.length_unit
-        columns = {_input_head(found.cycle): _told(found.cycle, found.inputs)}
+        columns = {_input_head(found.cycle): _as_shown(found.cycle, found.inputs)}
         for i, letter in enumerate("xyz"):
             columns[f"wanted_{letter}_{unit}"] = found.wanted[:, i]
         for i, letter in enumerate("xyz"):
@@ -329,13 +329,13 @@ def _input_head(cycle: Cycle) -> str:
     return f"{motion.input}_{motion.linkage.length_unit if slides(motion, motion.input) else 'deg'}"
 
 
-def _told(cycle: Cycle, inputs: Floats) -> Floats:
+def _as_shown(cycle: Cycle, inputs: Floats) -> Floats:
     """Inputs as people read them: degrees, or lengths."""
     return inputs if slides(cycle.motion, cycle.motion.input) else np.degrees(inputs)
 
 
 def _row_columns(cycle: Cycle) -> dict[str, Floats]:
-    return {"time_s": cycle.rates.time, _input_head(cycle): _told(cycle, cycle.rates.input)}
+    return {"time_s": cycle.rates.time, _input_head(cycle): _as_shown(cycle, cycle.rates.input)}
 
 
 def _pole_columns(poles: AccelerationPoles) -> dict[str, Any]:
