@@ -37,17 +37,17 @@ STILL = Counter({("tolerance.md", "misfit"): 1, ("tolerance.md", "beside"): 1})
 
 #: How often each word may still be in the sources. A smaller number is always right; none may grow.
 ALLOWED = {
-    "told": 469,
-    "comes to": 43,
+    "told": 403,
+    "comes to": 42,
     "misfit": 91,
     "established": 11,
-    "stands": 86,
-    "beside": 170,
-    "but for": 23,
-    "parts of": 183,
-    "looks": 109,
+    "stands": 84,
+    "beside": 165,
+    "but for": 22,
+    "parts of": 182,
+    "looks": 107,
     "hard use": 7,
-    "asks of": 53,
+    "asks of": 43,
     "is said": 2,
 }
 

@@ -35,8 +35,8 @@ OF_SWING = ("error_greatest_deg", "error_rms_deg")
 def print_synthesis(found: Synthesis, console: Console | None = None) -> None:
     """Prints the designs for people."""
     facts = Facts()
-    facts.add("wanted", found.told, "bold")
-    facts.add("limits", found.limits.told())
+    facts.add("wanted", found.wanted, "bold")
+    facts.add("limits", found.limits.text())
     facts.add("searched", f"{found.searched} designs, {found.fitted} refined, seed {found.seed}")
     if found.refusals:
         facts.add("refused", tally(found.refusals))
@@ -77,12 +77,12 @@ def as_dict(found: Synthesis) -> dict[str, Any]:
     """The designs as tables and numbers."""
     return {
         "format": 1,
-        "wanted": found.told,
-        "limits": found.limits.told(),
+        "wanted": found.wanted,
+        "limits": found.limits.text(),
         "seed": found.seed,
         "searched": found.searched,
         "refined": found.fitted,
-        "refused": [{"fault": r.fault, "told": r.told} for r in found.refusals],
+        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.refusals],
         "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
     }
 
@@ -98,9 +98,9 @@ def write_synthesis(
 ) -> list[Path]:
     """Writes design_1.toml, .. with a figure each, summary.csv and summary.json: all or none.
 
-    `command` is told in the designs' heads. Raises `OutputError`.
+    `command` is shown in the designs' heads. Raises `OutputError`.
     """
-    head = [f"wanted: {found.told}", f"limits: {found.limits.told()}", f"made by: {command}"]
+    head = [f"wanted: {found.wanted}", f"limits: {found.limits.text()}", f"made by: {command}"]
     if found.wish is not None:
         head += ["crank = input_zero + reading of the input; rocker = output_zero + reading of the output"]
 

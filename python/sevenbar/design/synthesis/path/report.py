@@ -35,7 +35,7 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
         ("point", f"{task.point.name} on link {task.point.link}"),
         ("varied", f"{count} dimension{'s' * (count != 1)}: {names}"),
         ("ground", "anywhere in space" if task.place else "where the description has it"),
-        ("limits", task.limits.told()),
+        ("limits", task.limits.text()),
     ]
 
 
@@ -112,5 +112,5 @@ def as_json(task: PathTask, found: Sequence[Candidate], source: str, seed: int) 
         }
         for i, candidate in enumerate(found, 1)
     ]
-    told = dict(_facts(task, source))
-    return json.dumps({"format": 1, **told, "seed": seed, "designs": designs}, indent=2, allow_nan=False)
+    facts = dict(_facts(task, source))
+    return json.dumps({"format": 1, **facts, "seed": seed, "designs": designs}, indent=2, allow_nan=False)
