@@ -111,7 +111,7 @@ def _grid(axes: tuple[SweepAxis, ...], spans: list[SweepAxis], count: int | None
     if count is not None and count != total:
         raise RequestError(
             f"count: {shown(count)}, where the grid has {product}; "
-            f"leave it out, or give the method random or sobol"
+            f"leave it out, or give a method random or sobol"
         )
     if seed is not None:
         raise RequestError(f"seed: {shown(seed)} is given, and a grid draws nothing; leave it out")

@@ -3,7 +3,7 @@
 //! A step is predicted by a cubic through the last two places and their rates, and corrected twice by Newton's method; it counts
 //! if the corrections are short and the second far shorter than the first, so that a path is not left for another.
 //!
-//! Source: docs/theory.md, (6), and docs/theory_many.md, (7) and (8).
+//! Source: docs/theory.md, (6); docs/theory_many.md, (7) and (8).
 
 use super::closure::{Linear, Slides, Solution, UNKNOWNS, infinite, moved, size};
 use super::lanes::Lanes;
