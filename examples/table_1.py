@@ -137,7 +137,8 @@ def explained():
 def main():
     """Prints the three tables."""
     differences, alone, together = explained()
-    print(f"misfit {100 * rms(left(np.zeros(len(NAMES)))):.2f} % of the measured ranges, root mean square\n")
+    whole = rms(left(np.zeros(len(NAMES))))
+    print(f"residual {100 * whole:.2f} % of the measured ranges, root mean square\n")
     print(f"{'value':20} {'error':>8} {'worst':>6} {'3 sigma':>7}", *(f"{letter:>4}" for letter in CLASSES))
     for row in differences:
         print(
@@ -145,10 +146,10 @@ def main():
             *(f"{row[letter]:4.0f}" for letter in CLASSES),
         )
     greatest = max(differences, key=lambda row: abs(row["per cent"]))["name"]
-    print(f"\none alone [mm]   change   misfit   class   for {greatest}")
+    print(f"\none alone [mm]   change residual   class   for {greatest}")
     for name, change, least, letter, needed in alone:
         print(f"{name:14} {change:+8.2f}   {100 * least:.2f} %   {letter:>5}   {needed:+8.2f}")
-    print("\ntogether [mm]", *(f"{name:>7}" for name in NAMES), "  misfit   class")
+    print("\ntogether [mm]", *(f"{name:>7}" for name in NAMES), "residual   class")
     for rank, (changes, least, letter) in enumerate(together, 1):
         print(
             f"{rank:<13}", *(f"{change:+7.2f}" for change in changes), f"  {100 * least:.2f} %   {letter:>5}"

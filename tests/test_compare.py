@@ -57,7 +57,7 @@ def test_table_1_comes_out_of_the_linkage_with_the_paper_s_measured_values():
     measured = MeasuredExtremes("table 1", {q: tuple(TABLE_1["measured"][q]) for q in QUANTITIES})
     found = compare_extremes(sb.load("rssr"), measured, ends_of(sb.load("rssr")))
     assert found.circuit == 0
-    assert found.misfits[0][1] < 0.03 < 0.5 < found.misfits[1][1]
+    assert found.residuals[0][1] < 0.03 < 0.5 < found.residuals[1][1]
     for extent in found.table:
         assert extent.computed == pytest.approx(TABLE_1["exact"][extent.quantity], rel=1e-9)
         assert extent.measured == tuple(TABLE_1["measured"][extent.quantity])
@@ -84,7 +84,7 @@ def test_the_circuit_that_made_the_values_explains_them(circuit):
     found = compare(sb.load("rssr"), table(input=inputs, angle=angle))
     assert (found.chosen.circuit, found.chosen.branch) == (circuit, 0)
     assert found.candidates[1].circuit == 1 - circuit
-    assert found.candidates[1].misfit > 0.1
+    assert found.candidates[1].residual > 0.1
     assert abs(found.spread("angle").greatest) < 1e-13
 
 
@@ -115,7 +115,7 @@ def test_the_zeros_of_a_test_bench_are_found_to_rounding(words):
     assert found.chosen.circuit == 1
     assert found.chosen.phase == pytest.approx(phase, abs=1e-11)
     assert found.chosen.offset == pytest.approx(offset, abs=1e-11)
-    assert found.chosen.misfit < 1e-12
+    assert found.chosen.residual < 1e-12
     np.testing.assert_allclose(found.measured["angle"], found.computed["angle"], atol=1e-10)
 
 
@@ -138,7 +138,7 @@ def test_an_input_that_rocks_or_slides_is_aligned_on_its_own_pass():
         found = compare(linkage, measured, ends, align=["phase"])
         assert (found.chosen.circuit, found.chosen.branch) == (circuit.index, 1)
         assert found.chosen.phase == pytest.approx(moved, rel=1e-9)
-        assert found.chosen.misfit < 1e-10
+        assert found.chosen.residual < 1e-10
 
 
 def test_angles_that_jump_from_180_to_minus_180_are_one_curve():
@@ -146,7 +146,7 @@ def test_angles_that_jump_from_180_to_minus_180_are_one_curve():
     circuit = linkage.motion(90).circuits[0]
     wrapped = np.remainder(circuit.output + np.pi, 2 * np.pi) - np.pi
     found = compare(linkage, table(input=circuit.input, angle=wrapped))
-    assert found.chosen.misfit < 1e-13
+    assert found.chosen.residual < 1e-13
     (extent,) = found.table
     assert extent.measured[1] - extent.measured[0] == pytest.approx(np.ptp(circuit.output), rel=1e-12)
     assert extent.computed == pytest.approx(extent.measured, abs=1e-12)
@@ -160,7 +160,7 @@ def test_the_second_turn_of_a_circuit_is_told_from_its_first():
         rows = slice(60 * turn, 60 * turn + 60)
         inputs = circuit.input[rows] - 2 * np.pi * turn
         found = compare(linkage, table(input=inputs, angle=circuit.output[rows]))
-        assert (found.chosen.turn, found.chosen.misfit < 1e-12) == (turn, True)
+        assert (found.chosen.turn, found.chosen.residual < 1e-12) == (turn, True)
 
 
 def test_two_circuits_that_the_data_cannot_tell_apart_are_named():
@@ -248,7 +248,7 @@ def test_no_single_dimension_and_no_speed_explains_the_paper_s_measured_values()
             found = compare_extremes(linkage, measured, ends_of(linkage), speed=speed, circuit=0)
         except RequestError:  # with this dimension the crank does not turn, so rates have no extremes
             return math.inf
-        return found.misfits[0][1]
+        return found.residuals[0][1]
 
     def best(key, around, reach):
         grid = np.linspace(around - reach, around + reach, 41)

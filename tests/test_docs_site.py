@@ -67,6 +67,20 @@ def test_links_out_of_the_pages_lead_to_what_the_site_has():
         assert mended(f"See {link}.", docname, DOCS.parent) == f"See {led}."
 
 
+def test_the_module_map_has_a_line_for_each_module_of_the_package_and_the_core():
+    from module_map import CORE, PACKAGE, module_map
+
+    lines = module_map().splitlines()
+    rows = [line for line in lines if line.startswith("| `")]
+    folders = [line for line in lines if line.startswith("**`")]
+    modules = [path for path in PACKAGE.rglob("*.py") if path.parent != PACKAGE]
+    packages = list(PACKAGE.glob("*/__init__.py"))
+    rust = [path for path in CORE.rglob("*.rs") if path.name != "tests.rs"]
+    assert len(rows) == len(modules) - len(packages) + len(rust)
+    assert len(folders) == len(packages) + len([*PACKAGE.glob("*.py")]) - 1
+    assert [line for line in rows + folders if not re.search(r"[\w`)\]][.:](?: \|)?$", line)] == []
+
+
 def test_primes_stand_beside_their_letter_and_powers_above_it():
     from primes import with_full_primes
 

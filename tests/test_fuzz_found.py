@@ -12,7 +12,7 @@ from evidence.accuracy.reference_loops import Loop
 from evidence.fuzz.checks import circuits_are_distinct
 from evidence.fuzz.random_linkages import random_rotation
 from sevenbar.description.forms import from_description
-from sevenbar.errors import MOST_TOLD, DescriptionError, TableError
+from sevenbar.errors import MOST_LISTED, DescriptionError, TableError
 from sevenbar.measuring.measured import Ends, read_measured
 from test_invariance import changed, joints_of
 
@@ -33,17 +33,17 @@ def test_thousands_of_mistakes_are_one_message_of_some_lines() -> None:
         sb.loads("format = 1\n" + '[[point]]\nname = ""\nlink = 0\nat = 0\n' * 900 + "[rssr]\n", "f.toml")
     lines = str(caught.value).splitlines()
     assert len(caught.value.problems) == 3 * 900 + 5
-    assert lines[:MOST_TOLD] == [f"f.toml: {problem}" for problem in caught.value.problems[:MOST_TOLD]]
-    assert lines[MOST_TOLD:] == [f"f.toml: and {3 * 900 + 5 - MOST_TOLD} more mistakes; mend these first"]
+    assert lines[:MOST_LISTED] == [f"f.toml: {problem}" for problem in caught.value.problems[:MOST_LISTED]]
+    assert lines[MOST_LISTED:] == [f"f.toml: and {3 * 900 + 5 - MOST_LISTED} more mistakes; mend these first"]
 
 
 def test_as_many_mistakes_as_a_message_holds_are_all_told() -> None:
-    names = "".join(f"wrong_{k} = 1\n" for k in range(MOST_TOLD + 1))
+    names = "".join(f"wrong_{k} = 1\n" for k in range(MOST_LISTED + 1))
     right = "M = 1\nN = 1\nL1 = 1\nL3 = 1\nD = 0\n"
     for cut, last in ((names, "f.toml: and 1 more mistake; mend these first"), (names[:-12], "")):
         with pytest.raises(DescriptionError) as caught:
             sb.loads(f"format = 1\n[rssr]\n{right}{cut}", "f.toml")
-        assert str(caught.value).splitlines()[MOST_TOLD:] == ([last] if last else [])
+        assert str(caught.value).splitlines()[MOST_LISTED:] == ([last] if last else [])
 
 
 @pytest.mark.parametrize("value", ["1979-05-27", "07:32:00", "1979-05-27 07:32:00"])

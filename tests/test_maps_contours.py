@@ -102,7 +102,7 @@ def test_a_function_of_the_motion_has_contours_too():
     of = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": (300, 800)}, grid=9)
     (heights,) = measure_heights(of, [branches])
     assert {of.kinds[line.kind].motion_type for line in heights.contours} == {"double-rocker"}
-    assert heights.measure.told == "limits of the input, apart"
+    assert heights.measure.title == "limits of the input, apart"
 
 
 @pytest.mark.parametrize(

@@ -51,7 +51,7 @@ def test_a_function_of_the_motion_is_a_measure() -> None:
 
     (measure,) = measures_named([greatest_residual])
     (row,) = rows_of(sb.load("seven_r").motion(90), [measure])
-    assert measure.told == "The greatest closure error."
+    assert measure.title == "The greatest closure error."
     assert 0 < row["greatest_residual"] < 1e-9
 
 

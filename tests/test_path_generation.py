@@ -237,7 +237,7 @@ def test_points_on_two_circuits_are_refused():
     answer = checked_path(*solved(RSSR, "Q", one.input[rows], wanted))
     assert isinstance(answer, Refusal)
     assert answer.fault == "circuit"
-    assert "point 1 lies on circuit 0, point 3 on circuit 1" in answer.told
+    assert "point 1 lies on circuit 0, point 3 on circuit 1" in answer.detail
 
 
 def test_points_with_a_dead_centre_between_are_refused():
@@ -256,7 +256,7 @@ def test_points_with_a_dead_centre_between_are_refused():
     closed = np.concatenate([places[along], places[along[:1]]])
     answer = checked_path(*solved(draft, "Q", circuit.input[along], closed))
     assert isinstance(answer, Refusal)
-    assert "between its last point and its first" in answer.told
+    assert "between its last point and its first" in answer.detail
 
 
 @pytest.mark.slow

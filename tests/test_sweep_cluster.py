@@ -94,7 +94,7 @@ def test_a_part_that_ends_every_worker_is_told_and_the_others_are_kept(workers, 
     message = str(caught.value)
     assert message.startswith("scheduler: part ")
     assert message.endswith(
-        "ended every worker that took it; look for their memory and their logs, and go on with --resume"
+        "ended every worker that took it; check their memory and their logs, and go on with --resume"
     )
     assert {path.suffix for path in (tmp_path / "one").iterdir()} <= {".json", ".parquet"}
 

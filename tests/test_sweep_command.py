@@ -95,7 +95,7 @@ def test_a_folder_with_parts_is_gone_on_with_where_that_is_asked_for(tmp_path: P
     run = sevenbar(*sweep, "--resume", cwd=tmp_path)
     assert run.stdout.endswith("written: found (sweep.json, 5 parts)\n")
     assert mistake(*sweep[:-4], "--part-size", "3", "--out", "found", cwd=tmp_path) == (
-        "found: holds another sweep: part_size is 2 there and 3 here; give another folder, or ask for that sweep"
+        "found: holds another sweep: part_size is 2 there and 3 here; give another folder, or the options of that sweep"
     )
 
 

@@ -156,7 +156,7 @@ def status(_motion: sb.Motion) -> float:
             "measure: fails fails for linkage 1: ZeroDivisionError: division by zero; give a function of",
         ),
         (word, "measure: word gives 'ten' for linkage 0; give a number or None"),
-        (status, "measure: column 'status' would stand twice in the table; give the function another name"),
+        (status, "measure: column 'status' would appear twice in the table; give the function another name"),
     ],
 )
 def test_a_function_that_does_not_fit_is_told_with_the_linkage(function: object, message: str) -> None:

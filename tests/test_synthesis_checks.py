@@ -68,7 +68,7 @@ def test_points_on_two_circuits_are_refused():
     found = judged(CRANK, claim(CRANK, inputs, np.array([0, 0, 1, 1])))
     assert isinstance(found, Refusal)
     assert found.fault == "circuit"
-    assert "point 3" in found.told
+    assert "point 3" in found.detail
 
 
 def test_points_with_a_dead_centre_between_them_are_refused():
@@ -76,7 +76,7 @@ def test_points_with_a_dead_centre_between_them_are_refused():
     found = judged(ROCKER, claim(ROCKER, inputs, np.array([0, 0, 0, 1])))
     assert isinstance(found, Refusal)
     assert found.fault == "dead centre"
-    assert "point 4" in found.told
+    assert "point 4" in found.detail
 
 
 @pytest.mark.parametrize("row", [ROCKER, CRANK])
@@ -102,7 +102,7 @@ def test_a_pose_that_the_linkage_does_not_take_is_refused():
     moved = Claim(claimed.inputs, claimed.outputs + np.array([0, 0, 0.1, 0]), NOTHING)
     found = judged(CRANK, moved)
     assert isinstance(found, Refusal)
-    assert (found.fault, found.told) == ("assembly", "point 3 of 4 is reached by no circuit")
+    assert (found.fault, found.detail) == ("assembly", "point 3 of 4 is reached by no circuit")
 
 
 def test_what_is_no_linkage_is_a_refusal_not_an_error():

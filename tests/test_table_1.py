@@ -45,18 +45,18 @@ def test_the_equal_tolerances_cause_the_paper_s_differences_at_worst(tables):
         assert most == pytest.approx(abs(one["error"]), rel=0.15), one["name"]
 
 
-def test_one_length_alone_leaves_the_misfit_that_is_printed(example, tables):
+def test_one_length_alone_leaves_the_residual_that_is_printed(example, tables):
     _, alone, _ = tables
     _, _, measured, spans = example["table"](np.zeros(6))
     dimensions = sb.load("rssr").dimensions
     for name, change, least, *_ in alone[:3]:
 
-        def misfit(value, name=name):
+        def residual(value, name=name):
             return np.sqrt(np.mean(((measured - extremes(**{name: dimensions[name] + value})) / spans) ** 2))
 
-        assert least == pytest.approx(misfit(change), rel=1e-9)
+        assert least == pytest.approx(residual(change), rel=1e-9)
         # steps of a fixed slope end near the least, not at it
-        assert min(misfit(change + step) for step in (-0.2, 0.2)) > least - 2e-5
+        assert min(residual(change + step) for step in (-0.2, 0.2)) > least - 2e-5
     assert [row[0] for row in alone[:3]] == ["M", "L2", "L1"]
 
 

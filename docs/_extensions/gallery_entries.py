@@ -11,7 +11,7 @@ from sevenbar.reporting import report, summary
 #: Where the pictures are written, below the pages' folder.
 PICTURES = "_made/gallery"
 
-#: What the report tells of a motion and a gallery need not.
+#: Facts of the report that a gallery need not show.
 LEFT_OUT = {"dimensions", "established", "mobility", "closure error"}
 
 
@@ -49,15 +49,15 @@ def _section(name: str, motion: sb.Motion, pages: Path) -> str:
     sb.plot.save(sb.plot.configuration(motion, circuit=drawn.index), pages / picture)
     text = gallery.text(name)
     remarks = re.match(r"(?:#.*\n)*", text)[0]
-    told = " ".join(line.lstrip("# ") for line in remarks.splitlines())
+    origin = " ".join(line.lstrip("# ") for line in remarks.splitlines())
     facts = [
-        (fact, told.replace("  ", ", ")) for fact, told in summary.facts_of(motion) if fact not in LEFT_OUT
+        (fact, value.replace("  ", ", ")) for fact, value in summary.facts_of(motion) if fact not in LEFT_OUT
     ]
     rows = [*facts, ("mobility", str(motion.mobility)), ("modes", _modes(motion, drawn))]
     parts = (
         f"({name})=",
         f"## {motion.linkage.name}",
-        told,
+        origin,
         f"![{motion.linkage.name}]({picture}){{width=34em}}",
         table(("", code(name)), rows),
         f"<details><summary><code>sevenbar gallery {name}</code></summary>",

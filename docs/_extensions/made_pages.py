@@ -14,12 +14,14 @@ from sphinx.errors import ExtensionError
 import command_tables
 import gallery_entries
 import key_tables
+import module_map
 
 #: What makes each part, from the folder of the pages; the rest of the mark is handed on.
 PARTS: dict[str, Callable[[Path, str], str]] = {
     "commands": command_tables.all_commands,
     "gallery": gallery_entries.all_entries,
     "keys": key_tables.keys_of,
+    "modules": module_map.module_map,
     "schema": key_tables.written_schema,
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from evidence.fuzz.checks import hold
-from sevenbar.errors import MOST_TOLD, DescriptionError, SevenbarError
+from sevenbar.errors import MOST_LISTED, DescriptionError, SevenbarError
 
 #: A line of a message [characters]: a place, a value cut to 60, what is allowed, a remedy.
 LONGEST_LINE = 700
@@ -43,7 +43,7 @@ def look_at(error: SevenbarError, source: str) -> None:
         hold(all(line.startswith(f"{source}: ") for line in lines), "a line without the file's name")
         hold(all(len(line) > len(source) + 10 for line in lines), "a line that says nothing")
     if isinstance(error, DescriptionError):
-        told = min(len(error.problems), MOST_TOLD + 1)
+        told = min(len(error.problems), MOST_LISTED + 1)
         hold(len(lines) == told, "a problem of more than one line")
 
 

@@ -29,7 +29,7 @@ class OutputError(SevenbarError):
 
 
 class MissingExtraError(SevenbarError, ImportError):
-    """An optional package that is asked for but not installed."""
+    """An optional package that is needed but not installed."""
 
 
 class EngineError(SevenbarError):
@@ -38,7 +38,7 @@ class EngineError(SevenbarError):
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong in a description: where it stands and what is the matter."""
+    """One thing that is wrong in a description: its place and what is the matter."""
 
     place: str
     message: str
@@ -47,19 +47,19 @@ class Problem:
         return f"{self.place}: {self.message}" if self.place else self.message
 
 
-#: Mistakes that one message tells of; more of them come from a program, and all from one cause.
-MOST_TOLD = 50
+#: Mistakes that one message lists; more of them come from a program, and all from one cause.
+MOST_LISTED = 50
 
 
 class DescriptionError(SevenbarError):
-    """A linkage description with mistakes: all of them in `problems`, the first `MOST_TOLD` in the text."""
+    """A linkage description with mistakes: all of them in `problems`, the first `MOST_LISTED` in the text."""
 
     def __init__(self, problems: Sequence[Problem], source: str = "") -> None:
         self.problems = tuple(problems)
         self.source = source
         prefix = f"{source}: " if source else ""
-        lines = [f"{prefix}{problem}" for problem in self.problems[:MOST_TOLD]]
-        if (more := len(self.problems) - MOST_TOLD) > 0:
+        lines = [f"{prefix}{problem}" for problem in self.problems[:MOST_LISTED]]
+        if (more := len(self.problems) - MOST_LISTED) > 0:
             lines.append(f"{prefix}and {more} more mistake{'s' * (more > 1)}; mend these first")
         super().__init__("\n".join(lines))
 
@@ -76,7 +76,7 @@ def shown(value: object, longest: int = 60) -> str:
 
 
 def bare(word: str) -> str:
-    """A word as it stands in a message without quotes: cut short, characters that are not printed escaped."""
+    """A word as a message shows it without quotes: cut short, characters that are not printed escaped."""
     return word if word.isprintable() and len(word) <= 60 else shown(word)
 
 

@@ -166,7 +166,7 @@ class Linkage(Solvable):
         A direction of the link beyond stays at right angles to it. It is the axis of the joint before the
         ball, or, where the line of the two balls comes near that, one that the line keeps away from.
 
-        The rule is that of docs/theory.md, "Idle spin".
+        The rule is given under "Idle spin" in docs/theory.md.
         """
         if self.kind == "RSSR":
             return {self.joints[1].name: self.links[0][2, :3]}

@@ -11,7 +11,7 @@ from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Circuit, Extremes, Motion
 
-#: What a measure is a number of: of angles and lengths by the joint whose motion is told.
+#: What a measure is a number of: of angles and lengths by the output.
 Quantity = Literal["word", "count", "ratio", "angle", "output", "velocity", "acceleration", "jerk"]
 
 
@@ -27,16 +27,16 @@ class Measure:
     per: Literal["linkage", "circuit"]
     quantity: Quantity
     value: Callable[[Any], float | int | str | None]
-    told: str
+    title: str
 
     def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
         """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
         if MEASURES.get(self.name) is self:
             return _measure, (self.name,)
-        return Measure, (self.name, self.per, self.quantity, self.value, self.told)
+        return Measure, (self.name, self.per, self.quantity, self.value, self.title)
 
     def unit(self, linkage: Loop, output: str) -> str:
-        """The unit of its numbers, "" where there is none; `output` is the column whose motion is told."""
+        """The unit of its numbers, "" where there is none; `output` is the column of the output."""
         slides = linkage.column_kinds[linkage.columns.index(output)] == "slide"
         length = linkage.length_unit
         rate = length if slides else "rad"

@@ -1,6 +1,6 @@
-"""Measured values beside computed ones: what they say of a linkage, and which dimensions explain them.
+"""Measured values compared with computed ones: what they show, and which dimensions explain them.
 
-The way there: a text table becomes `measured` values, which `compare` (rows) and `extremes` set beside a
-motion and `calibrate` explains, by the exact `sensitivity` of the closure; then `figures`, `findings` and
-`rewrite` tell and keep what was found.
+A text table becomes `measured` values. `compare` (rows) and `extremes` compare them with a motion;
+`calibrate` explains them by the exact `sensitivity` of the closure. `figures`, `report` and `rewrite` show
+and write the results.
 """

@@ -1,9 +1,9 @@
-"""Measured values beside computed ones: which circuit they tell of, how they lie to it, where they differ.
+"""Measured values compared with computed ones: the circuit that explains them, alignment, differences.
 
 At each measured row the linkage is solved at the row's input: the measured one, or `speed * time`. Every pass
-of every circuit is a candidate; the one with the least misfit explains the data, and the others' misfits are
-kept beside it. With `align` the curve is first moved along the input ("phase") and along the output
-("offset") by least squares: two zeros that a test bench has elsewhere.
+of every circuit is a candidate; the one with the least residual explains the data, and the others are
+kept with their residuals. With `align` the curve is first moved along the input ("phase") and along the
+output ("offset") by least squares: two zeros that differ on a test bench.
 """
 
 from __future__ import annotations
@@ -26,37 +26,37 @@ from sevenbar.text.units import sliding_speed, turning_speed
 #: What may be aligned.
 ALIGN = ("phase", "offset")
 
-#: Inputs of the first look at a phase over a turn, and how many shifts are tried there.
+#: Inputs of the first search for a phase over a turn, and the number of shifts tried.
 GRID, SHIFTS = 1440, 360
 
 #: Points of the computed curve that figures show.
 CURVE = 721
 
-#: Candidates whose misfit at the first look is within this factor of the least are aligned exactly.
+#: Candidates whose residual in the first search is within this factor of the least are aligned exactly.
 NEAR = 4.0
 
-#: A measured input that departs from uniform motion by more than this share of its travel is told of.
+#: A measured input that departs from uniform motion by more than this share of its travel is reported.
 UNIFORM = 0.01
 
-#: The second best candidate within this factor of the best: the data hardly tell the two apart.
+#: The second best candidate within this factor of the best: the data hardly distinguish the two.
 CLOSE_CALL = 1.2
 
 #: Differences of this share of the measured range are no small ones: something else is wrong.
 UNEXPLAINED = 0.1
 
-#: Misfits below this are rounding.
-SAME_MISFIT = 1e-12
+#: Residuals below this are rounding.
+SAME_RESIDUAL = 1e-12
 
 
 @dataclass(frozen=True)
 class PassFit:
-    """A pass of a circuit: its misfit (root mean square of differences in parts of each measured range)."""
+    """A pass of a circuit and its residual: the rms of differences relative to each measured range."""
 
     circuit: int
     branch: int
     #: Whole turns of the input at which the data begin, for a circuit that closes after several.
     turn: int
-    misfit: float
+    residual: float
     #: Rows whose input does not close the loop on this pass.
     open_rows: int
     phase: float = 0.0
@@ -65,7 +65,7 @@ class PassFit:
 
 @dataclass(frozen=True)
 class Spread:
-    """How measured values differ from computed ones: measured less computed."""
+    """How measured values differ from computed ones: measured minus computed."""
 
     greatest: float
     #: Line of the file of the greatest difference.
@@ -79,7 +79,7 @@ class Comparison(Printed):
     """Measured and computed values at the same inputs, (n,) each; NaN where the loop does not close.
 
     `input` [rad, or length] is that of the linkage: the measured one plus `chosen.phase`; `measured` has
-    `chosen.offset` taken off the angle, and is brought within half a turn of `computed`.
+    `chosen.offset` subtracted from the angle, and is brought within half a turn of `computed`.
     """
 
     linkage: Linkage
@@ -104,7 +104,7 @@ class Comparison(Printed):
         return tuple(self.measured)
 
     def difference(self, quantity: str) -> Floats:
-        """Measured less computed, (n,)."""
+        """Measured minus computed, (n,)."""
         return self.measured[quantity] - self.computed[quantity]
 
     def spread(self, quantity: str) -> Spread:
@@ -171,7 +171,7 @@ def compare(
 
     `align` of "phase" (the zero of the input) and "offset" (the zero of the output). The input moves at
     `speed`, the drive's where none is given; where the table has time but no input, it is at `start` [rad,
-    or length] at time 0. `circuit` and `branch` (the pass) are found by the least misfit where not given.
+    or length] at time 0. `circuit` and `branch` (the pass) are found by the least residual where not given.
     Raises `RequestError` for a wrong argument, and where no circuit closes at any of the inputs.
 
         >>> import numpy as np
@@ -199,16 +199,17 @@ def compare(
     candidates = problem.candidates("phase" in aligned, "offset" in aligned, circuit, branch)
     best = candidates[0]
     others = [c for c in candidates[1:] if (c.circuit, c.branch) != (best.circuit, best.branch)]
-    near = CLOSE_CALL * max(best.misfit, SAME_MISFIT)
-    if others and others[0].misfit < near and others[0].open_rows <= best.open_rows:
+    near = CLOSE_CALL * max(best.residual, SAME_RESIDUAL)
+    if others and others[0].residual < near and others[0].open_rows <= best.open_rows:
         other = others[0]
         notes.append(
-            f"circuit {other.circuit}, branch {other.branch} explains the data nearly as well (misfit "
-            f"{per_cent(other.misfit)} against {per_cent(best.misfit)}): these data hardly tell the two apart"
+            f"circuit {other.circuit}, branch {other.branch} explains the data nearly as well "
+            f"(residual {per_cent(other.residual)} against {per_cent(best.residual)}): "
+            "these data hardly distinguish the two"
         )
-    if best.misfit > UNEXPLAINED:
+    if best.residual > UNEXPLAINED:
         notes.append(
-            f"the differences are {per_cent(best.misfit)} of the measured range: no circuit explains "
+            f"the differences are {per_cent(best.residual)} of the measured range: no circuit explains "
             "these data; check units, zeros (--align), speed and which joint was measured"
         )
     computed, values = problem.side_by_side(best)
@@ -284,7 +285,7 @@ def _speed(
 
 
 class _Problem:
-    """One measurement against one linkage: candidates, misfits, alignment."""
+    """One measurement against one linkage: candidates, residuals, alignment."""
 
     def __init__(
         self, linkage: Linkage, ends: Ends, measured: Measured, inputs: Floats, speed: float
@@ -296,7 +297,7 @@ class _Problem:
             self.values["angle"] = np.unwrap(self.values["angle"])
         self.scales = {quantity: float(np.ptp(v)) or 1.0 for quantity, v in self.values.items()}
         self.source = measured.source
-        # the same inputs are asked for again and again: for each pass, and once more for the chosen one
+        # the same inputs are needed again and again: for each pass, and once more for the chosen one
         self._last: tuple[bytes, dict[tuple[int, int], list[Floats]]] = (b"", {})
 
     def passes(self, inputs: Floats) -> dict[tuple[int, int], list[Floats]]:
@@ -325,7 +326,7 @@ class _Problem:
         return found
 
     def differences(self, rates: Sequence[Floats], offset: float = 0.0) -> dict[str, Floats]:
-        """Measured less computed of each quantity, an angle within half a turn."""
+        """Measured minus computed of each quantity, an angle within half a turn."""
         found = {}
         for quantity, values in self.values.items():
             order = OUTPUTS.index(quantity)
@@ -337,8 +338,8 @@ class _Problem:
             found[quantity] = apart
         return found
 
-    def misfit(self, rates: Sequence[Floats], offset: float) -> tuple[float, int]:
-        """Root mean square of the differences in parts of the ranges, and how many rows do not close.
+    def residual(self, rates: Sequence[Floats], offset: float) -> tuple[float, int]:
+        """Root mean square of the differences relative to the ranges, and how many rows do not close.
 
         A row that does not close counts as a difference of a whole range.
         """
@@ -358,7 +359,7 @@ class _Problem:
         return centre + float((known - centre - math.tau * np.round((known - centre) / math.tau)).mean())
 
     def candidates(self, phase: bool, offset: bool, circuit: int | None, branch: int | None) -> list[PassFit]:
-        """Every pass with its misfit, the best first."""
+        """Every pass with its residual, the best first."""
         here = self.passes(self.inputs)
         for name, word, value, known in (
             ("circuit", "circuit", circuit, sorted({key[0] for key in here})),
@@ -375,19 +376,21 @@ class _Problem:
         ]
         if not wanted:
             raise RequestError(f"branch: circuit {circuit} has no branch {branch}; leave --branch out")
-        starts = self._first_look(wanted, offset) if phase else dict.fromkeys(wanted, 0.0)
-        looked = [self._judged(key, starts[key], offset) for key in wanted]
-        least = min(candidate.misfit for candidate in looked)
+        starts = self._first_phase(wanted, offset) if phase else dict.fromkeys(wanted, 0.0)
+        tried = [self._judged(key, starts[key], offset) for key in wanted]
+        least = min(candidate.residual for candidate in tried)
         if phase:
-            looked = [self._refined(c, offset) if c.misfit <= max(NEAR * least, 1e-3) else c for c in looked]
-        # misfits that differ by rounding are the same
-        looked.sort(key=lambda c: (float(f"{max(c.misfit, SAME_MISFIT):.6g}"), c.circuit, c.branch, c.turn))
-        if looked[0].open_rows == len(self.inputs):
+            tried = [self._refined(c, offset) if c.residual <= max(NEAR * least, 1e-3) else c for c in tried]
+        # residuals that differ by rounding are the same
+        tried.sort(
+            key=lambda c: (float(f"{max(c.residual, SAME_RESIDUAL):.6g}"), c.circuit, c.branch, c.turn)
+        )
+        if tried[0].open_rows == len(self.inputs):
             raise RequestError(
                 f"{self.source}: at none of its inputs does the linkage close; check the units of the input "
                 "and its zero, or let it be aligned with --align phase"
             )
-        return looked
+        return tried
 
     def _at(self, key: tuple[int, int, int], phase: float) -> list[Floats]:
         return self.passes(self.inputs + phase + math.tau * key[2])[key[:2]]
@@ -395,10 +398,10 @@ class _Problem:
     def _judged(self, key: tuple[int, int, int], phase: float, offset: bool) -> PassFit:
         rates = self._at(key, phase)
         moved = self.offset(rates) if offset else 0.0
-        misfit, open_rows = self.misfit(rates, moved)
-        return PassFit(*key, misfit, open_rows, phase, moved)
+        residual, open_rows = self.residual(rates, moved)
+        return PassFit(*key, residual, open_rows, phase, moved)
 
-    def _first_look(
+    def _first_phase(
         self, wanted: Sequence[tuple[int, int, int]], offset: bool
     ) -> dict[tuple[int, int, int], float]:
         """A phase for each pass from curves read off a grid of the input, shifted step by step."""
@@ -427,7 +430,7 @@ class _Problem:
                     at = at % (math.tau * turns)
                 here = [np.interp(at, grid, r) for r in rates]
                 moved = self.offset(here) if offset else 0.0
-                best = min(best, (self.misfit(here, moved)[0], float(shift)), key=lambda pair: pair[0])
+                best = min(best, (self.residual(here, moved)[0], float(shift)), key=lambda pair: pair[0])
             found[key] = best[1]
         return found
 
@@ -451,12 +454,12 @@ class _Problem:
             step = np.linalg.lstsq(gradient if offset else gradient[:, :1], error, rcond=None)[0]
             for share in (1.0, 0.5, 0.25, 0.1, 0.01):
                 tried = self._judged(key, best.phase + share * float(step[0]), offset)
-                if tried.misfit < best.misfit:
+                if tried.residual < best.residual:
                     break
             else:
                 return best
-            gain, best = best.misfit - tried.misfit, tried
-            if gain <= 1e-12 * best.misfit:
+            gain, best = best.residual - tried.residual, tried
+            if gain <= 1e-12 * best.residual:
                 return best
         return best
 

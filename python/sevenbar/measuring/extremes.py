@@ -30,7 +30,7 @@ class Extent:
     def rows(self) -> list[tuple[str, float, float, float, float | None]]:
         """For lowest, highest, range: computed, measured, error and per cent.
 
-        The error is measured less computed, the per cent that of the size of the computed value; `None`
+        The error is measured minus computed, the per cent that of the size of the computed value; `None`
         where the computed value is zero.
         """
         rows = []
@@ -47,7 +47,7 @@ class Extent:
 
 @dataclass(frozen=True, repr=False)
 class ExtremesComparison(Printed):
-    """The paper's Table 1: measured extremes beside those of a circuit, exact ones by root finding."""
+    """The paper's Table 1: measured extremes compared with those of a circuit, exact ones by root finding."""
 
     linkage: Linkage
     ends: Ends
@@ -55,8 +55,8 @@ class ExtremesComparison(Printed):
     speed: float
     circuit: int
     table: tuple[Extent, ...]
-    #: Misfit of each circuit, in parts of the measured ranges.
-    misfits: tuple[tuple[int, float], ...]
+    #: Residual of each circuit, relative to the measured ranges.
+    residuals: tuple[tuple[int, float], ...]
 
 
 def compare_extremes(
@@ -87,12 +87,12 @@ def compare_extremes(
         )
         raise RequestError(
             f"circuit: {who} a lowest and a highest value of {', '.join(measured.outputs)}; "
-            "`sevenbar analyze` tells what each circuit has"
+            "`sevenbar analyze` shows what each circuit has"
         )
-    misfits = sorted(((_misfit(extents), index) for index, extents in tables.items()))
-    best = misfits[0][1]
+    residuals = sorted(((_residual(extents), index) for index, extents in tables.items()))
+    best = residuals[0][1]
     return ExtremesComparison(
-        linkage, ends, measured.source, motion.speed, best, tables[best], tuple((i, m) for m, i in misfits)
+        linkage, ends, measured.source, motion.speed, best, tables[best], tuple((i, m) for m, i in residuals)
     )
 
 
@@ -111,7 +111,7 @@ def _extents(circuit: Circuit, measured: MeasuredExtremes, ends: Ends) -> tuple[
     return tuple(found)
 
 
-def _misfit(extents: Sequence[Extent]) -> float:
+def _residual(extents: Sequence[Extent]) -> float:
     squares = [
         ((m - c) / ((e.measured[1] - e.measured[0]) or 1.0)) ** 2
         for e in extents

@@ -1,4 +1,4 @@
-"""Figures of measured values beside computed ones: curves, and below them the differences alone."""
+"""Figures of measured and computed values: curves, and below them the differences alone."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
             top.plot(shown(ends, "input", comparison.curve_input), curve, label="computed", **COMPUTED)
             _points(top, x, shown(ends, quantity, comparison.measured[quantity]), "measured")
             _points(below, x, shown(ends, quantity, comparison.difference(quantity)), "difference")
-            _labels(grid[:, column], ends, quantity, ["measured less\ncomputed"])
+            _labels(grid[:, column], ends, quantity, ["measured minus\ncomputed"])
         title = (
             f"{short(comparison.linkage.name, 60)}\ncircuit {comparison.chosen.circuit} and measured values"
         )
@@ -98,7 +98,9 @@ def calibration_figure(calibration: Calibration) -> Figure:
             _points(top, x, measured, "measured")
             for axes, name in ((before, "nominal"), (after, "calibrated")):
                 _points(axes, x, measured - shown(ends, quantity, sides[name][quantity]), "difference")
-            _labels(grid[:, column], ends, quantity, ["measured less\nnominal", "measured less\ncalibrated"])
+            _labels(
+                grid[:, column], ends, quantity, ["measured minus\nnominal", "measured minus\ncalibrated"]
+            )
         _finish(figure, grid, f"{short(calibration.linkage.name, 60)}\nbefore and after calibration")
     return figure
 

@@ -1,8 +1,8 @@
 """Measured values of a linkage, read from a table: time, input, output angle, velocity, acceleration.
 
 Columns are found by their names and units, or named by the caller; values come out in seconds, radians and
-the linkage's length unit, each row with the line of the file it stood on. Nothing is guessed: a column whose
-unit is not known, a row without a number, times that do not rise are told of.
+the linkage's length unit, each row with its line in the file. Nothing is guessed: a column whose
+unit is not known, a row without a number and times that do not rise are reported.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ QUANTITIES = ("time", "input", "angle", "velocity", "acceleration")
 #: Those that are compared, in the order of how often they are differentiated by time.
 OUTPUTS = ("angle", "velocity", "acceleration")
 
-#: Words of a column's name that tell what it holds, without a word for the joint.
+#: Words of a column's name that identify what it holds, without a word for the joint.
 _WORDS = {
     "time": {"time", "t"},
     "input": {"input", "alpha", "drive", "driver"},
@@ -75,7 +75,7 @@ class Ends:
 class Measured(Printed):
     """Measured rows: `values` (n,) by quantity, in s, rad (or the length unit) and their derivatives.
 
-    `line` (n,) is the line of the file of each row; `labels` tell from which column each quantity came.
+    `line` (n,) is the line of the file of each row; `labels` name the column of each quantity.
     """
 
     source: str
@@ -118,7 +118,7 @@ def read_measured(
     r"""The measured values of a file: rows, or a table of extremes with the columns `lowest`, `highest`.
 
     `columns` names the column of a quantity by its header or its number from 1, `units` its unit; both may
-    be left out where the header tells. `skip_nan` leaves out rows in which a used cell holds no number.
+    be left out where the header names it. `skip_nan` leaves out rows in which a used cell holds no number.
     Raises `TableError` with the line and what is wrong there, `RequestError` for a wrong argument.
 
         >>> import tempfile
@@ -192,7 +192,7 @@ def pairs(given: Iterable[str], option: str) -> dict[str, str]:
 
 
 def _quantity(name: str, unit: MeasuredUnit | None, ends: Ends) -> str | None:
-    """What a column holds, by its name and its unit; `None` where neither tells."""
+    """What a column holds, by its name and its unit; `None` where neither identifies it."""
     plain = plain_name(name)
     for quantity, joint in (("input", ends.input), ("angle", ends.output)):
         own = plain_name(joint)

@@ -1,4 +1,4 @@
-"""What a comparison and a calibration come to: a page for people, an object for programs, a folder."""
+"""The report of a comparison and of a calibration: a page for people, an object for programs, a folder."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from sevenbar.reporting.folder import write_columns, write_csv
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of
 
-#: Candidates and notes are told in full in the JSON; of candidates the page has as many.
+#: The JSON has all candidates and notes; the page has as many candidates.
 MOST_CANDIDATES = 4
 
 
@@ -36,11 +36,11 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     if isinstance(comparison, ExtremesComparison):
         facts.add("measured", f"{comparison.source}, lowest and highest values")
         facts.add("drive", drive)
-        first, *others = (f"circuit {i} (misfit {per_cent(m)})" for i, m in comparison.misfits)
+        first, *others = (f"circuit {i} (residual {per_cent(m)})" for i, m in comparison.residuals)
         facts.add("explained by", first, style="bold")
         if others:
             facts.add("not by", "; ".join(others[:MOST_CANDIDATES]))
-        facts.add("", "misfit: root mean square of the errors in parts of the measured range")
+        facts.add("", "residual: root mean square of the errors relative to the measured range")
         return Group(*parts, Text(), _extents_table(comparison.table, ends))
     chosen = comparison.chosen
     rows = np.isfinite(next(iter(comparison.computed.values()))).sum()
@@ -48,9 +48,9 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         "measured", f"{comparison.source}, {rows} rows of {', '.join(_words(ends, comparison.outputs))}"
     )
     facts.add("drive", drive)
-    facts.add("explained by", _candidate(chosen.circuit, chosen.branch, chosen.misfit), style="bold")
+    facts.add("explained by", _candidate(chosen.circuit, chosen.branch, chosen.residual), style="bold")
     others = [
-        _candidate(c.circuit, c.branch, c.misfit)
+        _candidate(c.circuit, c.branch, c.residual)
         for c in comparison.candidates[1:]
         if (c.circuit, c.branch) != (chosen.circuit, chosen.branch)
     ]
@@ -58,13 +58,15 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         more = len(others) - MOST_CANDIDATES
         tail = f"; {more} more" if more > 0 else ""
         facts.add("not by", "; ".join(others[:MOST_CANDIDATES]) + tail)
-    facts.add("", "misfit: root mean square of the differences in parts of the measured range")
+    facts.add("", "residual: root mean square of the differences relative to the measured range")
     for name, value, quantity, asked in (
         ("phase", chosen.phase, "input", "phase"),
         ("offset", chosen.offset, "angle", "offset"),
     ):
         if asked in comparison.aligned:
-            sense = "added to the measured input" if name == "phase" else "taken off the measured output"
+            sense = (
+                "added to the measured input" if name == "phase" else "subtracted from the measured output"
+            )
             facts.add(name, f"{_value(ends, quantity, value)} {sense}")
     for note in comparison.notes:
         facts.add("note", note)
@@ -96,7 +98,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
     facts.add("fitted", f"{count} parameters, {calibration.freedom} degrees of freedom")
     for parameter in calibration.parameters:
         if parameter.status == "untold":
-            facts.add("not told", untold_sentence(parameter, calibration))
+            facts.add("not identifiable", unidentified_sentence(parameter, calibration))
     opening = [p.name for p in calibration.parameters if p.status == "opens the loop"]
     if opening:
         facts.add("held", f"{', '.join(opening)}: a change of one alone would open this overconstrained loop")
@@ -106,7 +108,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
     return Group(title, facts.grid, Text(), _parameter_table(calibration))
 
 
-def untold_sentence(parameter: Parameter, calibration: Calibration) -> str:
+def unidentified_sentence(parameter: Parameter, calibration: Calibration) -> str:
     """Why a parameter was held, and at what."""
     at = _parameter_value(parameter, parameter.value, calibration.ends)
     if not parameter.undone_by:
@@ -136,8 +138,8 @@ def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, An
         for extent in comparison.table
     ]
     if isinstance(comparison, ExtremesComparison):
-        misfits = [{"circuit": i, "misfit": m} for i, m in comparison.misfits]
-        return common | {"circuit": comparison.circuit, "candidates": misfits, "table": table}
+        residuals = [{"circuit": i, "residual": m} for i, m in comparison.residuals]
+        return common | {"circuit": comparison.circuit, "candidates": residuals, "table": table}
     return common | {
         "rows": len(comparison.line),
         "circuit": comparison.chosen.circuit,
@@ -305,8 +307,8 @@ def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
     return [word(ends, quantity) for quantity in quantities]
 
 
-def _candidate(circuit: int, branch: int, misfit: float) -> str:
-    return f"circuit {circuit}, branch {branch} (misfit {per_cent(misfit)})"
+def _candidate(circuit: int, branch: int, residual: float) -> str:
+    return f"circuit {circuit}, branch {branch} (residual {per_cent(residual)})"
 
 
 def _value(ends: Ends, quantity: str, value: float) -> str:
@@ -344,7 +346,7 @@ def _spread_table(comparison: Comparison) -> Table:
         for quantity in comparison.outputs
         for spread in [comparison.spread(quantity)]
     )
-    return number_table(("measured less computed", "greatest", "in line", "rms", "mean"), rows)
+    return number_table(("measured minus computed", "greatest", "in line", "rms", "mean"), rows)
 
 
 def _parameter_table(calibration: Calibration) -> Table:
@@ -358,7 +360,7 @@ def _parameter_table(calibration: Calibration) -> Table:
             digits = _digits(reach)
             cells = [f"{value:.{digits}f}", f"{reach:.{digits}f}", f"{value - nominal:+.{digits}f}", ""]
         else:
-            note = {"fixed": "held", "untold": "not told: held"}.get(p.status, p.status)
+            note = {"fixed": "held", "untold": "not identifiable"}.get(p.status, p.status)
             cells = [f"{value:.6g}", "-", "-", note]
         rows.append((label, f"{nominal:.6g}", *cells))
     return number_table(heads, rows, words=[5])

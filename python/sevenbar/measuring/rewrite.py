@@ -35,9 +35,11 @@ def _head(calibration: Calibration) -> list[str]:
         value, reach = ((math.degrees(v) if degrees else v) for v in (p.value, (p.high - p.low) / 2))
         unit = "deg" if degrees else calibration.ends.length_unit
         lines.append(f"  {p.name} = {value:.9g} {unit}, +- {reach:.2g}")
-    untold = [p.name for p in calibration.parameters if p.status == "untold"]
-    if untold:
-        lines.append(f"Held at nominal values, since the data do not tell them: {', '.join(untold)}.")
+    unidentified = [p.name for p in calibration.parameters if p.status == "untold"]
+    if unidentified:
+        lines.append(
+            f"Held at nominal values, since the data do not identify them: {', '.join(unidentified)}."
+        )
     if any(p.name.endswith("_offset") and p.status == "calibrated" for p in calibration.parameters):
         lines.append(
             "Input of the linkage = measured input + input_offset; measured output = output + output_offset."

@@ -1,7 +1,7 @@
 """Many linkages: dimensions over grids and samples, measures of each, tables that survive a crash.
 
-From a request to a table: `axes` and `sampling` make a `space` of linkages, a `plan` holds all that was asked
-for, `rows` makes a part of the table, `parts` keeps it in a folder, `run` drives this on threads or on a
+From a request to a table: `axes` and `sampling` make a `space` of linkages, a `plan` holds the
+request, `rows` makes a part of the table, `parts` keeps it in a folder, `run` drives this on threads or on a
 `cluster`, and `result` is what is left.
 """
 

@@ -98,7 +98,7 @@ class SweepAxis:
         return self.at(np.minimum((share * self.count).astype(np.int64), self.count - 1))
 
     @property
-    def told(self) -> dict[str, object]:
+    def as_dict(self) -> dict[str, object]:
         """The axis as a sweep's description holds it."""
         values: dict[str, object] = {"low": self.low, "high": self.high}
         if self.listed:
@@ -134,8 +134,8 @@ def axis_of(dimension: Dimension, given: Given) -> SweepAxis:
             "span(low, high) or a list of values"
         )
     if not 0 < len(given) <= MOST_LISTED:
-        told = "no values are" if len(given) == 0 else f"{len(given)} values are"
-        raise RequestError(f"{name}: {told} listed; give 1 to {MOST_LISTED}, or a grid")
+        number = "no values are" if len(given) == 0 else f"{len(given)} values are"
+        raise RequestError(f"{name}: {number} listed; give 1 to {MOST_LISTED}, or a grid")
     listed = tuple(_value(dimension, one) for one in given)
     return SweepAxis(dimension, min(listed), max(listed), len(listed), listed)
 

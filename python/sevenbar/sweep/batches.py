@@ -26,14 +26,14 @@ from sevenbar.kinematics.motion import Integers
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, SweepPlan
 
-#: Sizes [file's units] between which nothing is refused by the description; others are left to be looked at.
+#: Sizes [file's units] between which nothing is refused by the description; others are checked one by one.
 LEAST, GREATEST = 1e-50, 1e50
 
 
 def batched(plan: SweepPlan, values: Floats, threads: int) -> tuple[list[Block], Integers]:
     """The rows of linkages (axes, n) that the core measures, and which are left to be analysed one by one.
 
-    Left are those that a description refuses or that do not move, which have their reason to tell, change
+    Left are those that a description refuses or that do not move, which have a reason to report, change
     points of an RSSR, whose output must be followed, and all where the sweep is of functions.
     """
     count = values.shape[1]
@@ -74,7 +74,7 @@ def _of_loops(plan: SweepPlan, values: Floats, threads: int) -> Block | None:
     for index, row in enumerate(values.T):
         try:
             linkages.append(plan.draft_of(row).linkage)
-        except SevenbarError:  # whose reason is told where it is analysed by itself
+        except SevenbarError:  # whose reason is reported where it is analysed by itself
             continue
         which.append(index)
     if not linkages:
@@ -96,7 +96,7 @@ def _dimensions(plan: SweepPlan, values: Floats) -> tuple[Floats, Floats]:
 
 
 def _of_types(plan: SweepPlan, dimensions: Floats, threads: int) -> Block:
-    """A row for each linkage, of what its dimensions tell without its circuits."""
+    """A row for each linkage, of what follows from its dimensions without its circuits."""
     codes, limits = rssr_types(dimensions, plan.input, threads)
     linkage = np.flatnonzero(codes != INVALID)
     columns = _of_linkages(plan, linkage, WORDS[codes], limits)

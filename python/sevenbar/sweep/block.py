@@ -16,7 +16,7 @@ from sevenbar.sweep.plan import SweepPlan
 #: The status of a linkage that was measured.
 OK = "ok"
 
-#: What stands in `circuit` of a linkage that has none.
+#: The value of `circuit` for a linkage that has none.
 NO_CIRCUIT = -1
 
 #: Limits of an RSSR's input: the zeros of a quartic.
@@ -56,7 +56,7 @@ def per_circuit(measures: tuple[Measure, ...]) -> bool:
 
 
 def limit_names(plan: SweepPlan) -> tuple[str, ...]:
-    """Columns that hold the limits themselves, where those are asked for: of an RSSR at most four."""
+    """Columns that hold the limits themselves, where those are requested: of an RSSR at most four."""
     if "limits" not in plan.measures or plan.draft.linkage.kind != "RSSR":
         return ()
     return tuple(f"limit_{place}" for place in range(1, MOST_LIMITS + 1))

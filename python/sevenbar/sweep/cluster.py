@@ -22,7 +22,7 @@ ANSWER_TIME = 10.0
 #: Time [s] without any worker after which a sweep is given up: one that died is started again within that.
 WORKER_TIME = 60.0
 
-#: Time [s] between two looks at the workers.
+#: Time [s] between two checks of the workers.
 LOOK_TIME = 1.0
 
 #: Parts in flight for each thread of the workers: one at work and one that waits.
@@ -48,9 +48,9 @@ class Cluster:
         try:
             pickle.dumps(plan)
         except Exception as error:
-            told = f"{type(error).__name__}: {error}".splitlines()[0]
+            reason = f"{type(error).__name__}: {error}".splitlines()[0]
             raise RequestError(
-                f"measure: a function cannot be sent to workers: {told}; "
+                f"measure: a function cannot be sent to workers: {reason}; "
                 "give functions of a module that the workers have, which hold nothing open"
             ) from None
         self._plan, self._address = plan, address
@@ -85,13 +85,13 @@ class Cluster:
         except Exception as error:
             self._lost(error)
         makers: list[Mapping[str, str]] = []
-        for worker, told in found.items():
-            if not isinstance(told, dict):
+        for worker, known in found.items():
+            if not isinstance(known, dict):
                 raise EngineError(
-                    f"scheduler: worker {worker} cannot run Sevenbar: {told}; install the same version there"
+                    f"scheduler: worker {worker} cannot run Sevenbar: {known}; install the same version there"
                 )
-            if told not in makers:
-                makers.append(told)
+            if known not in makers:
+                makers.append(known)
         return makers
 
     def made(self, parts: Iterable[int]) -> Generator[tuple[int, bytes, Mapping[str, str]], None, None]:
@@ -163,14 +163,14 @@ class Cluster:
             first = self._plan.linkages(part)
             raise EngineError(
                 f"scheduler: part {part} (linkages {first.start} to {first.stop - 1}) ended every worker "
-                "that took it; look for their memory and their logs, and go on with --resume"
+                "that took it; check their memory and their logs, and go on with --resume"
             ) from None
         except (CancelledError, OSError) as error:
             self._lost(error)
         except Exception as error:
-            told = f"{type(error).__name__}: {error}".splitlines()[0]
+            reason = f"{type(error).__name__}: {error}".splitlines()[0]
             raise EngineError(
-                f"scheduler: a worker cannot make part {part}: {told}; "
+                f"scheduler: a worker cannot make part {part}: {reason}; "
                 "give workers the same modules and versions as here, and go on with --resume"
             ) from None
         return content, by
@@ -184,9 +184,9 @@ class Cluster:
                 self._wait_for_workers()
 
     def _lost(self, error: BaseException) -> NoReturn:
-        told = f"{type(error).__name__}: {error}".splitlines()[0]
+        reason = f"{type(error).__name__}: {error}".splitlines()[0]
         raise EngineError(
-            f"scheduler: '{self._address}' is lost ({told}); start it again, and go on with --resume"
+            f"scheduler: '{self._address}' is lost ({reason}); start it again, and go on with --resume"
         ) from None
 
 
@@ -197,7 +197,7 @@ def _made_by(plan: SweepPlan, part: int) -> tuple[bytes, Mapping[str, str]]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Without the log of distributed, which would stand between the lines that are meant to be read."""
+    """Without the log of distributed, which would appear between the lines that are meant to be read."""
     log = logging.getLogger("distributed")
     level = log.level
     log.setLevel(logging.CRITICAL + 1)

@@ -30,18 +30,18 @@ def analysed(plan: SweepPlan, values: Floats, first: int, which: Integers) -> Bl
     status: list[str] = []
     rows: list[Row] = []
     for index in which:
-        told, found = OK, _nothing(measures)
+        outcome, found = OK, _nothing(measures)
         try:
             linkage_there = plan.draft_of(values[:, index]).linkage
             motion = linkage_there.motion(plan.samples, input=plan.input, output=plan.output)
         except SevenbarError as error:
-            told = "; ".join(str(error).splitlines())
+            outcome = "; ".join(str(error).splitlines())
         else:
             found = list(_measured(motion, measures, first + int(index)))
             inputs = np.degrees(motion.limits)
             found = [row | dict(zip(limits, inputs, strict=False)) for row in found]
         linkage += [int(index)] * len(found)
-        status += [told] * len(found)
+        status += [outcome] * len(found)
         rows += found
     columns: dict[str, npt.NDArray[Any]] = {}
     for measure in measures:
@@ -64,29 +64,29 @@ def _nothing(measures: tuple[Measure, ...]) -> list[Row]:
 
 
 def _measured(motion: Motion, measures: tuple[Measure, ...], linkage: int) -> Iterator[Row]:
-    """The measures of a motion, those of a caller's functions looked at."""
+    """The measures of a motion, those of a caller's functions checked."""
     try:
         rows = rows_of(motion, measures)
     except Exception:
         for measure in measures:
-            _told_of(motion, measure, linkage)
+            _check_function(motion, measure, linkage)
         raise
     for row in rows:
         for measure in measures:
             value = row[measure.name]
             fits = value is None or isinstance(value, int | float | np.number)
             if measure.quantity != "word" and not fits:
-                told = f"{measure.name} gives {shown(value)} for linkage {linkage}"
-                raise RequestError(f"measure: {told}; give a number or None")
+                what = f"{measure.name} gives {shown(value)} for linkage {linkage}"
+                raise RequestError(f"measure: {what}; give a number or None")
         yield row
 
 
-def _told_of(motion: Motion, measure: Measure, linkage: int) -> None:
+def _check_function(motion: Motion, measure: Measure, linkage: int) -> None:
     """Raises `RequestError` where a caller's function cannot take a motion."""
     try:
         rows_of(motion, [measure])
     except Exception as error:
-        told = f"{type(error).__name__}: {error}".splitlines()[0]
+        what = f"{type(error).__name__}: {error}".splitlines()[0]
         raise RequestError(
-            f"measure: {measure.name} fails for linkage {linkage}: {told}; give a function of every Motion"
+            f"measure: {measure.name} fails for linkage {linkage}: {what}; give a function of every Motion"
         ) from None

@@ -21,7 +21,7 @@ from sevenbar.sweep.rows import MARK
 #: The description's file.
 DESCRIPTION = "sweep.json"
 
-#: Digits of a part's number in its name, so that names stand in the order of the parts.
+#: Digits of a part's number in its name, so that names sort in the order of the parts.
 DIGITS = 6
 
 _PART = re.compile(rf"part-(\d{{{DIGITS},}})\.parquet")
@@ -38,15 +38,15 @@ def read_description(folder: Path) -> dict[str, Any]:
     """What `sweep.json` of a folder holds; raises `OutputError` where that is no sweep's."""
     path = folder / DESCRIPTION
     try:
-        told = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise OutputError(f"{path}: cannot be read: {reason}; give the folder of a sweep") from None
     except ValueError:
-        told = None
-    if not isinstance(told, dict) or told.get("format") != FORMAT or "made_by" not in told:
+        found = None
+    if not isinstance(found, dict) or found.get("format") != FORMAT or "made_by" not in found:
         raise OutputError(f"{path}: is no description of a sweep of format {FORMAT}; give another folder")
-    return told
+    return found
 
 
 def parts_there(folder: Path) -> list[int]:
@@ -56,7 +56,7 @@ def parts_there(folder: Path) -> list[int]:
 
 
 def is_finished(folder: Path) -> bool:
-    """Whether a folder has all parts of the sweep that it holds, if it holds one."""
+    """Whether a folder has all the parts of the sweep that it holds, if it holds one."""
     if not (folder / DESCRIPTION).is_file():
         return False
     return bool(len(parts_there(folder)) == read_description(folder)["parts"])
@@ -120,14 +120,14 @@ class PartsFolder:
         self._done.add(part)
 
     def also_made_by(self, maker: Mapping[str, str]) -> None:
-        """Tells of one more maker in the description."""
+        """Adds one more maker to the description."""
         makers = read_description(self.path)["made_by"]
         if dict(maker) not in makers:
             self._describe([*makers, dict(maker)])
 
     def _describe(self, makers: Sequence[Mapping[str, str]]) -> None:
-        told = self._plan.description(makers)
-        self._put(DESCRIPTION, (json.dumps(told, indent=1, ensure_ascii=False) + "\n").encode())
+        description = self._plan.description(makers)
+        self._put(DESCRIPTION, (json.dumps(description, indent=1, ensure_ascii=False) + "\n").encode())
 
     def _put(self, name: str, content: bytes) -> None:
         aside = self.path / f".{name}.aside"
@@ -162,15 +162,15 @@ class PartsFolder:
             return
 
     def _take_up(self, makers: Sequence[Mapping[str, str]], *, resume: bool, mixed: bool) -> None:
-        told = read_description(self.path)
+        description = read_description(self.path)
         wanted = self._plan.request()
-        there = {key: told.get(key) for key in wanted}
+        there = {key: description.get(key) for key in wanted}
         unlike = _differences(there, wanted)
         if unlike:
             more = f", and {len(unlike) - 1} more differ" if len(unlike) > 1 else ""
             raise OutputError(
                 f"{self.path}: holds another sweep: {unlike[0]}{more}; "
-                "give another folder, or ask for that sweep"
+                "give another folder, or the options of that sweep"
             )
         done, total = parts_there(self.path), self._plan.parts
         if len(done) < total and done and not resume:
@@ -180,12 +180,12 @@ class PartsFolder:
             )
         self._check_marks(done)
         self._done = set(done)
-        strangers = [dict(maker) for maker in makers if dict(maker) not in told["made_by"]]
+        strangers = [dict(maker) for maker in makers if dict(maker) not in description["made_by"]]
         if len(done) == total or not strangers:
             return
         if done and not mixed:
-            raise OutputError(f"{self.path}: {other_maker(told['made_by'][0], strangers[0])}")
-        self._describe([*(told["made_by"] if done else ()), *strangers])
+            raise OutputError(f"{self.path}: {other_maker(description['made_by'][0], strangers[0])}")
+        self._describe([*(description["made_by"] if done else ()), *strangers])
 
     def _check_marks(self, done: Sequence[int]) -> None:
         import pyarrow as pa

@@ -1,4 +1,4 @@
-"""All that a sweep was asked for, which makes any of its parts anywhere; and how its folder tells it."""
+"""The request of a sweep, from which any part can be computed anywhere; and its description in the folder."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ PART_OF_TYPES, PART_OF_CIRCUITS, PART_OF_LOOPS = 65536, 16384, 256
 #: Most linkages of a part: some dozens of parts are in memory at once.
 MOST_IN_A_PART = 2**20
 
-#: Measures of an RSSR that its dimensions tell without its circuits.
+#: Measures of an RSSR that follow from its dimensions without its circuits.
 OF_TYPES = frozenset({"motion_type", "limits"})
 
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """A sweep as it was asked for: which linkages, which measures, how many linkages to a part.
+    """A sweep as requested: which linkages, which measures, how many linkages to a part.
 
     `measures` are names, or measures that have none of the known names. `input` and `output` are columns.
     """
@@ -64,7 +64,7 @@ class SweepPlan:
         output: str | None = None,
         part_size: int | None = None,
     ) -> SweepPlan:
-        """The plan of what a caller asks for.
+        """The plan of a caller's request.
 
         Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a linkage that is not
         analysed.
@@ -111,9 +111,9 @@ class SweepPlan:
             "input": self.input,
             "output": self.output,
             "samples": self.samples,
-            "dimensions": [axis.told for axis in self.space.axes],
+            "dimensions": [axis.as_dict for axis in self.space.axes],
             "sampling": {"method": self.space.method, "count": self.space.count, "seed": self.space.seed},
-            "measures": [m if isinstance(m, str) else _told(m) for m in self.measures],
+            "measures": [m if isinstance(m, str) else _function_dict(m) for m in self.measures],
             "part_size": self.part_size,
         }
 
@@ -123,7 +123,7 @@ class SweepPlan:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def description(self, makers: Sequence[Mapping[str, str]]) -> dict[str, Any]:
-        """What a sweep's description holds: the request, and what it comes to; `makers` make its parts."""
+        """What a sweep's description holds: the request and what follows from it; `makers` made its parts."""
         return {
             **self.request(),
             "length_unit": self.draft.linkage.length_unit,
@@ -142,7 +142,7 @@ def _part_size(draft: Draft, measures: Sequence[Measure]) -> int:
     return PART_OF_TYPES if OF_TYPES.issuperset(m.name for m in measures) else PART_OF_CIRCUITS
 
 
-def _told(measure: Measure) -> dict[str, Any]:
+def _function_dict(measure: Measure) -> dict[str, Any]:
     """A function as a description holds it: its name, and a mark of its text where that is known."""
     function = measure.value
     try:
@@ -150,8 +150,8 @@ def _told(measure: Measure) -> dict[str, Any]:
     except (OSError, TypeError):
         source = None
     module, name = (getattr(function, key, "") for key in ("__module__", "__qualname__"))
-    told = {"name": measure.name, "per": measure.per, "quantity": measure.quantity}
-    return {**told, "function": f"{module}:{name}", "source": source}
+    known = {"name": measure.name, "per": measure.per, "quantity": measure.quantity}
+    return {**known, "function": f"{module}:{name}", "source": source}
 
 
 def maker() -> dict[str, str]:

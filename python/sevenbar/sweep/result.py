@@ -1,4 +1,4 @@
-"""A finished sweep: its description, its rows part by part, and what they come to."""
+"""A finished sweep: its description, its rows part by part, and their totals."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Totals:
-    """What the rows of a sweep come to: counts of linkages and ranges of measures, by column."""
+    """Totals of the rows of a sweep: counts of linkages and ranges of measures, by column."""
 
     linkages: int
     rows: int

@@ -18,7 +18,7 @@ from sevenbar.sweep.plan import SweepPlan
 if TYPE_CHECKING:
     import pyarrow as pa
 
-#: The key in a Parquet file's own words under which the sweep's mark stands.
+#: The key of the sweep's mark in a Parquet file's metadata.
 MARK = b"sevenbar.sweep"
 
 #: How parts are packed: fixed, since their bits must not depend on defaults that change.
@@ -43,7 +43,7 @@ def need_pyarrow() -> None:
 def schema(plan: SweepPlan) -> pa.Schema:
     """Names with units and types of a sweep's columns, and its mark.
 
-    Raises `RequestError` for a name that would stand twice.
+    Raises `RequestError` for a name that would appear twice.
     """
     import pyarrow as pa
 
@@ -62,7 +62,7 @@ def schema(plan: SweepPlan) -> pa.Schema:
     for name in names:
         if names.count(name) > 1:
             raise RequestError(
-                f"measure: column {shown(name)} would stand twice in the table; "
+                f"measure: column {shown(name)} would appear twice in the table; "
                 "give the function another name"
             )
     return pa.schema(fields, metadata={MARK: plan.digest()})

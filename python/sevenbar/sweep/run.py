@@ -21,7 +21,7 @@ from sevenbar.sweep.plan import SweepPlan, maker
 from sevenbar.sweep.result import Sweep
 from sevenbar.sweep.rows import need_pyarrow, part_bytes, schema
 
-#: What is measured where nothing is said.
+#: What is measured by default.
 USUAL = ("motion_type", "limits")
 
 #: Most linkages of a sweep that is kept in memory.
@@ -68,7 +68,7 @@ def run(
     With `out` the rows go to a folder of Parquet parts of `part_size` linkages; `resume` goes on with the
     parts that are there, `mixed` also with those of other versions or vector units. It runs on `threads`
     (all processors by default), or on the workers of a Dask `scheduler`; the rows are the same. `progress`
-    is told how many linkages are done, of how many.
+    is called with the number of linkages done, and of all.
 
     Raises `RequestError` for an argument that does not fit, `OutputError` for a folder that cannot be
     written or holds something else, `MissingExtraError` without the extra `[sweep]`.
@@ -103,7 +103,7 @@ def carry_out(
     if scheduler is not None and threads is not None:
         raise RequestError("threads: workers of a scheduler have their own; leave threads or scheduler out")
     number = _threads(threads)
-    # a column that would stand twice is told before anything is made
+    # a column that would appear twice is reported before anything is computed
     schema(plan)
     if out is None and plan.space.count > MOST_IN_MEMORY:
         raise RequestError(

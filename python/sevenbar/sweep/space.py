@@ -44,7 +44,7 @@ class Space:
         count: int | None = None,
         seed: int | None = None,
     ) -> Space:
-        """The space that a caller asks for: axes by the names of dimensions.
+        """The space that a caller requests: axes by the names of dimensions.
 
         Without a `method` it is a grid, or where an axis is a span Sobol points, `count` of them. Raises
         `RequestError` for all that does not fit.
@@ -102,7 +102,7 @@ class Space:
 def _grid(axes: tuple[SweepAxis, ...], spans: list[SweepAxis], count: int | None, seed: int | None) -> Space:
     counts = [axis.count or 1 for axis in axes]
     total = math.prod(counts)
-    told = " x ".join(map(str, counts)) + (f" = {total}" if len(counts) > 1 else "")
+    product = " x ".join(map(str, counts)) + (f" = {total}" if len(counts) > 1 else "")
     if spans:
         raise RequestError(
             f"{spans[0].name}: {spans[0].low:g} to {spans[0].high:g} is a span, which a grid does not walk; "
@@ -110,11 +110,11 @@ def _grid(axes: tuple[SweepAxis, ...], spans: list[SweepAxis], count: int | None
         )
     if count is not None and count != total:
         raise RequestError(
-            f"count: {shown(count)}, where the grid has {told}; "
-            f"leave it out, or give a method random, latin or sobol"
+            f"count: {shown(count)}, where the grid has {product}; "
+            f"leave it out, or give a method random or sobol"
         )
     if seed is not None:
         raise RequestError(f"seed: {shown(seed)} is given, and a grid draws nothing; leave it out")
     if total > MOST_LINKAGES:
-        raise RequestError(f"over: {told} linkages are too many; give at most {MOST_LINKAGES:.0e}")
+        raise RequestError(f"over: {product} linkages are too many; give at most {MOST_LINKAGES:.0e}")
     return Space(axes, "grid", total, None)

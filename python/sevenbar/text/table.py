@@ -4,7 +4,7 @@ What is taken: cells parted by commas, semicolons, tabs or blanks; a decimal poi
 cells are not parted by commas; any lines of text before the first row of numbers, the last of which are the
 header and perhaps a line of units; lines that begin with # or % anywhere; no header at all, as MATLAB's
 `save -ascii` and `writematrix` leave it. Like ADAMS's own reader it takes a line that does not begin with a
-number, before the rows, for text. What the columns mean is for `law_file` and `measuring.measured` to tell.
+number, before the rows, for text. `law_file` and `measuring.measured` decide what the columns mean.
 """
 
 from __future__ import annotations
@@ -312,7 +312,7 @@ def _delimiter(line: str) -> str:
 
 
 def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
-    """Whether decimals have commas, by the first row that has decimals: 0;0 may stand before 0,1;0,5."""
+    """Whether decimals have commas, by the first row that has decimals: 0;0 may precede 0,1;0,5."""
     for row in rows:
         point = any("." in cell and _NUMBER.fullmatch(cell) for cell in row)
         comma = any(_COMMA_NUMBER.fullmatch(cell) for cell in row)

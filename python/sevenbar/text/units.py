@@ -157,7 +157,7 @@ def _no_such_speed(value: str, unit: str, sizes: Mapping[str, float], motion: st
     return unknown_unit(unit, sizes)
 
 
-#: Other spellings of what stands in units of text tables.
+#: Other spellings of the units in text tables.
 _SPELLINGS = (
     (r"\s+|·", ""),
     (r"\*\*|\^", ""),

@@ -131,9 +131,9 @@ class Map(Printed):
         return self.kinds[number] if number >= 0 else None
 
     def name(self, kind: Kind) -> str:
-        """A kind in words: its circuits are told where kinds on the map differ in them only."""
+        """A kind in words: its circuits are named where kinds on the map differ in them only."""
         alike = {k.circuits for k in self.areas if k.motion_type == kind.motion_type}
-        return kind.told if len(alike | {kind.circuits}) > 1 else kind.motion_type
+        return kind.label if len(alike | {kind.circuits}) > 1 else kind.motion_type
 
 
 def motion_map(
@@ -148,8 +148,8 @@ def motion_map(
 
     `over` has a range for each: two numbers in the file's unit, or a text as "20cm:40cm". Of an RSSR in the
     paper's dimensions the boundaries do not depend on `grid`, the count of lines along each range; of other
-    loops, each point of which is a motion of its own, they are looked for between those lines. `input` is the
-    joint that drives, the file's by default; `progress` is told how many motions are done and in sight.
+    loops, each point of which is a motion of its own, they are searched between those lines. `input` is the
+    joint that drives, the file's by default; `progress` is called with the motions done and in sight.
 
     Raises `RequestError` for dimensions and ranges that do not fit.
 
@@ -173,7 +173,7 @@ def motion_map(
         lines = _lines(grid, LOOP_GRID)
         scheme = _scheme(lines, LOOP_FINE, LOOP_TOLERANCE)
         plane = LoopPlane(draft, axes, driver, LOOP_SAMPLES, progress)
-    # what is not covered is said of the design itself
+    # what is not covered is reported of the design itself
     motion = linkage.motion(SAMPLES, input=driver)
     mesh = meshed(plane, scheme)
     speck = SPECK * scheme.tolerance
@@ -196,7 +196,7 @@ def motion_map(
 
 
 def _lines(grid: object, default: int) -> int:
-    """How many lines a grid has, once looked at."""
+    """How many lines a grid has, checked."""
     if grid is None:
         return default
     low, high = GRID_ENDS

@@ -16,13 +16,13 @@ from sevenbar.arrays import Floats
 DEGREE, SAMPLES = 4, 16
 
 #: Complex zeros this near to the real circle [rad] count as real: a fourfold zero is known to 1e-4 only. One
-#: too many costs time and no truth, since it can only make a cell be looked at more closely.
+#: too many costs time and no truth, since it can only cause a cell to be examined more closely.
 NEARLY_REAL = 1e-3
 
 #: Of two signs that fit about as well both are kept: shares of the slope's terms.
 EITHER_SIGN = 1e-6
 
-#: Rounding of a critical distance, in parts of the greatest dimension; a double zero keeps half its digits.
+#: Rounding of a critical distance, relative to the greatest dimension; a double zero keeps half its digits.
 ROUNDING = 1e-7
 
 #: Problems whose companion matrices are solved in one call.

@@ -53,10 +53,10 @@ MARK = "#c1121f"
 #: Contours shorter than this have no value on them, longer ones than that have two [share of the ranges].
 SHORT, LONG = 0.07, 0.9
 
-#: Where values stand [parts of the contour], and how far those of every other level are moved.
+#: Where values are written [share of the contour], and how far those of every other level are moved.
 ONE, SEVERAL, STAGGER = 0.45, (0.25, 0.7), 0.1
 
-#: No value stands nearer to the window's edge [share].
+#: No value is written nearer to the window's edge [share].
 ROOM = 0.015
 
 #: Room that the value on a contour takes, to each side [share].
@@ -155,7 +155,7 @@ def _contours(axes: Axes, heights: Heights, of: Map, scale: float, taken: np.nda
             continue
         level = heights.levels.index(line.level)
         for part in (ONE,) if along[-1] < LONG else SEVERAL:
-            # neighbours one step apart, so that their values do not stand on each other
+            # neighbours one step apart, so that their values do not overlap
             at = (part + STAGGER * (level % 2)) * along[-1]
             ends = [[np.interp(at + d, along, line.places[:, i]) for i in (0, 1)] for d in (-0.01, 0.01)]
             (x0, y0), (x1, y1) = of.values(np.array(ends)).tolist()
@@ -260,7 +260,7 @@ def _frame(axes: Axes, of: Map, scale: float) -> None:
 
 
 def _title(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: float) -> None:
-    what = "motion type" if heights is None else heights.measure.told
+    what = "motion type" if heights is None else heights.measure.title
     if heights is not None and heights.measure.per == "circuit":
         what += (
             f", circuit {heights.take}"
@@ -273,7 +273,7 @@ def _title(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: 
 
 
 def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: float) -> None:
-    """The key beside the map: kinds and their shares, lines, the design and what changes it."""
+    """The key next to the map: kinds and their shares, lines, the design and what changes it."""
     box = axes.get_position()
     left = box.x1 + 0.18 * scale / figure.get_figwidth()
     keys: list[Any] = []
@@ -320,7 +320,7 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
     figure.text(
         left,
         below - 0.03,
-        "\n".join(_told(of, heights)),
+        "\n".join(_facts(of, heights)),
         fontsize=8.8 * scale,
         va="top",
         ha="left",
@@ -332,7 +332,7 @@ def _percent(share: float) -> str:
     return f"{100 * share:.1f} %" if share >= 5e-4 else "< 0.1 %"
 
 
-def _told(of: Map, heights: Heights | None) -> list[str]:
+def _facts(of: Map, heights: Heights | None) -> list[str]:
     """The design and the fixed dimensions, line by line."""
     design = of.design
     x, y = of.axes

@@ -1,4 +1,4 @@
-"""What stands at a point of a map: the motion type and number of circuits, and measures of the motion."""
+"""What is at a point of a map: the motion type and number of circuits, and measures of the motion."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ Take = Literal["highest", "lowest"] | int
 #: The type of a point that describes no linkage.
 UNMADE = "invalid"
 
-#: Types that may be met on a boundary only; such points take the type that stands a little beside them.
+#: Types that may be met on a boundary only; such points take the type a little to one side.
 DOUBTFUL = ("change-point", "mixed", "two-inputs")
 
-#: The ways beside: one for all, so that a line through many points has one side, and one across it where the
-#: line itself runs that way.
+#: The directions to that side: one for all, so that a line through many points has one side, and one across
+#: it where the line itself runs that way.
 ASIDE, ACROSS = (1.0, 0.7), (0.7, -1.0)
 
 
@@ -42,7 +42,7 @@ class Kind:
     circuits: int
 
     @property
-    def told(self) -> str:
+    def label(self) -> str:
         """Both in words."""
         if self.circuits == 0:
             return self.motion_type
@@ -57,7 +57,7 @@ class Plane(ABC):
 
     #: Boundaries are halved down to this share of the ranges.
     exact: float
-    #: How far beside a doubtful point is looked, one after the other [share of the ranges].
+    #: How far from a doubtful point its kind is read, one after the other [share of the ranges].
     nudges: tuple[float, ...]
 
     def __init__(
@@ -73,7 +73,7 @@ class Plane(ABC):
         """The number of the kind at each point as it is, (n,)."""
 
     def kinds_at(self, points: Floats) -> Integers:
-        """The number of the kind at each point, (n,); points on a boundary are looked at beside it."""
+        """The number of the kind at each point, (n,); points on a boundary take the kind next to it."""
         found = self.numbers_at(points)
         ways = [(nudge, ASIDE) for nudge in self.nudges] + [(self.nudges[-1], ACROSS)]
         for nudge, way in ways:
@@ -125,7 +125,7 @@ class Plane(ABC):
 
 
 def value_of(motion: Motion | None, measure: Measure, take: Take) -> float:
-    """The measure of a motion, of circuits as `take` tells; NaN where it has none."""
+    """The measure of a motion, of the circuits that `take` chooses; NaN where it has none."""
     if motion is None:
         return math.nan
     rows = rows_of(motion, [measure])

@@ -1,4 +1,4 @@
-"""What a map comes to: a page of text for people, JSON and CSV for programs, a folder with all of it."""
+"""The report of a map: a page of text for people, JSON and CSV for programs, a folder with all of it."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def _columns(of: Map) -> list[str]:
 
 def _rows(of: Map, lines: Sequence[tuple[Floats, tuple[Any, ...]]]) -> list[list[Any]]:
     """Rows of a table of lines: what each line is, and one after the other its places."""
-    return [[*told, *place] for places, told in lines for place in np.asarray(of.values(places)).tolist()]
+    return [[*line, *place] for places, line in lines for place in np.asarray(of.values(places)).tolist()]
 
 
 @text_of.register(Map)

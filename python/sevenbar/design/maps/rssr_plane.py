@@ -22,7 +22,7 @@ THREADS = 1
 #: root of its width.
 BIRTH = 2.0
 
-#: Types that have no circuit, or none that is told from another.
+#: Types that have no circuits, or none that can be distinguished.
 WITHOUT = ("cannot-assemble", "change-point", "invalid")
 
 
@@ -30,7 +30,7 @@ class RssrPlane(Plane):
     """An RSSR of the paper's square axes."""
 
     exact = 1e-12
-    # a change point is told from 1e-6 rad on, which where four limits meet is 1e-6 of a dimension
+    # a change point is reported from 1e-6 rad on, which where four limits meet is 1e-6 of a dimension
     nudges = (1e-9, 1e-8, 1e-7, 1e-6)
 
     def __init__(

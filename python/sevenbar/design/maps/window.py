@@ -13,7 +13,7 @@ from sevenbar.description.draft import Dimension, Draft
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.ranges import split_named, split_range
 
-#: What a range looks like, for messages.
+#: The form of a range, for messages.
 EXAMPLE = "as in 'L1=100:400' or 'L1=10:40cm'"
 
 #: A range narrower than this share of its values is lost in their rounding.
@@ -43,7 +43,7 @@ class MapAxis:
         return self.low + self.span * np.asarray(share, dtype=np.float64)
 
     def share(self, value: Floats | float) -> Floats:
-        """Where values stand in the range, 0 at its low end and 1 at its high one."""
+        """Where values lie in the range, 0 at its low end and 1 at its high one."""
         return (np.asarray(value, dtype=np.float64) - self.low) / self.span
 
     @property
@@ -97,16 +97,16 @@ def _axis(dimension: Dimension, given: Range) -> MapAxis:
             raise RequestError(
                 f"{where}: {shown(given)} is not a range; give two numbers, as in (100, 400)"
             ) from None
-    told = f"{low:g}:{high:g}"
+    text = f"{low:g}:{high:g}"
     if not (math.isfinite(low) and math.isfinite(high)):
-        raise RequestError(f"{where}: {told} has no finite ends; give two finite numbers")
+        raise RequestError(f"{where}: {text} has no finite ends; give two finite numbers")
     if low >= high:
         what = "is empty" if low == high else "goes down"
-        raise RequestError(f"{where}: {told} {what}; give LOW:HIGH with LOW < HIGH")
+        raise RequestError(f"{where}: {text} {what}; give LOW:HIGH with LOW < HIGH")
     if high - low < NARROWEST * max(abs(low), abs(high)):
         raise RequestError(
-            f"{where}: {low!r}:{high!r} is too narrow to tell its values apart; give a wider one"
+            f"{where}: {low!r}:{high!r} is too narrow to distinguish its values; give a wider one"
         )
     if dimension.positive and low <= 0:
-        raise RequestError(f"{where}: {told} holds values that are no length; give a range above 0")
+        raise RequestError(f"{where}: {text} holds values that are no length; give a range above 0")
     return MapAxis(dimension, low, high)

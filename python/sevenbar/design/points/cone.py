@@ -2,7 +2,7 @@
 
     minimise t   subject to   |c_k + G_k x| <= t  for all k,   low <= x <= high
 
-Clarabel's interior-point method finds x. What is told of how good it is does not rest on the solver: any
+Clarabel's interior-point method finds x. The statement of how good it is does not depend on the solver: any
 vectors y_k with `sum |y_k| <= 1` give a lower bound that no point of the box goes below,
 
     t >= sum y_k . c_k + sum_j min(h_j low_j, h_j high_j),   h = sum G_k^T y_k
@@ -22,7 +22,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
 
-#: What Clarabel is asked for, relative and absolute, in scaled variables; below, rounding is in its way.
+#: What is required of Clarabel, relative and absolute, in scaled variables; below, rounding is in its way.
 TOLERANCE = 1e-9
 
 #: Most steps of the interior-point method; some 15 are usual.
@@ -63,7 +63,7 @@ def least_greatest(constant: Floats, gradient: Floats, low: Floats, high: Floats
         ) from None
     count = len(constant)
     centre, half = (low + high) / 2, (high - low) / 2
-    # x = centre + half y, sizes in parts of the greatest at the centre
+    # x = centre + half y, sizes relative to the greatest at the centre
     middle, slopes = constant + gradient @ centre, gradient * half
     scale = float(np.linalg.norm(middle, axis=1).max() + np.abs(slopes).max()) or 1.0
     # rows of (t, c + G y) in the cone, then the box; slack = right - matrix @ (y, t)

@@ -115,7 +115,7 @@ class Cycle:
         """Inputs and sizes of the greatest velocities, accelerations or jerks of a point, (k,) each.
 
         Every row that is greater than its neighbours and near the greatest is followed between the rows; of a
-        law's rows the greatest is told as it stands.
+        law's rows the greatest is returned as it is.
         """
         sizes = np.linalg.norm(self.rates.of(order, at), axis=1)
         if not self.closed:
@@ -148,7 +148,7 @@ def cycle_of(
     """The cycle of a link with rates up to `order`, of so many `rows` a turn unless a law drives.
 
     Raises `RequestError` for the ground, a circuit or link that does not exist, a circuit that rocks at
-    constant speed where rates are asked for, and rows without a value.
+    constant speed where rates are needed, and rows without a value.
     """
     chosen = chosen_circuit(motion, circuit)
     _refuse_link(motion, link)
@@ -175,7 +175,7 @@ def driven(
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
     law = Law.of(np.arange(float(len(inputs))), inputs, motion.speed if speed is None else speed, 0.0)
     if not circuit.goes_round or circuit.turns > 1:
-        # a pose alone tells neither passes nor turns apart
+        # a pose alone distinguishes neither passes nor turns
         all_of_them = motion.linkage.motion(input=motion.input, output=motion.output, law=law)
         again = all_of_them.circuits[circuit.index]
         return again, again.branch == branch
@@ -184,7 +184,7 @@ def driven(
     return again, np.ones(len(inputs), dtype=bool)
 
 
-def told_input(motion: Motion, value: float) -> str:
+def input_text(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
     slides = motion.linkage.column_kinds[motion.linkage.columns.index(motion.input)] == "slide"
     return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
@@ -203,10 +203,10 @@ def link_rates(circuit: Circuit, rows: npt.NDArray[np.bool_], link: int) -> Link
     places = [np.zeros(3), *(circuit.size * np.eye(3))]
     traces = [circuit.point(link, (float(x), float(y), float(z))) for x, y, z in places]
 
-    def told(trace: Trace) -> Floats:
+    def rates_of(trace: Trace) -> Floats:
         return np.stack([getattr(trace, order)[rows] for order in ORDERS])
 
-    origin, *ends = map(told, traces)
+    origin, *ends = map(rates_of, traces)
     gradient = np.stack([(end - origin) / circuit.size for end in ends], axis=-1)
     return LinkRates(circuit.input[rows], circuit.time[rows], origin, gradient)
 
@@ -251,7 +251,7 @@ def _refuse_gaps(motion: Motion, circuit: Circuit, rates: LinkRates, order: int)
     if not bad.size:
         return
     count = f"at {bad.size} of {good.size} rows, the first at {motion.input} = "
-    where = count + told_input(motion, float(rates.input[bad[0]]))
+    where = count + input_text(motion, float(rates.input[bad[0]]))
     if motion.law is not None:
         raise RequestError(
             f"law: circuit {circuit.index} has no rates {where}; give a law that stays within its limits"

@@ -28,7 +28,7 @@ FOUND, BOUND = CIRCUIT_COLOURS[1], "#8a8a8a"
 #: Poles farther from the box than this part of its longest side are not drawn.
 FARTHEST = 0.75
 
-#: Most points of the file, or masses, with a line of their own: more cannot be told apart.
+#: Most points of the file, or masses, with a line of their own: more cannot be distinguished.
 MOST_LINES = 6
 
 
@@ -45,8 +45,8 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
                 across, _sizes(cycle, found.of, np.array(point.at)), label=short(point.name, 24), **look
             )
         axes.plot(across, _sizes(cycle, found.of, found.at), color=FOUND, lw=1.8, label=short(name, 24))
-        told = "least root mean square" if found.measure == "rms" else "lower bound of the greatest"
-        axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=told)
+        bound = "least root mean square" if found.measure == "rms" else "lower bound of the greatest"
+        axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=bound)
         if len(found.inputs):
             marks = _across(cycle, found.inputs)
             axes.plot(marks, np.full(len(marks), found.value), "o", color=FOUND, mfc="white", ms=5)
@@ -148,7 +148,7 @@ def inertia_figure(found: Inertia) -> Figure:
         _input_axis(force, cycle, across)
         figure.legend(loc="outside lower center", ncols=3, frameon=False)
         figure.suptitle(
-            f"{short(linkage.name, 60)}\ncircuit {cycle.circuit.index}: what masses ask of the input",
+            f"{short(linkage.name, 60)}\ncircuit {cycle.circuit.index}: what masses require of the input",
             fontsize=11,
         )
     return figure

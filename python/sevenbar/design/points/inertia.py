@@ -69,7 +69,7 @@ class Inertia(Printed):
 
     @property
     def mean(self) -> float:
-        """The mean torque over the cycle: zero but for rounding at constant speed."""
+        """The mean torque over the cycle: zero up to rounding at constant speed."""
         return self.cycle.mean(self.torque)
 
     @property
@@ -105,13 +105,13 @@ def inertia(
         >>> bool(abs(found.mean) < 1e-12 * abs(found.torque).max())
         True
     """
-    told = _masses(motion, masses)
+    checked = _masses(motion, masses)
     pull = np.zeros(3) if gravity is None else finite_array("gravity", gravity)
     if pull.size != 3:
         raise RequestError(f"gravity: {pull.size} numbers; give three, as in (0, 0, -9.80665)")
     metre = LENGTHS[motion.linkage.length_unit]
     last = len(motion.linkage.joints)
-    moving = [mass.link for mass in told if mass.link != last]
+    moving = [mass.link for mass in checked if mass.link != last]
     if not moving:
         raise RequestError("masses: all lie on the ground, which stands still; give one on a moving link")
     cycles = {
@@ -121,9 +121,9 @@ def inertia(
     cycle = cycles[moving[0]]
     speeds = _speeds(cycle)
     rows = len(cycle.rates.input)
-    acceleration, torque, kinetic = np.zeros((len(told), rows, 3)), np.zeros(rows), np.zeros(rows)
+    acceleration, torque, kinetic = np.zeros((len(checked), rows, 3)), np.zeros(rows), np.zeros(rows)
     geometry = {link: cycles[link].geometry() for link in cycles}
-    for i, mass in enumerate(told):
+    for i, mass in enumerate(checked):
         if mass.link not in cycles:
             continue
         rates = cycles[mass.link].rates
@@ -135,9 +135,9 @@ def inertia(
         velocity = metre * rates.of("velocity", mass.at)
         kinetic += 0.5 * mass.mass * (velocity**2).sum(axis=1)
     slides = cycle.motion.linkage.column_kinds[cycle.circuit.input_column] == "slide"
-    weights = np.array([mass.mass for mass in told])
+    weights = np.array([mass.mass for mass in checked])
     return Inertia(
-        masses=told,
+        masses=checked,
         cycle=cycle,
         gravity=(float(pull[0]), float(pull[1]), float(pull[2])),
         input=cycle.rates.input,
@@ -158,23 +158,23 @@ def _speeds(cycle: Cycle) -> Floats:
 
 
 def _masses(motion: Motion, masses: Mapping[str, float] | Sequence[Mass]) -> tuple[Mass, ...]:
-    """The masses with their places, once looked at."""
+    """The masses with their places, checked."""
     points = {point.name: point for point in motion.linkage.points}
-    told: list[Mass] = []
+    checked: list[Mass] = []
     if isinstance(masses, Mapping):
         for name, value in masses.items():
             if name not in points:
                 known = ", ".join(points) or "none; add one as [[point]]"
                 near = suggestion(str(name), points)
                 raise RequestError(f"masses: no point {shown(name)}; {near}this linkage has {known}")
-            told.append(Mass(name, points[name].link, points[name].at, value))
+            checked.append(Mass(name, points[name].link, points[name].at, value))
     else:
-        told.extend(masses)
-    if not told:
+        checked.extend(masses)
+    if not checked:
         raise RequestError("masses: none given; give one, as in P=2.5")
-    for mass in told:
+    for mass in checked:
         value = mass.mass
         number = isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
         if not number or not math.isfinite(value) or value <= 0:
             raise RequestError(f"mass of {mass.name}: {shown(value)} is not a mass; give kilograms > 0")
-    return tuple(told)
+    return tuple(checked)

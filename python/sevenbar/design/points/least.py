@@ -27,7 +27,7 @@ from sevenbar.text.printing import Printed
 #: The part of the greatest within which upper and lower bound have to agree.
 GAP = 1e-9
 
-#: The same in parts of what the rate is at the box's corners, where the least is 0: rounding of a sum of
+#: The same relative to the rate at the box's corners, where the least is 0: rounding of a sum of
 #: squares.
 ZERO = 1e-11
 
@@ -66,7 +66,7 @@ class LeastPoint(Printed):
     /s^3]: no point of the box has less than `bound`. `inputs` (k,) [rad, or length] are those at which the
     greatest is met and by which the bound is proved, `weights` (k,) their shares in it, whose sum is 1; of a
     root mean square none. `sides` names the sides of the box on which the point lies; `free` (m, 3) are
-    directions, in parts of the box's sides, in which moving it changes nothing. `before` tells the points of
+    directions, relative to the box's sides, in which moving it changes nothing. `before` lists the points of
     the file; `solver` Clarabel's last solution of `rounds`.
     """
 
@@ -100,7 +100,7 @@ class LeastPoint(Printed):
 
     @property
     def relative_gap(self) -> float:
-        """The gap in parts of the value; 0 where the value is 0 but for rounding."""
+        """The gap relative to the value; 0 where the value is 0 up to rounding."""
         return self.gap / self.value if self.value > ZERO * self.scale else 0.0
 
     @property
@@ -310,7 +310,7 @@ def _value(cycle: Cycle, of: str, measure: str, at: Floats) -> float:
 
 
 def _free(gradient: Floats) -> Floats:
-    """Directions (m, 3) of the box, in parts of its sides, in which no row (n, 3, 3) changes."""
+    """Directions (m, 3) of the box, relative to its sides, in which no row (n, 3, 3) changes."""
     _, sizes, rows = np.linalg.svd(gradient.reshape(-1, 3), full_matrices=False)
     free: Floats = rows[sizes <= FREE * max(sizes[0], np.finfo(float).tiny)]
     return free
@@ -328,12 +328,12 @@ def _centred(at: Floats, box: tuple[Floats, Floats], free: Floats) -> Floats:
 def _sides(at: Floats, low: Floats, high: Floats) -> tuple[str, ...]:
     """The sides of the box on which a point lies, as in "u lowest"."""
     near = 1e-6 * (high - low) / 2
-    told = []
+    words = []
     for i, letter in enumerate("uvw"):
         if high[i] == low[i]:
-            told.append(f"{letter} given")
+            words.append(f"{letter} given")
         elif at[i] - low[i] <= near[i]:
-            told.append(f"{letter} lowest")
+            words.append(f"{letter} lowest")
         elif high[i] - at[i] <= near[i]:
-            told.append(f"{letter} highest")
-    return tuple(told)
+            words.append(f"{letter} highest")
+    return tuple(words)

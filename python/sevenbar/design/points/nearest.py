@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cone import least_greatest
-from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, told_input
+from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import Integers, Motion
@@ -93,7 +93,7 @@ def nearest_path_point(
 
     Places are in the report frame [length]. With `inputs` (m,) [rad, or length] the path shall be at each
     place at its input; without, it shall pass by each place at any: `measure` "rms" only. What the path does
-    beside is not looked at.
+    away from them does not count.
 
     Raises `RequestError` for arguments that do not fit, or inputs at which the circuit has no pose.
 
@@ -144,13 +144,13 @@ def _inputs(inputs: npt.ArrayLike, count: int) -> Floats:
 def _at(cycle: Cycle, inputs: Floats) -> LinkRates:
     """The rates at inputs (n,); `RequestError` naming the first without a pose."""
     if cycle.motion.law is not None:
-        raise RequestError("law: inputs of places are asked for at constant speed; leave the law out")
+        raise RequestError("law: inputs of places need constant speed; leave the law out")
     rates = cycle.at(inputs)
     lost = np.flatnonzero(np.isnan(rates.constant[0]).any(axis=1))
     if lost.size:
-        told = told_input(cycle.motion, float(inputs[lost[0]]))
+        where = input_text(cycle.motion, float(inputs[lost[0]]))
         raise RequestError(
-            f"inputs[{lost[0]}]: circuit {cycle.circuit.index} has no pose at {told}; give others"
+            f"inputs[{lost[0]}]: circuit {cycle.circuit.index} has no pose at {where}; give others"
         )
     return rates
 

@@ -22,8 +22,8 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.motion import Motion, Words
 from sevenbar.text.printing import Printed
 
-#: The least singular value of G, in parts of its greatest, of a single pole. G is known to some 1e-12; a pole
-#: that is known to less than three digits is told as a line.
+#: The least singular value of G, relative to its greatest, of a single pole. G is known to some 1e-12; a pole
+#: that is known to less than three digits is reported as a line.
 RANK = 1e-9
 
 #: A link whose greatest singular value [1/s^2] is below this part of the square of the input's speed does not
@@ -36,7 +36,7 @@ class AccelerationPoles(Printed):
     """The pole of a link row by row over a cycle of n rows; `input` [rad, or length], `time` [s], each (n,).
 
     `status` (n,): "pole", one point without acceleration; "line", a line of points with the least, of which
-    the one nearest to `near` is told; "none", a link that does not turn, whose points all accelerate alike.
+    the one nearest to `near` is given; "none", a link that does not turn, whose points all accelerate alike.
     `at` (n, 3) are the points as points are written, `place` (n, 3) the same in the report frame [length],
     NaN where there is none. `axis` (n, 3) is the line's direction in the link, NaN where there is none.
     `remaining` (n,) [length/s^2] is the acceleration that is left, `condition` (n,) by how much an error of

@@ -134,7 +134,7 @@ class _Peaks:
         )
 
     def vanish(self, half: Floats) -> bool:
-        """Whether a height is zero but for rounding, so that it has no slope; `half` (3,) of the sides."""
+        """Whether a height is zero up to rounding, so that it has no slope; `half` (3,) of the sides."""
         reach = np.abs(self.gradient * half).max(axis=(1, 2))
         return bool((self.heights <= NO_HEIGHT * reach).any())
 

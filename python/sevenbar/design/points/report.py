@@ -1,4 +1,4 @@
-"""What is told of points that were found, and of masses: printed, as JSON, and as files in a folder."""
+"""The report of points that were found, and of masses: printed, as JSON, and as files in a folder."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
-from sevenbar.design.points.cycle import Cycle, told_input
+from sevenbar.design.points.cycle import Cycle, input_text
 from sevenbar.design.points.figures import inertia_figure, least_figure, nearest_figure
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import LeastPoint
@@ -23,8 +23,8 @@ from sevenbar.reporting.files import Report, columns_file, figure_files, json_fi
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of
 
-#: Most inputs that are told; more are a rate that is as great at all of them.
-MOST_TOLD = 6
+#: Most inputs that are listed; more are a rate that is as great at all of them.
+MOST_LISTED = 6
 
 
 def least_text(found: LeastPoint) -> RenderableType:
@@ -65,10 +65,10 @@ def least_text(found: LeastPoint) -> RenderableType:
 
 
 def _met(found: LeastPoint) -> str:
-    pairs = zip(found.inputs[:MOST_TOLD], found.weights, strict=False)
-    told = ", ".join(f"{told_input(found.cycle.motion, float(x))} (weight {w:.3f})" for x, w in pairs)
-    more = f" and {len(found.inputs) - MOST_TOLD} more" if len(found.inputs) > MOST_TOLD else ""
-    return f"{found.cycle.motion.input} = {told}{more}"
+    pairs = zip(found.inputs[:MOST_LISTED], found.weights, strict=False)
+    text = ", ".join(f"{input_text(found.cycle.motion, float(x))} (weight {w:.3f})" for x, w in pairs)
+    more = f" and {len(found.inputs) - MOST_LISTED} more" if len(found.inputs) > MOST_LISTED else ""
+    return f"{found.cycle.motion.input} = {text}{more}"
 
 
 def _times(value: float, found: LeastPoint) -> str:
@@ -103,7 +103,7 @@ def inertia_text(found: Inertia) -> RenderableType:
     if any(found.gravity):
         facts.add("gravity", f"({_numbers(found.gravity)}) m/s^2")
     for word, row in (("highest", int(found.torque.argmax())), ("lowest", int(found.torque.argmin()))):
-        at = told_input(motion, float(found.input[row]))
+        at = input_text(motion, float(found.input[row]))
         facts.add(f"{word} {what}", f"{found.torque[row]:.6g} {found.unit} at {motion.input} = {at}")
     facts.add(f"mean {what}", f"{found.mean:.2g} {found.unit}")
     rms = float(np.sqrt(found.cycle.mean(found.torque**2)))
@@ -114,7 +114,7 @@ def inertia_text(found: Inertia) -> RenderableType:
     for mass, sizes in zip(found.masses, found.sizes, strict=True):
         cells = [mass.name, str(mass.link), f"{mass.mass:g}"]
         for place in (int(sizes.argmax()), int(sizes.argmin())):
-            cells += [f"{sizes[place]:.6g}", told_input(motion, float(found.input[place]))]
+            cells += [f"{sizes[place]:.6g}", input_text(motion, float(found.input[place]))]
         rows.append(cells)
     head = ["mass", "link", "kg", "greatest force [N]", "at", "least force [N]", "at"]
     return Group(_title(found.cycle), facts.grid, Text(), number_table(head, rows))
@@ -122,13 +122,13 @@ def inertia_text(found: Inertia) -> RenderableType:
 
 def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
     """What a reader has to know besides: a spin that the linkage leaves open."""
-    told = []
+    text = []
     for freedom in cycle.motion.idle:
         if any(f"link {link})" in freedom or f"link {link} " in freedom for link in links or [cycle.link]):
-            told.append(
+            text.append(
                 f"the {freedom} is open in the linkage; points off that line move as the rule for it has it"
             )
-    return told
+    return text
 
 
 def _title(cycle: Cycle) -> Text:
@@ -302,13 +302,13 @@ def _input_head(cycle: Cycle) -> str:
     )
 
 
-def _told(cycle: Cycle, inputs: Floats) -> Floats:
+def _as_shown(cycle: Cycle, inputs: Floats) -> Floats:
     """Inputs as people read them: degrees, or lengths."""
     return inputs if slides(cycle.motion, cycle.motion.input) else np.degrees(inputs)
 
 
 def _row_columns(cycle: Cycle) -> dict[str, Floats]:
-    return {"time_s": cycle.rates.time, _input_head(cycle): _told(cycle, cycle.rates.input)}
+    return {"time_s": cycle.rates.time, _input_head(cycle): _as_shown(cycle, cycle.rates.input)}
 
 
 def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
@@ -322,7 +322,7 @@ def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
 
 def _path_columns(found: NearestPath) -> dict[str, Floats]:
     unit = found.cycle.motion.linkage.length_unit
-    columns = {_input_head(found.cycle): _told(found.cycle, found.inputs)}
+    columns = {_input_head(found.cycle): _as_shown(found.cycle, found.inputs)}
     for who, places in (("wanted", found.wanted), ("path", found.path)):
         for i, letter in enumerate("xyz"):
             columns[f"{who}_{letter}_{unit}"] = places[:, i]

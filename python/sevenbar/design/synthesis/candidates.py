@@ -46,7 +46,7 @@ class Claim:
     """What is claimed of a design: poses it takes, in this order and on one way; and how far off it is.
 
     `inputs` and `outputs` (n,) are values of the drive's two joints [rad, or length]. `errors` (m,) are the
-    deviations from what was wanted, told in `error_unit` ("deg": they are in rad; else a length unit).
+    deviations from what was wanted, shown in `error_unit` ("deg": they are in rad; else a length unit).
     `figures` holds numbers of the task's own, by the names they have in tables.
     """
 
@@ -62,7 +62,7 @@ class Refusal:
     """Why a design was refused: the kind of fault, and a sentence with its numbers."""
 
     fault: Fault
-    told: str
+    detail: str
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,7 +92,7 @@ class Candidate(Printed):
 
     @property
     def columns(self) -> dict[str, float | str | int | None]:
-        """What is told of it, column by column; each number's name ends in its unit."""
+        """What is reported of it, column by column; each number's name ends in its unit."""
         linkage, unit = self.draft.linkage, self.claim.error_unit
         scale = 180 / math.pi if unit == "deg" else 1.0
         lowest = self.transmission_lowest
@@ -280,9 +280,9 @@ def _within(found: Candidate, limits: Limits) -> Refusal | None:
     """Which limit a design misses, if any."""
     lowest = found.transmission_lowest
     if lowest is not None and lowest < limits.transmission_lowest - LIMIT_ROUNDING:
-        told, asked = math.degrees(lowest), math.degrees(limits.transmission_lowest)
+        angle, wanted = math.degrees(lowest), math.degrees(limits.transmission_lowest)
         return Refusal(
-            "transmission", f"transmission angle down to {told:.4g} deg, {asked:g} deg are asked for"
+            "transmission", f"transmission angle down to {angle:.4g} deg, {wanted:g} deg are required"
         )
     if limits.size is not None:
         low, high = limits.size
@@ -295,7 +295,7 @@ def _within(found: Candidate, limits: Limits) -> Refusal | None:
                 f"{low:g} to {high:g} are allowed",
             )
     if limits.motion_type is not None and found.motion_type != limits.motion_type:
-        return Refusal("motion type", f"is a {found.motion_type}, asked for is a {limits.motion_type}")
+        return Refusal("motion type", f"is a {found.motion_type}, required is a {limits.motion_type}")
     return None
 
 
@@ -306,9 +306,9 @@ def tally(refusals: Iterable[Refusal]) -> str:
 
 
 def likeness(draft: Draft, *, scale_free: bool, mirrored: bool = False) -> Floats:
-    """The dimensions in which designs are compared, lengths in parts of the longest, angles [rad].
+    """The dimensions in which designs are compared, lengths relative to the longest, angles [rad].
 
-    `scale_free` where only ratios of the lengths matter; else the longest stands for itself as a logarithm.
+    `scale_free` where only ratios of the lengths matter; else the longest enters by itself as a logarithm.
     `mirrored` where signs do not matter, as a mirror image does the same.
     """
     dimensions = [d for d in draft.dimensions if d.kind != "speed"]
@@ -354,5 +354,5 @@ def renamed(candidates: Sequence[Candidate], title: str) -> list[Candidate]:
 
 @text_of.register(Candidate)
 def _(candidate: Candidate) -> str:
-    told = candidate.columns.items()
-    return lines(f"Candidate '{candidate.name}'", [(n, brief(v)) for n, v in told if v is not None])
+    known = candidate.columns.items()
+    return lines(f"Candidate '{candidate.name}'", [(n, brief(v)) for n, v in known if v is not None])

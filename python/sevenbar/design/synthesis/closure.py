@@ -34,7 +34,7 @@ def row_of(dimensions: Mapping[str, float]) -> Floats:
 
 
 def draft_of(row: Floats, name: str, *, length_unit: str = "mm") -> Draft:
-    """A description of one design (6,), whose name is told in reports."""
+    """A description of one design (6,), whose name reports show."""
     raw: dict[str, Any] = {
         "format": 1,
         "name": name,
@@ -46,7 +46,7 @@ def draft_of(row: Floats, name: str, *, length_unit: str = "mm") -> Draft:
 
 
 def scaled(row: Floats, longest: float) -> Floats:
-    """A design (6,) whose longest dimension is `longest`; what is zero but for rounding is zero."""
+    """A design (6,) whose longest dimension is `longest`; what is zero up to rounding is zero."""
     row = row * (longest / np.abs(row).max())
     return np.where(np.abs(row) < ROUNDING * longest, 0.0, row)
 

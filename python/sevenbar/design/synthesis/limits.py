@@ -17,10 +17,10 @@ MOTION_TYPES = ("crank-rocker", "double-crank", "rocker-crank", "double-rocker")
 #: Motion types whose input turns fully.
 INPUT_TURNS = ("crank-rocker", "double-crank")
 
-#: Longest dimension over shortest link where no size is asked for: beyond, nobody could build it.
+#: Longest dimension over shortest link where no size is given: beyond, nobody could build it.
 MOST_RATIO = 20.0
 
-#: Length of the longest dimension where no size is asked for [mm].
+#: Length of the longest dimension where no size is given [mm].
 USUAL_SIZE = 1000.0
 
 #: Inputs of a full turn at which a crank must be able to stand: the worst lies less than 0.1% of W's
@@ -70,7 +70,7 @@ class Limits:
         """The length that the longest dimension gets where the task leaves the scale open."""
         return USUAL_SIZE if self.size is None else self.size[1]
 
-    def told(self) -> str:
+    def text(self) -> str:
         """The limits in words."""
         parts = []
         if self.transmission_lowest:

@@ -66,7 +66,7 @@ def function_of(text: str) -> Callable[[Floats], Floats]:
 
 
 def _values(body: ast.AST, x: Floats) -> Floats:
-    """What a formula comes to at each x."""
+    """The value of a formula at each x."""
     with np.errstate(all="ignore"):
         value = _value(body, np.asarray(x, dtype=float))
     return np.array(np.broadcast_to(np.asarray(value, dtype=float), np.shape(x)))

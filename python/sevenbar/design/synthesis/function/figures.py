@@ -1,4 +1,4 @@
-"""Figures of designs: a function beside the wanted one and its error; a swing and its transmission angle."""
+"""Figures of designs: a function and the wanted one, and the error; a swing and its transmission angle."""
 
 from __future__ import annotations
 

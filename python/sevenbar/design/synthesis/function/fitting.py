@@ -37,10 +37,10 @@ from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits, size_room, tur
 #: Columns of a row (6,) that are unknown: all but L3.
 FREE = (0, 1, 2, 3, 5)
 
-#: Squared sine below which an output stands where it does at a dead centre: its slope is infinite there.
+#: Squared sine below which an output is at a dead centre, where its slope is infinite.
 DEAD = 1e-6
 
-#: Weight of a missed limit [rad per unit of its room] beside the error.
+#: Weight of a missed limit [rad per unit of its room] relative to the error.
 PENALTY = 1.0
 
 #: Room that a fit leaves at each limit, so that the check between its samples does not miss it.
@@ -147,7 +147,7 @@ class Fit:
         known: dict[bytes, tuple[Floats, Floats]] = {}
 
         def both(z: Floats) -> tuple[Floats, Floats]:
-            # the solver asks for values and for slopes at the same place
+            # the solver requests values and slopes at the same place
             if z.tobytes() not in known:
                 (error, error_slopes), (room, room_slopes) = self.errors(z, start.branch), self.room(z)
                 missed = np.where(room < 0, PENALTY, 0.0)

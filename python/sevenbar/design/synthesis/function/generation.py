@@ -34,13 +34,13 @@ from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
 from sevenbar.errors import MissingExtraError, RequestError
 from sevenbar.text.printing import Printed
 
-#: What a design must keep to where nothing else is asked for.
+#: What a design must keep to where nothing else is given.
 USUAL = Limits(transmission_lowest=math.radians(30))
 
 #: Designs of the global search: of each kind.
 SEARCHED = 4096
 
-#: How many of them are fitted for each design that is asked for, and at least.
+#: How many of them are fitted for each design requested, and at least.
 FITTED_EACH, FITTED_LEAST = 4, 16
 
 #: Greatest error [rad] at precision points with which a start is on one branch.
@@ -57,10 +57,10 @@ ENDS_APART = 1e-3
 class Synthesis(Printed):
     """Designs found for a wish, best first, and what was refused on the way.
 
-    `searched` designs were looked at and `fitted` of them refined; `refusals` begin with the nearest.
+    `searched` designs were compared and `fitted` of them refined; `refusals` begin with the nearest.
     """
 
-    told: str
+    wanted: str
     limits: Limits
     candidates: tuple[Candidate, ...]
     refusals: tuple[Refusal, ...]
@@ -75,10 +75,11 @@ class Synthesis(Printed):
         if self.candidates:
             return self.candidates
         reasons = tally(self.refusals) or "none closes on one branch over the range"
-        nearest = f"; nearest: {self.refusals[0].told}" if self.refusals else ""
+        nearest = f"; nearest: {self.refusals[0].detail}" if self.refusals else ""
         raise RequestError(
-            f"design: no linkage found for {self.told} with limits {self.limits.told()}; of {self.searched} "
-            f"designs {self.fitted} were fitted, refused: {reasons}{nearest}; ease the limits or the wish"
+            f"design: no linkage found for {self.wanted} with limits {self.limits.text()}; of "
+            f"{self.searched} designs {self.fitted} were fitted, refused: {reasons}{nearest}; "
+            "ease the limits or the wish"
         )
 
 
@@ -101,7 +102,7 @@ def function_generation(
 
     Three to seven pairs (to five with `zeros` [rad] given) are met exactly, more as nearly as can be. A
     function is approached over the whole range, or met at `precision` Chebyshev points. No design with a
-    greatest error above `tolerance` [rad] is given. The linkage stands at zero + reading. Raises
+    greatest error above `tolerance` [rad] is given. The linkage is at zero + reading. Raises
     `RequestError` for a wish that is none; one that cannot be met has no candidates.
 
         >>> found = function_generation(function="x^2", precision=3, count=1)
@@ -116,14 +117,14 @@ def function_generation(
     if (points is None) == (function is None):
         raise RequestError("points: give pairs of angles or a function, one of the two")
     if points is not None:
-        wish = wish_of_pairs(points[0], points[1], zeros=zeros, told=name or "pairs of angles")
+        wish = wish_of_pairs(points[0], points[1], zeros=zeros, title=name or "pairs of angles")
     else:
         if zeros is not None:
             raise RequestError("zeros: are chosen for a function; leave them out, or give pairs of angles")
-        told = name or (f"y = {function}" if isinstance(function, str) else "y(x)")
+        title = name or (f"y = {function}" if isinstance(function, str) else "y(x)")
         called = function_of(function) if isinstance(function, str) else function
         assert called is not None
-        wish = wish_of_function(called, x_range, input_range, output_range, points=precision, told=told)
+        wish = wish_of_function(called, x_range, input_range, output_range, points=precision, title=title)
     return _found(wish, limits, tolerance, count, seed)
 
 
@@ -147,7 +148,7 @@ def _found(wish: Wish, limits: Limits, tolerance: float, count: int, seed: int) 
     by_transmission = wish.exact and wish.function is None
     key = (lambda c: -(c.transmission_lowest or 0.0)) if by_transmission else None
     best: list[Candidate] = []
-    # first the best of all; where starts end in one design, each beside its own zero of the input
+    # first the best of all; where starts end in one design, each with its own zero of the input
     for hold in (False, True):
         for point, before in _refined(fit, chosen, hold=hold):
             error, result = _judged(wish, point, before, limits, tolerance)
@@ -160,7 +161,7 @@ def _found(wish: Wish, limits: Limits, tolerance: float, count: int, seed: int) 
             break
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
-        wish.told, limits, tuple(renamed(best, wish.told)), refusals, len(rows), len(chosen), seed, wish
+        wish.title, limits, tuple(renamed(best, wish.title)), refusals, len(rows), len(chosen), seed, wish
     )
 
 
@@ -266,10 +267,12 @@ def _judged(
     errors = (errors + math.pi) % math.tau - math.pi
     greatest = float(np.abs(errors).max())
     if greatest > tolerance:
-        told = f"greatest error {math.degrees(greatest):.3g} deg, {math.degrees(tolerance):g} deg are allowed"
-        return greatest, Refusal("error", told)
+        detail = (
+            f"greatest error {math.degrees(greatest):.3g} deg, {math.degrees(tolerance):g} deg are allowed"
+        )
+        return greatest, Refusal("error", detail)
     figures = {"input_zero_deg": math.degrees(zero[0]), "output_zero_deg": math.degrees(zero[1])}
     if math.isfinite(before):
         figures["error_greatest_least_squares_deg"] = math.degrees(before)
     claim = Claim(zero[0] + dense, angles, errors, "deg", figures)
-    return greatest, checked(draft_of(row, wish.told), claim, limits)
+    return greatest, checked(draft_of(row, wish.title), claim, limits)

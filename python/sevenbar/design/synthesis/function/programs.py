@@ -27,7 +27,7 @@ FIRST_REACH, MOST_REACH, LEAST_REACH = 0.1, 1.0, 1e-9
 #: Gain of a step, in parts of the greatest height, below which it is the last.
 WORTH = 1e-5
 
-#: Weight of a missed room beside the greatest height: above any multiplier, so that none is missed for a
+#: Weight of a missed room relative to the greatest height: above any multiplier, so that none is missed for a
 #: lower height.
 MISSED = 100.0
 

@@ -36,8 +36,8 @@ OF_SWING = ("error_greatest_deg", "error_rms_deg")
 def text(found: Synthesis) -> RenderableType:
     """The designs for people."""
     facts = Facts()
-    facts.add("wanted", found.told, "bold")
-    facts.add("limits", found.limits.told())
+    facts.add("wanted", found.wanted, "bold")
+    facts.add("limits", found.limits.text())
     facts.add("searched", f"{found.searched} designs, {found.fitted} refined, seed {found.seed}")
     if found.refusals:
         facts.add("refused", tally(found.refusals))
@@ -73,12 +73,12 @@ def as_dict(found: Synthesis) -> dict[str, Any]:
     """The designs as tables and numbers."""
     return {
         "format": 1,
-        "wanted": found.told,
-        "limits": found.limits.told(),
+        "wanted": found.wanted,
+        "limits": found.limits.text(),
         "seed": found.seed,
         "searched": found.searched,
         "refined": found.fitted,
-        "refused": [{"fault": r.fault, "told": r.told} for r in found.refusals],
+        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.refusals],
         "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
     }
 
@@ -90,7 +90,7 @@ def synthesis_report(count: int, command: str, figures: Sequence[str] = ("png",)
 
 
 def _head(command: str, found: Synthesis) -> list[str]:
-    head = [f"wanted: {found.told}", f"limits: {found.limits.told()}", f"made by: {command}"]
+    head = [f"wanted: {found.wanted}", f"limits: {found.limits.text()}", f"made by: {command}"]
     if found.wish is not None:
         head += ["crank = input_zero + reading of the input; rocker = output_zero + reading of the output"]
     return head

@@ -40,7 +40,7 @@ from sevenbar.errors import RequestError
 #: Designs of the global search, and inputs of a turn at which they are looked at.
 SEARCHED, LOOKED_AT = 16384, 72
 
-#: How many of them are refined for each design that is asked for, and at least.
+#: How many of them are refined for each design requested, and at least.
 FITTED_EACH, FITTED_LEAST = 4, 24
 
 #: Two starts are one where the arctangent of no ratio differs by more.
@@ -170,13 +170,13 @@ def swing_generation(
         )
     if count < 1:
         raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
-    told = f"swing {math.degrees(swing):g} deg, time ratio {time_ratio:g}"
+    wanted_text = f"swing {math.degrees(swing):g} deg, time ratio {time_ratio:g}"
     wish = _Wish(swing, math.tau * time_ratio / (1 + time_ratio), limits)
     chosen, searched = _chosen(wish, max(FITTED_LEAST, FITTED_EACH * count), seed)
     kept: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
     for row, branch, ends in chosen:
-        far, result = _judged(wish.refined(row, branch, ends), branch, swing, time_ratio, limits, told)
+        far, result = _judged(wish.refined(row, branch, ends), branch, swing, time_ratio, limits, wanted_text)
         if isinstance(result, Candidate):
             kept.append(result)
         else:
@@ -184,7 +184,9 @@ def swing_generation(
     order = ranked(kept, lambda c: -(c.transmission_lowest or 0.0))
     best = distinct(order, scale_free=True, mirrored=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
-    return Synthesis(told, limits, tuple(renamed(best, told)), refusals, searched, len(chosen), seed)
+    return Synthesis(
+        wanted_text, limits, tuple(renamed(best, wanted_text)), refusals, searched, len(chosen), seed
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,7 +285,7 @@ def _chosen(wish: _Wish, most: int, seed: int) -> tuple[list[tuple[Floats, int, 
 
 
 def _judged(
-    row: Floats, branch: int, swing: float, time_ratio: float, limits: Limits, told: str
+    row: Floats, branch: int, swing: float, time_ratio: float, limits: Limits, wanted_text: str
 ) -> tuple[float, Candidate | Refusal]:
     """A design as the ordinary analysis finds it, and how far from the wish it is."""
     ends = ends_of_swing(row, branch)
@@ -304,7 +306,7 @@ def _judged(
         "input_at_high_deg": math.degrees((ends.crank[1] + turn) % math.tau),
     }
     claim = Claim(inputs, angles, np.array([ends.swing - swing]), "deg", figures)
-    found = checked(draft_of(row, told), claim, replace(limits, motion_type="crank-rocker"))
+    found = checked(draft_of(row, wanted_text), claim, replace(limits, motion_type="crank-rocker"))
     if isinstance(found, Refusal):
         return far, found
     circuit = found.draft.linkage.motion().circuits[found.circuit]

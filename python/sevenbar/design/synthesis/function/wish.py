@@ -19,7 +19,7 @@ from sevenbar.text.table import read_table
 #: Readings over the range at which a fit looks at the error: between them it rises by less than 1% of it.
 FIT_SAMPLES = 81
 
-#: Readings over the range at which errors are told: 0.25 deg apart on a quarter turn.
+#: Readings over the range at which errors are measured: 0.25 deg apart on a quarter turn.
 DENSE_SAMPLES = 361
 
 #: Most pairs of readings that a fit takes.
@@ -35,7 +35,7 @@ class Wish:
     at inputs, `None` where only the pairs are wanted. `zeros` [rad] where the design may not choose them.
     """
 
-    told: str
+    title: str
     input: Floats
     output: Floats
     point_input: Floats
@@ -61,7 +61,7 @@ def wish_of_function(
     output_range: tuple[float, float],
     *,
     points: int | None = None,
-    told: str = "y(x)",
+    title: str = "y(x)",
 ) -> Wish:
     """The wish for y(x): x goes over the input's range, y from its least to its greatest over the output's.
 
@@ -87,17 +87,17 @@ def wish_of_function(
     y = function(x)
     if not np.isfinite(y).all():
         at = x[int(np.flatnonzero(~np.isfinite(y))[0])]
-        raise RequestError(f"y: {told} has no value at x = {at:g}; give another range of x")
+        raise RequestError(f"y: {title} has no value at x = {at:g}; give another range of x")
     least, most = float(y.min()), float(y.max())
     if most - least <= 1e-12 * max(abs(least), abs(most), 1e-300):
-        raise RequestError(f"y: {told} is the same all over {low:g}:{high:g}; give a function that changes")
+        raise RequestError(f"y: {title} is the same all over {low:g}:{high:g}; give a function that changes")
 
     reading = partial(_reading, function, (low, high), (least, most), input_range, output_range)
     first, last = sorted(input_range)
     middle, half = (first + last) / 2, (last - first) / 2
     samples = middle - half * np.cos(np.linspace(0.0, math.pi, FIT_SAMPLES))
     at = np.empty(0) if points is None else chebyshev(first, last, points)
-    return Wish(told, samples, reading(samples), at, reading(at), reading)
+    return Wish(title, samples, reading(samples), at, reading(at), reading)
 
 
 def _reading(
@@ -119,7 +119,7 @@ def wish_of_pairs(
     outputs: npt.ArrayLike,
     *,
     zeros: tuple[float, float] | None = None,
-    told: str = "pairs of angles",
+    title: str = "pairs of angles",
 ) -> Wish:
     """The wish for pairs of readings (n,) [rad]: to seven are met exactly, more as well as can be.
 
@@ -141,7 +141,7 @@ def wish_of_pairs(
         raise RequestError("points: the inputs reach over a full turn; give a part of one")
     most = FREE_ZEROS_MOST if zeros is None else FREE_ZEROS_MOST - 2
     none = np.empty(0)
-    return Wish(told, a, b, *((a, b) if a.size <= most else (none, none)), zeros=zeros)
+    return Wish(title, a, b, *((a, b) if a.size <= most else (none, none)), zeros=zeros)
 
 
 def read_pairs(path: Path) -> tuple[Floats, Floats]:

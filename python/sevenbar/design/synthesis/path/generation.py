@@ -17,7 +17,7 @@ from sevenbar.design.synthesis.path.task import MOST_POINTS, PathTask, Where, pa
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 
-#: Starts where none are asked for, the most, and the most designs.
+#: Starts by default, the most, and the most designs.
 STARTS, MOST_STARTS, MOST_DESIGNS = 256, 65536, 50
 
 #: Of the starts so many for each design wanted are looked at closer, and of these so many to the end.
@@ -87,7 +87,7 @@ def generated(
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Candidate, ...]:
-    """The designs of a task, as `path_generation` gives them; `progress` is told (done, total)."""
+    """The designs of a task, as `path_generation` gives them; `progress` is called with (done, total)."""
     check_counts(count, starts, seed)
     steps = starts + 1 + (LOOKED_AT + TAKEN) * count
     found = seeds(task, starts, seed, lambda done: _tell(progress, done, steps))
@@ -163,8 +163,8 @@ def _nothing(task: PathTask, found: Sequence[Seed], refusals: Sequence[Refusal])
         return "path: no start could be followed to a solution; give wider bounds, or more starts"
     last = refusals[0]
     return (
-        f"path: no design passes the check ({tally(refusals)}); the nearest: {last.told}; give wider bounds "
-        "or limits, or more starts"
+        f"path: no design passes the check ({tally(refusals)}); the nearest: {last.detail}; give wider "
+        "bounds or limits, or more starts"
     )
 
 

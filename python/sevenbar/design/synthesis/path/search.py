@@ -67,7 +67,7 @@ def seeds(task: PathTask, count: int, seed: int, tell: Callable[[int], None] = l
     """The best matches of the description itself and of `count` starts within the bounds, best first.
 
     A linkage gives one for each of its circuits. Starts are Sobol's points, a quarter of them near the
-    description; `tell` is told how many are done.
+    description; `tell` is called with the number done.
     """
     found: list[Seed] = []
     for done, varied in enumerate(_starts(task, count, seed)):

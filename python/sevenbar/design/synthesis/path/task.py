@@ -118,7 +118,7 @@ def path_task(
     place: bool = False,
     limits: Limits | None = None,
 ) -> PathTask:
-    """The task as it was asked for, looked at; raises `RequestError` for what does not fit.
+    """The task as requested, checked; raises `RequestError` for what does not fit.
 
     `points` (n, 3) [length]; one that ends where it began is closed. `vary` holds names of dimensions or
     patterns, `bounds` (low, high) by name or pattern, numbers in the file's units or texts as "25 cm"; where
@@ -164,9 +164,9 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
             if known.name == point:
                 return draft, known
         names = [known.name for known in linkage.points]
-        told = ", ".join(names) or "none"
+        listed = ", ".join(names) or "none"
         raise RequestError(
-            f"point: no point {shown(point)}; {suggestion(point, names)}this linkage has {told}; "
+            f"point: no point {shown(point)}; {suggestion(point, names)}this linkage has {listed}; "
             "give one, or a link and a place on it"
         )
     try:
@@ -273,9 +273,9 @@ def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
         # the point's own coordinates open nothing
         chosen = [i for i in chosen if i not in opening]
     elif opening:
-        told = ", ".join(names[i] for i in opening[:4]) + (" .." if len(opening) > 4 else "")
+        listed = ", ".join(names[i] for i in opening[:4]) + (" .." if len(opening) > 4 else "")
         raise RequestError(
-            f"vary: {told} cannot change alone without opening the loop; leave "
+            f"vary: {listed} cannot change alone without opening the loop; leave "
             f"{'it' if len(opening) == 1 else 'them'} out"
         )
     return tuple(chosen)
@@ -335,9 +335,9 @@ def _bounds(task: PathTask, given: Mapping[str, tuple[float | str, float | str]]
             least = most = math.nan
         if not (math.isfinite(least) and math.isfinite(most) and least < most):
             written = isinstance(pair, tuple) and any(isinstance(end, str) for end in pair)
-            told = ":".join(map(str, pair)) if written else pair
+            listed = ":".join(map(str, pair)) if written else pair
             raise RequestError(
-                f"bounds: {shown(told)} of {pattern} are no bounds; give the least and the greatest value, "
+                f"bounds: {shown(listed)} of {pattern} are no bounds; give the least and the greatest value, "
                 "as in 100:400"
             )
         for i in found:
