@@ -1,5 +1,6 @@
 """The Rust core: arrays in, arrays out."""
 
+from collections.abc import Sequence
 from typing import Any, final
 
 import numpy as np
@@ -9,6 +10,7 @@ __all__ = [
     "AGREE",
     "CoreError",
     "Loop",
+    "Numbers",
     "Rows",
     "Rssr",
     "__version__",
@@ -74,6 +76,34 @@ class Loop:
         self, pose: _Floats, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
     ) -> dict[str, Any]: ...
     def point(self, rows: Rows, link: int, at: _Floats) -> _Floats: ...
+
+@final
+class Numbers:
+    """A loop that knows what its numbers move; lengths in parts of the size."""
+
+    def __new__(
+        cls,
+        letters: str,
+        advances: _Floats,
+        fixed: _Floats,
+        input: int,
+        held: Sequence[int],
+        spins: int,
+        numbers: int,
+        moves: Sequence[tuple[int, int]],
+        twists: _Floats,
+        pitches: Sequence[tuple[int, int, float]],
+        points: Sequence[tuple[int, _Floats, Sequence[tuple[int, _Floats]]]],
+    ) -> Numbers: ...
+    def slopes(self, values: _Floats, order: int) -> list[_Floats]: ...
+    def follow(
+        self,
+        values: _Floats,
+        inputs: _Floats,
+        fixed: _Floats,
+        advances: _Floats,
+        steps: _Floats | None = None,
+    ) -> tuple[_Floats, _Floats]: ...
 
 @final
 class Rows:

@@ -1,6 +1,7 @@
 //! The only crate that knows Python: arrays in, arrays out, the interpreter free while the core works.
 
 mod loops;
+mod numbers;
 mod sweep;
 mod sweep_loops;
 
@@ -301,6 +302,8 @@ fn simd_level() -> &'static str {
 mod _core {
     #[pymodule_export]
     use super::loops::{Loop, Rows};
+    #[pymodule_export]
+    use super::numbers::Numbers;
     #[pymodule_export]
     use super::sweep::{classify_rssr, measure_rssr};
     #[pymodule_export]
