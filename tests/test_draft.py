@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.draft import Dimension, Draft
+from sevenbar.dimensions import Dimension
+from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.files import loads
 from sevenbar.gallery import names, text

@@ -15,7 +15,7 @@ PYTHON_FILES = sorted(PACKAGE.rglob("*.py"))
 RUST_FILES = sorted((ROOT / "crates").rglob("*.rs"))
 CORE_FILES = sorted((CORE / "src").rglob("*.rs"))
 
-CORE_IMPORTERS = {"__init__", "closed_form", "general", "many"}
+CORE_IMPORTERS = {"__init__", "closed_form", "general", "many", "sensitivity"}
 
 NOT_IN_THE_CORE = re.compile(
     r"\b(pyo3|numpy)\b"
@@ -66,7 +66,7 @@ def imported_from_core(python: str) -> set[str]:
 
 
 @pytest.mark.slow
-def test_the_core_is_imported_by_the_two_solvers_and_the_batches_only():
+def test_the_core_is_imported_by_the_solvers_the_batches_and_the_sensitivities_only():
     taken = {
         file.relative_to(PACKAGE).with_suffix("").as_posix(): imported_from_core(
             file.read_text(encoding="utf-8")

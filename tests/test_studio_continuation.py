@@ -16,7 +16,8 @@ import pytest
 
 import sevenbar as sb
 from accuracy.reference_loops import Loop
-from sevenbar.draft import Dimension, Draft
+from sevenbar.dimensions import Dimension
+from sevenbar.draft import Draft
 from sevenbar.errors import SevenbarError
 from sevenbar.gallery import text
 from sevenbar.studio.session import Session

@@ -23,6 +23,7 @@ from sevenbar.motion import (
     change_points_from,
     circuit_from,
 )
+from sevenbar.sensitivity import sensitivity_of
 
 if TYPE_CHECKING:
     from sevenbar.linkage import Linkage
@@ -121,6 +122,7 @@ class ClosedForm:
             mode=raw["mode"],
             transmission=Extremes(least, least_at, greatest, greatest_at),
             _point=partial(self._trace, rates),
+            _sensitivity=partial(sensitivity_of, self._linkage),
             **own,
         )
 

@@ -4,99 +4,17 @@ from __future__ import annotations
 
 import copy
 import tomllib
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
+from sevenbar.dimensions import Dimension, dimensions_of
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.files import loads
 from sevenbar.forms import from_description
-from sevenbar.linkage import Joint, Linkage
-from sevenbar.units import ANGLES, TURNING_SPEEDS, amount, length_sizes
-
-#: A place in a description: keys of tables, and counts from 0 in lists.
-Place = tuple[str | int, ...]
-
-#: Keys of the numbers in a row of Denavit-Hartenberg, by its joint's kind.
-ROW_KEYS = {
-    "R": ("length", "offset", "twist"),
-    "P": ("length", "angle", "twist"),
-    "H": ("length", "offset", "twist", "pitch"),
-}
-
-
-@dataclass(frozen=True)
-class Dimension:
-    """A number of the description that can be changed.
-
-    `name` is its own among all: "L1"; "length_2"; "crank.axis_x"; "P.u". `value` and `unit` are the file's;
-    `group` is what it belongs to; `follows` where the file leaves it out and it follows from the others.
-    """
-
-    name: str
-    place: Place
-    label: str
-    group: str
-    unit: str
-    value: float
-    positive: bool = False
-    follows: bool = False
-
-    @property
-    def key(self) -> str:
-        """Its place as messages tell it: `rssr.L1`, `link[2].twist`, `joint[1].at[3]`."""
-        parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in self.place]
-        return "".join(parts).lstrip(".")
-
-    @property
-    def column(self) -> str:
-        """Its name in tables, with the unit: `L1_mm`, `twist_2_deg`."""
-        return f"{self.name}_{self.unit.replace('/', '_')}" if self.unit else self.name
-
-    @property
-    def kind(self) -> Literal["length", "angle", "pitch", "number", "speed"]:
-        """What its value is."""
-        if "/" in self.unit or self.unit == "rpm":
-            return "pitch" if self.unit.endswith("turn") else "speed"
-        if self.unit in ANGLES:
-            return "angle"
-        return "length" if self.unit else "number"
-
-    @property
-    def scale(self) -> float:
-        """The size of its unit beside the one that is carried: radian, length unit."""
-        return ANGLES.get(self.unit, 1.0)
-
-    def read(self, text: str) -> float:
-        """The value that a person wrote, in the dimension's unit: "250", "25 cm", "30deg".
-
-        Raises `RequestError` for a text that is no finite number with a unit that fits.
-        """
-        sizes, what, hint = self._sizes
-        value = amount(text, sizes, self.unit)
-        if value is None:
-            comma = " (a decimal point, not a comma)" if "," in text else ""
-            given = shown(text.strip())
-            raise RequestError(f"{self.key}: {given} is not a finite {what}; give {hint}{comma}")
-        return value
-
-    @property
-    def _sizes(self) -> tuple[dict[str, float], str, str]:
-        """Sizes of the units that fit, what a value is, and examples."""
-        length, _, per = self.unit.partition("/")
-        if self.unit == "":
-            return {"": 1.0}, "number", "a number, as in 1.5"
-        if self.unit in ANGLES:
-            sizes = {unit: size / ANGLES[self.unit] for unit, size in ANGLES.items()}
-            return sizes | {self.unit: 1.0}, "angle", "30, 30deg or 0.5rad"
-        if self.unit in TURNING_SPEEDS:
-            return TURNING_SPEEDS, "speed", f"10, 10 {self.unit} or 60 rpm"
-        if per:
-            sizes = {f"{unit}/{per}": size for unit, size in length_sizes(length).items()}
-            return sizes, "speed" if per == "s" else "pitch", f"10 or 10 {self.unit}"
-        return length_sizes(length), "length", f"250 or 250{length}"
+from sevenbar.linkage import Linkage
+from sevenbar.word import Place
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,37 +104,7 @@ class Draft:
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
         """Every number that can be changed, in the order of the file."""
-        linkage = self.linkage
-        length, angle = linkage.length_unit, str(self.raw.get("angle_unit", "deg"))
-        found: list[Dimension] = []
-        for key in ("M", "N", "L1", "L2", "L3", "D") if "rssr" in self.raw else ():
-            given = self.raw["rssr"].get(key)
-            value = linkage.dimensions[key] if given is None else float(given)
-            # D left out is 0; L2 left out follows from the others
-            follows = given is None and key == "L2"
-            place = ("rssr", key)
-            positive = key[0] == "L"
-            found.append(Dimension(key, place, key, "dimensions", length, value, positive, follows))
-        units = {"twist": angle, "angle": angle, "pitch": f"{length}/turn"}
-        joints = linkage.joints
-        for i, row in enumerate(self.raw.get("link", ())):
-            group = f"link {i + 1}, after {joints[i].name} ({joints[i].kind})"
-            for key in ROW_KEYS[joints[i].kind]:
-                unit = units.get(key, length)
-                value = float(row.get(key, 0.0))
-                found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
-        for i, table in enumerate(self.raw.get("joint", ())):
-            found += _of_drawn(i, table, joints[i], length)
-        letters = "uvw" if "link" in self.raw else "xyz"
-        for i, table in enumerate(self.raw.get("point", ())):
-            name = table["name"]
-            found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
-        column = linkage.columns.index(linkage.drive.joint)
-        speed = "rad/s" if linkage.column_kinds[column] == "turn" else f"{length}/s"
-        found.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
-        # a point may have the name of a joint
-        taken = Counter(dimension.name for dimension in found)
-        return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in found)
+        return dimensions_of(self.raw, self.linkage)
 
     def written(self, dimension: Dimension, value: float) -> object:
         """What stands in the file for a value of a dimension: a speed with its unit, else the number."""
@@ -248,34 +136,6 @@ class Draft:
 def _plain(value: float) -> float | int:
     """A number as people write it, without the point where it is whole."""
     return int(value) if abs(value) < 1e15 and value.is_integer() else value
-
-
-def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -> list[Dimension]:
-    """The numbers of a joint as drawn."""
-    place = ("joint", index)
-    whose = (joint.name, f"{joint.name} ({joint.kind})")
-    found = _vector((*place, "at"), table["at"], "xyz", whose, length)
-    if "axis" in table:
-        found += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), whose, "")
-    for which, axis in enumerate(table.get("axes", ())):
-        letters = [f"axis {which + 1} {letter}" for letter in "xyz"]
-        found += _vector((*place, "axes", which), axis, letters, whose, "")
-    if "pitch" in table:
-        name, group = whose
-        unit, pitch = f"{length}/turn", float(table["pitch"])
-        found.append(Dimension(f"{name}.pitch", (*place, "pitch"), "pitch", group, unit, pitch))
-    return found
-
-
-def _vector(
-    place: Place, values: Sequence[float], labels: Sequence[str], whose: tuple[str, str], unit: str
-) -> list[Dimension]:
-    """The numbers of a vector; `whose`: the name of its owner, and what the owner is called among others."""
-    name, group = whose
-    return [
-        Dimension(f"{name}.{label.replace(' ', '_')}", (*place, axis), label, group, unit, float(value))
-        for axis, (label, value) in enumerate(zip(labels, values, strict=True))
-    ]
 
 
 def _says(text: str, raw: Mapping[str, Any]) -> bool:

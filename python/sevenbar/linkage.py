@@ -16,6 +16,7 @@ from sevenbar.errors import NotCoveredError, RequestError, no_joint, shown
 from sevenbar.general import GeneralLoop
 from sevenbar.mobility import Mobility
 from sevenbar.motion import Circuit, Law, Modes, Motion, Output
+from sevenbar.rigid import inverse
 from sevenbar.units import sliding_speed, turning_speed
 from sevenbar.written import FREEDOMS, Freedom, column_names
 
@@ -280,6 +281,11 @@ class Linkage:
         """Freedoms that move no other link."""
         return self._general.idle()
 
+    @cached_property
+    def held(self) -> tuple[frozenset[int], list[int], int]:
+        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
+        return self._general.held()
+
     @property
     def idle_links(self) -> frozenset[int]:
         """Links, counted from 1, with a freedom of their own that moves no other link."""
@@ -393,17 +399,3 @@ def _rate(name: str, value: npt.ArrayLike, count: int) -> Floats:
             f"{name}: {array.size} values where the input has {count}; give {count}, or one number"
         )
     return np.ascontiguousarray(np.broadcast_to(array, (count,)))
-
-
-def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike) -> Floats:
-    """The homogeneous matrix (4, 4) with these columns of axes and this origin."""
-    matrix = np.eye(4)
-    matrix[:3, :3] = rotation
-    matrix[:3, 3] = origin
-    return matrix
-
-
-def inverse(matrix: Floats) -> Floats:
-    """The inverse of a rigid motion."""
-    rotation = matrix[:3, :3].T
-    return pose(rotation, -rotation @ matrix[:3, 3])

@@ -12,8 +12,9 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
-from sevenbar.linkage import Linkage, Point, inverse
+from sevenbar.linkage import Linkage, Point
 from sevenbar.motion import Circuit, Integers, Motion
+from sevenbar.rigid import inverse
 
 #: Places of the pose: the two centres and the two balls; further named points come after them.
 A0, A, B, B0 = 0, 1, 2, 3

@@ -16,8 +16,8 @@ from sevenbar.errors import RequestError
 from sevenbar.export.mass import Mass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
-from sevenbar.linkage import inverse
-from sevenbar.linkage import pose as matrix
+from sevenbar.rigid import inverse
+from sevenbar.rigid import pose as matrix
 from sevenbar.units import LENGTHS
 
 #: The names ADAMS has for length units; micrometres are written in millimetres.

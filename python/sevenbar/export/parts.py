@@ -13,7 +13,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.export.pose import Pose, shortest_link, size_of
-from sevenbar.linkage import inverse
+from sevenbar.rigid import inverse
 from sevenbar.scene import GROUND, JOINT, chain_colours
 from sevenbar.skeleton import CYLINDER
 

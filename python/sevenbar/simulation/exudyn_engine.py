@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
-from sevenbar.linkage import pose
+from sevenbar.rigid import pose
 from sevenbar.simulation.engine import Progress, Record, imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
 from sevenbar.simulation.prototype import FREEDOMS, GROUND, GYRATION, Body, Connection, Prototype, SpinRule

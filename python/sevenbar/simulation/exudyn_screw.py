@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.linkage import pose
+from sevenbar.rigid import pose
 from sevenbar.simulation.prototype import GROUND, Connection
 
 

@@ -17,7 +17,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.linkage import inverse
+from sevenbar.rigid import inverse
 from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
 from sevenbar.units import LENGTHS
 

@@ -12,8 +12,9 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
-from sevenbar.linkage import Linkage, inverse, pose
+from sevenbar.linkage import Linkage
 from sevenbar.motion import Circuit
+from sevenbar.rigid import inverse, pose
 from sevenbar.skeleton import frames_along
 
 #: The number of the ground among the bodies.

@@ -8,7 +8,7 @@ from typing import Any
 
 import viser
 
-from sevenbar.draft import Dimension
+from sevenbar.dimensions import Dimension
 from sevenbar.errors import SevenbarError
 from sevenbar.studio.controls import PAUSE, Alert, Asked, by_person, put
 from sevenbar.units import ANGLES

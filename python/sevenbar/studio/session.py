@@ -7,11 +7,12 @@ import time
 
 import numpy as np
 
-from sevenbar.draft import Draft, Place
+from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.motion import Motion
 from sevenbar.studio.view import View, modes_at, nearest
 from sevenbar.summary import meaning
+from sevenbar.word import Place
 
 #: Inputs in a full turn.
 SAMPLES = 360

@@ -7,7 +7,7 @@ from typing import Any
 
 import viser
 
-from sevenbar.draft import Dimension
+from sevenbar.dimensions import Dimension
 from sevenbar.studio.controls import Alert, Asked, by_person, put
 from sevenbar.studio.dimension_rows import DimensionRow, largest_length
 from sevenbar.studio.session import Session

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Dimension
+from sevenbar.dimensions import Dimension
 from sevenbar.errors import RequestError, shown
 from sevenbar.motion import Integers
 from sevenbar.ranges import split_grid, split_name, split_range

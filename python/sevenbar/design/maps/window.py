@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Dimension, Draft
+from sevenbar.dimensions import Dimension
+from sevenbar.draft import Draft
 from sevenbar.errors import RequestError, shown
 from sevenbar.ranges import split_named, split_range
 

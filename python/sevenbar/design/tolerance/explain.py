@@ -22,7 +22,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import CLASSES, in_class
-from sevenbar.draft import Dimension
+from sevenbar.dimensions import Dimension
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.linkage import Linkage
 from sevenbar.measuring.extremes import ExtremesComparison, compare_extremes
@@ -173,8 +173,8 @@ class _Search:
         places: list[int],
     ) -> None:
         self._measured, self._ends, self._before = measured, ends, before
-        self._whole, self._places, self._unit = found.loop.whole, places, linkage.length_unit
-        self._size = found.loop.size
+        self._found, self._places, self._unit = found, places, linkage.length_unit
+        self._size = found.loop.numbers.size
         self.extremes = [
             (f"{extent.quantity}_{end}", extent.measured[1] - extent.measured[0], c, m)
             for extent in before.table
@@ -191,11 +191,11 @@ class _Search:
 
     def residual(self, change: Floats) -> Floats | None:
         """W (measured less computed) of the changed linkage; `None` where it has no such extremes."""
-        p = self._whole.nominal.copy()
-        p[self._places] += change
+        changes = np.zeros(len(self._found.dimensions))
+        changes[self._places] = change
         try:
             table = compare_extremes(
-                self._whole.changed(p),
+                self._found.changed(changes),
                 self._measured,
                 self._ends,
                 speed=self._before.speed,
@@ -230,12 +230,12 @@ class _Search:
             change[kept] += step
             if np.abs(step).max() < SETTLED * self._size:
                 break
-        told = {self._whole.names[self._places[k]]: float(best[k]) for k in kept}
+        told = {self._found.dimensions[self._places[k]].name: float(best[k]) for k in kept}
         return Change(told, least, self._class(told))
 
     def _class(self, changes: dict[str, float]) -> str | None:
         """The finest class of ISO 2768 that allows these changes, as far as it has tolerances for them."""
-        dimensions = {d.name: d for d in self._whole.dimensions}
+        dimensions = {d.name: d for d in self._found.dimensions}
         for letter in CLASSES:
             widths = {name: in_class(dimensions[name], letter, self._unit) for name in changes}
             known = [abs(changes[name]) <= width for name, width in widths.items() if width is not None]

@@ -198,7 +198,7 @@ def _per(unit: str, dimension: str) -> str:
 
 def _speed_unit(linear: Linear) -> str:
     found = linear.found
-    return "rad/s" if found.loop.columns[found.loop.input].turns else f"{found.linkage.length_unit}/s"
+    return "rad/s" if found.input_turns else f"{found.linkage.length_unit}/s"
 
 
 def _worst_text(worst: WorstCase) -> str:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.draft import Dimension
+from sevenbar.dimensions import Dimension
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.ranges import split_name
 from sevenbar.units import LENGTHS

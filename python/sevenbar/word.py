@@ -1,0 +1,440 @@
+"""A description as a word: the fixed transforms of its loop as products of steps that hold its numbers.
+
+    F_0 Z_1 F_1 Z_2 .. Z_n F_n = 1                                                                        (1)
+
+with one step Z for each freedom, and each F a product of factors: turns about and slides along an axis by a
+number (RSSR, Denavit-Hartenberg rows), frames on drawn lines, constants. A number that changes by dp moves
+what stands behind a factor by the twist w dp in the frame there, and that goes through all behind it:
+
+    dF = F w dp,        F = A B:  w = Ad(B^-1) w_A + w_B                                                  (2)
+
+A ball before a link that would spin idly stands here as the two turns that the core holds it to.
+
+Source: docs/theory.md, (1); docs/theory_design.md, (2).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats
+from sevenbar.rigid import about, adjoint, cross, frame_about, inverse, pose, unit
+
+#: A place in a description: keys of tables, and counts from 0 in lists.
+Place = tuple[str | int, ...]
+
+#: Twists (6,) by the places of the numbers that one of moves so.
+Moves = dict[Place, Floats]
+
+#: Report frame of Denavit-Hartenberg rows against the frame of the ground link: x is j, y is k, z is i.
+I_ALONG_LAST_AXIS = pose([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], np.zeros(3))
+
+#: A point (u, v, w) on a row's link: u along its joint, v along the link, w = u x v.
+UVW = pose([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], np.zeros(3))
+
+#: The ground's side of the rocker of an RSSR turns about -x, so that its value is the paper's beta.
+ROCKER_GROUND = pose([[0, 0, -1], [-1, 0, 0], [0, 1, 0]], np.zeros(3))
+
+#: Axes of a frame, and unit twists.
+_AXES, _TWISTS = np.eye(3), np.eye(6)
+
+#: Below this sine of the angle between a coupler and the axis before it another axis holds its spin.
+SPIN_UNDEFINED = 1e-8
+
+
+class Values(dict[Place, float]):
+    """The numbers of a description by their places, angles in radians; what it leaves out is 0."""
+
+    def __init__(self, numbers: Mapping[Place, float]) -> None:
+        super().__init__(numbers)
+        self._poses: dict[Factor, Floats] = {}
+
+    def pose(self, factor: Factor) -> Floats:
+        """The motion (4, 4) of a factor, worked out once."""
+        if factor not in self._poses:
+            self._poses[factor] = factor.pose(self)
+        return self._poses[factor]
+
+
+class Factor(Protocol):
+    """A rigid motion that depends on numbers of a description."""
+
+    def pose(self, values: Values) -> Floats:
+        """The motion (4, 4)."""
+        ...
+
+    def moves(self, values: Values) -> Moves:
+        """The twists (6,) in the frame behind it by one of each number."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Still:
+    """A motion that depends on nothing."""
+
+    matrix: Floats
+
+    def pose(self, values: Values) -> Floats:  # noqa: ARG002
+        """The motion (4, 4)."""
+        return self.matrix
+
+    def moves(self, values: Values) -> dict[Place, Floats]:  # noqa: ARG002
+        """None."""
+        return {}
+
+
+@dataclass(frozen=True)
+class Step:
+    """A turn about and a slide along an axis 0, 1, 2, each by a number."""
+
+    axis: int
+    turn: Place | None = None
+    slide: Place | None = None
+
+    def pose(self, values: Values) -> Floats:
+        """The motion (4, 4)."""
+        origin = np.zeros(3)
+        origin[self.axis] = 0.0 if self.slide is None else values.get(self.slide, 0.0)
+        angle = 0.0 if self.turn is None else values.get(self.turn, 0.0)
+        return pose(about(self.axis, angle), origin)
+
+    def moves(self, values: Values) -> dict[Place, Floats]:  # noqa: ARG002
+        """The twists (6,) by one of each number."""
+        places = {self.turn: self.axis, self.slide: self.axis + 3}
+        return {place: _TWISTS[k] for place, k in places.items() if place is not None}
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """The frame on a joint as drawn, its z along the first or second axis, x towards another joint.
+
+    Its numbers move the line; a turn about the line itself, before and behind the joint, changes nothing.
+    """
+
+    joint: int
+    #: "axis", "axes" (U), or "" (S).
+    key: str
+    which: int = 0
+    towards: int = 0
+
+    @property
+    def at(self) -> Place:
+        """Where the numbers of its place stand."""
+        return ("joint", self.joint, "at")
+
+    def direction(self, values: Values) -> tuple[Floats, Moves]:
+        """The direction of its line, and the angular velocities by its numbers."""
+        place: Place = ("joint", self.joint, self.key, *([self.which] if self.key == "axes" else []))
+        written = vector(values, place)
+        axis = unit(written)
+        return axis, {(*place, k): cross(axis, _AXES[k]) / math.hypot(*written) for k in range(3)}
+
+    def pose(self, values: Values) -> Floats:
+        """The motion (4, 4)."""
+        at = vector(values, self.at)
+        if self.key == "":
+            return pose(np.eye(3), at)
+        if self.key == "axis":
+            towards = vector(values, ("joint", self.towards, "at")) - at
+            return pose(frame_about(vector(values, ("joint", self.joint, "axis")), towards), at)
+        first, second = (vector(values, ("joint", self.joint, "axes", k)) for k in (0, 1))
+        z, x = unit(first), unit(cross(unit(first), unit(second)))
+        frame = pose(np.column_stack([x, cross(z, x), z]), at)
+        return frame @ pose(about(0, between(first, second)), np.zeros(3)) if self.which else frame
+
+    def moves(self, values: Values) -> Moves:
+        """The twists (6,) by one of each number."""
+        found = {(*self.at, k): _TWISTS[k + 3] for k in range(3)}
+        if self.key:
+            at = vector(values, self.at)
+            for place, spin in self.direction(values)[1].items():
+                found[place] = np.concatenate([spin, cross(at, spin)])
+        return _seen(inverse(values.pose(self)), found)
+
+
+@dataclass(frozen=True)
+class Held:
+    """The frame of an axis, seen from a drawn ball, about which it turns as its link's spin is held.
+
+    `which` is 0 for that of the joint before, 1 for one square to it and to the line to the next ball, 2 for
+    the one square to both, about which it does not turn.
+    """
+
+    ball: int
+    which: int
+    before: Drawn | None
+
+    def _axes(self, values: Values) -> tuple[Floats, Floats, Floats, float]:
+        """The first and second axis (3,), the line, and the length of axis x line; 0 where they are one."""
+        line = vector(values, ("joint", self.ball + 1, "at")) - vector(values, ("joint", self.ball, "at"))
+        other = _AXES[np.argmin(np.abs(line))]
+        axis = other if self.before is None else self.before.direction(values)[0]
+        second = cross(axis, line)
+        length = math.hypot(*second)
+        if length > SPIN_UNDEFINED * math.hypot(*line):
+            return axis, second / length, line, length
+        return axis, unit(cross(other, line)), line, 0.0
+
+    def _spins(self, values: Values) -> Moves:
+        """The angular velocities of the first or second axis by each number."""
+        axis, second, line, length = self._axes(values)
+        if not length:
+            return {}
+        spins = {} if self.before is None else self.before.direction(values)[1]
+        if self.which == 0:
+            return spins
+        ways = {place: cross(cross(spin, axis), line) for place, spin in spins.items()}
+        for ball, sign in ((self.ball, -1.0), (self.ball + 1, 1.0)):
+            for k in range(3):
+                place = ("joint", ball, "at", k)
+                ways[place] = ways.get(place, 0.0) + cross(axis, sign * _AXES[k])
+        return {place: cross(second, way / length) for place, way in ways.items()}
+
+    def pose(self, values: Values) -> Floats:
+        """The motion (4, 4)."""
+        first, second, *_ = self._axes(values)
+        z = (first, second, cross(first, second))[self.which]
+        return pose(frame_about(z, second if self.which == 0 else first), np.zeros(3))
+
+    def moves(self, values: Values) -> Moves:
+        """The twists (6,) by one of each number."""
+        if self.which == 2:
+            # nothing turns about it, so where it is does not matter
+            return {}
+        turning = {place: np.concatenate([spin, np.zeros(3)]) for place, spin in self._spins(values).items()}
+        return _seen(inverse(values.pose(self)), turning)
+
+
+@dataclass(frozen=True)
+class Back:
+    """Another motion, backwards."""
+
+    of: Factor
+
+    def pose(self, values: Values) -> Floats:
+        """The motion (4, 4)."""
+        return inverse(values.pose(self.of))
+
+    def moves(self, values: Values) -> Moves:
+        """The twists (6,) by one of each number."""
+        return {k: -twist for k, twist in _seen(values.pose(self.of), self.of.moves(values)).items()}
+
+
+@dataclass(frozen=True)
+class Product:
+    """Motions one after the other, (2)."""
+
+    factors: tuple[Factor, ...]
+
+    def __add__(self, other: Product) -> Product:
+        return Product(self.factors + other.factors)
+
+    @property
+    def back(self) -> Product:
+        """It backwards."""
+        return Product(tuple(one.of if isinstance(one, Back) else Back(one) for one in self.factors[::-1]))
+
+    def pose(self, values: Values) -> Floats:
+        """The motion (4, 4)."""
+        if not self.factors:
+            return np.eye(4)
+        return reduce(np.matmul, (values.pose(factor) for factor in self.factors))
+
+    def moves(self, values: Values) -> Moves:
+        """The twists (6,) by one of each number."""
+        found: Moves = {}
+        behind = np.eye(4)
+        for factor in reversed(self.factors):
+            for place, twist in _seen(behind, factor.moves(values)).items():
+                found[place] = found.get(place, 0.0) + twist
+            behind = behind @ inverse(values.pose(factor))
+        return found
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """A step that joints move: a turn (R), a slide (P), a screw (H) along z, or a ball (S).
+
+    `columns` are those of the linkage whose values it takes, `joint` counts from 0. `held`: it stays at zero.
+    """
+
+    letter: str
+    joint: int
+    columns: tuple[int, ...]
+    pitch: Place | None = None
+    held: bool = False
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A point that a link carries: the frame of its coordinates in that of the link, and their places.
+
+    `link` counts from 1; what the file does not hold is a constant, `at`.
+    """
+
+    name: str
+    link: int
+    frame: Product
+    place: Place | None = None
+    at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Word:
+    """The word of a form: base, links between the joints, and ground; and the freedoms of each joint.
+
+    `inner` stands between the freedoms of joint i. `frames` take a point as it is written to its link's own.
+    """
+
+    base: Product
+    links: tuple[Product, ...]
+    ground: Product
+    frames: tuple[Product, ...]
+    freedoms: tuple[tuple[Freedom, ...], ...]
+    inner: tuple[tuple[Product, ...], ...] = field(default=())
+
+    def fixed(self) -> list[Product]:
+        """The F of (1), one more than there are freedoms."""
+        outer = [self.base, *self.links, self.ground.back]
+        found = [outer[0]]
+        for i, freedoms in enumerate(self.freedoms):
+            inside = self.inner[i] if self.inner else ()
+            parts = inside or (Product(()),) * (len(freedoms) + 1)
+            found[-1] = found[-1] + parts[0]
+            found += parts[1:-1]
+            found.append(parts[-1] + outer[i + 1])
+        return found
+
+
+def _seen(frame: Floats, moves: Moves) -> Moves:
+    """Twists of a frame (4, 4) in the frame in which that is given."""
+    if not moves:
+        return moves
+    turned = adjoint(frame) @ np.stack(list(moves.values()), axis=1)
+    return dict(zip(moves, turned.T, strict=True))
+
+
+def vector(values: Values, place: Place) -> Floats:
+    """The vector (3,) whose numbers stand at a place."""
+    return np.array([values[*place, k] for k in range(3)])
+
+
+def between(first: npt.ArrayLike, second: npt.ArrayLike) -> float:
+    """The angle [rad] from one axis to another."""
+    a, b = unit(first), unit(second)
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
+
+
+def word_of(form: str, kinds: Sequence[str], spun: Collection[int] = ()) -> Word:
+    """The word of a form ("rssr", "link" or "joint") with joints of these kinds.
+
+    `spun` are the balls, counted from 0, before a link that is held from spinning on to the next ball: they
+    stand as two turns, and a third that is held.
+    """
+    freedoms, inner = [], []
+    column = 0
+    for i, kind in enumerate(kinds):
+        pitch: Place = (form, i, "pitch")
+        letters = {"C": "RP", "U": "RR", "S": "RRR" if i in spun else "S"}.get(kind, kind)
+        own = []
+        for k, letter in enumerate(letters):
+            columns = (column, column + 1, column + 2) if letter == "S" else (column + k,)
+            held = kind == "S" and k == 2
+            own.append(Freedom(letter, i, columns, pitch if letter == "H" else None, held))
+        column += {"C": 2, "U": 2, "S": 3}.get(kind, 1)
+        freedoms.append(tuple(own))
+        inner.append(_inner(form, kinds, i) if kind == "U" or i in spun else ())
+    shape = {"rssr": _rssr, "link": _rows, "joint": _drawn}[form]
+    return Word(*shape(kinds), tuple(freedoms), tuple(inner))
+
+
+_Outer = tuple[Product, tuple[Product, ...], Product, tuple[Product, ...]]
+
+
+def _rssr(kinds: Sequence[str]) -> _Outer:
+    def slide(axis: int, key: str) -> Step:
+        return Step(axis, slide=("rssr", key))
+
+    turned = Still(pose(np.diag([1.0, -1.0, -1.0]), np.zeros(3)))
+    links = (
+        Product((slide(0, "L1"),)),
+        Product((slide(0, "L2"),)),
+        Product((slide(0, "L3"), turned)),
+    )
+    ground = Product((slide(0, "M"), slide(1, "D"), Still(ROCKER_GROUND)))
+    return Product((slide(2, "N"),)), links, ground, (Product(()),) * len(kinds)
+
+
+def _rows(kinds: Sequence[str]) -> _Outer:
+    """Rows `Rz(theta) Tz(offset) Tx(length) Rx(twist)`: the joint's own motion, then turn, then span."""
+    report = Still(I_ALONG_LAST_AXIS)
+    count = range(len(kinds))
+    # of a slide the angle is fixed and the offset moves
+    turns = [
+        Step(2, turn=("link", i, "angle")) if kinds[i] == "P" else Step(2, slide=("link", i, "offset"))
+        for i in count
+    ]
+    spans = [Step(0, turn=("link", i, "twist"), slide=("link", i, "length")) for i in count]
+    ground = Product((report, Back(turns[-1])))
+    # v of a point goes along the link, so behind the fixed angle; u counts from before the offset
+    frames = [Product((Step(2, turn=("link", i, "angle")), Still(UVW))) for i in count]
+    frames[-1] = ground + frames[-1]
+    links = tuple(Product(pair) for pair in zip(turns[:-1], spans[:-1], strict=True))
+    return Product((report, spans[-1])), links, ground, tuple(frames)
+
+
+def _drawn_frames(kinds: Sequence[str], joint: int) -> tuple[Drawn, Drawn]:
+    """The frames before and behind a joint."""
+    # x goes towards the joint behind, of the last one towards that before
+    towards = joint + 1 if joint + 1 < len(kinds) else joint - 1
+    key = {"U": "axes", "S": ""}.get(kinds[joint], "axis")
+    before = Drawn(joint, key, 0, towards)
+    return before, Drawn(joint, key, 1, towards) if kinds[joint] == "U" else before
+
+
+def _drawn(kinds: Sequence[str]) -> _Outer:
+    """Joints as drawn, all at zero: the frames on both sides of each, in ground coordinates."""
+    before, behind = zip(*(_drawn_frames(kinds, i) for i in range(len(kinds))), strict=True)
+    links = tuple(Product((Back(a), b)) for a, b in zip(behind[:-1], before[1:], strict=True))
+    frames = (*(Product((Back(frame),)) for frame in behind[:-1]), Product(()))
+    return Product((before[0],)), links, Product((behind[-1],)), frames
+
+
+def _inner(form: str, kinds: Sequence[str], joint: int) -> tuple[Product, ...]:
+    """What stands before, between and behind the freedoms of U, and of a ball that holds a spin."""
+    if kinds[joint] == "U":
+        before, behind = _drawn_frames(kinds, joint)
+        return Product(()), Product((Back(before), behind)), Product(())
+    axes: list[Factor]
+    if form == "rssr":
+        axes = [Still(pose(frame_about(np.eye(3)[k], np.eye(3)[k - 1]), np.zeros(3))) for k in (2, 1, 0)]
+    else:
+        first = joint > 0 and kinds[joint - 1] != "S"
+        axes = [Held(joint, k, _drawn_frames(kinds, joint - 1)[1] if first else None) for k in range(3)]
+    a, b, c = axes
+    return Product((a,)), Product((Back(a), b)), Product((Back(b), c)), Product((Back(c),))
+
+
+def points_of(form: str, word: Word, description: Mapping[str, Any], rssr: bool) -> list[Carried]:
+    """The points of a linkage: the balls A and B of an RSSR, then those of its description."""
+    found: list[Carried] = []
+    if form == "rssr":
+        found.append(Carried("A", 1, Product((Step(0, slide=("rssr", "L1")),))))
+        found.append(Carried("B", 3, Product(())))
+    elif rssr:
+        found += [Carried(n, link, word.frames[link - 1], ("joint", k, "at")) for n, link, k in _BALLS]
+    for i, table in enumerate(description.get("point", ())):
+        link = int(table["link"])
+        found.append(Carried(table["name"], link, word.frames[link - 1], ("point", i, "at")))
+    return found
+
+
+#: The balls of an RSSR: name, link that carries it, joint.
+_BALLS = (("A", 1, 1), ("B", 3, 2))
