@@ -270,7 +270,7 @@ def test_slides_and_screws_of_rows_have_derivatives_too():
             sides = []
             for sign in (1, -1):
                 p = numbers.nominal + sign * step * np.eye(len(numbers.names))[k]
-                there = loop.carried(q[:, loop.input], q, p)
+                there = loop.closed(q[:, loop.input], q, p)
                 rates = numbers.loop(loop.input, p, ()).slopes(there, 0).rates
                 sides.append(np.concatenate([there[:, None], rates], axis=1)[:, :3, column])
             slopes = (sides[0] - sides[1]) / (2 * step)
@@ -285,7 +285,7 @@ def test_changed_dimensions_are_followed_to_a_closed_pose():
     loop, q, _ = poses(linkage, "theta_1", "theta_7", count=12)
     numbers = loop.numbers
     moved = numbers.nominal * 1.01
-    there = loop.carried(q[:, 0], q, moved)
+    there = loop.closed(q[:, 0], q, moved)
     rows = {d.name: v * d.scale for d, v in zip(numbers.dimensions, moved, strict=True)}
     other = sb.from_dh(
         "RRRRRRR",

@@ -94,6 +94,16 @@ class Dimension:
         return length_sizes(length), "length", f"250 or 250{length}"
 
 
+def description_of(linkage: Linkage) -> Mapping[str, Any]:
+    """A linkage's own description; `RequestError` for one that was made without."""
+    if not linkage.description:
+        raise RequestError(
+            f"linkage: '{linkage.name}' was made without a description; "
+            "make it by load, rssr, from_dh or from_axes"
+        )
+    return linkage.description
+
+
 def dimensions_of(description: Mapping[str, Any], linkage: Linkage) -> tuple[Dimension, ...]:
     """Every number of a linkage's description that can be changed, in the order of the file."""
     length, angle = linkage.length_unit, str(description.get("angle_unit", "deg"))

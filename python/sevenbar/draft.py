@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from sevenbar.dimensions import Dimension, dimensions_of
+from sevenbar.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.files import loads
 from sevenbar.forms import from_description
@@ -40,12 +40,7 @@ class Draft:
     @staticmethod
     def of_linkage(linkage: Linkage) -> Draft:
         """The draft of a linkage's own description, which has no text with comments."""
-        if not linkage.description:
-            raise RequestError(
-                f"linkage: '{linkage.name}' was made without a description; "
-                "make it by load, rssr, from_dh or from_axes"
-            )
-        return Draft("", linkage.description, linkage.name)
+        return Draft("", description_of(linkage), linkage.name)
 
     def as_opened(self) -> Draft:
         """The draft as its text has it."""

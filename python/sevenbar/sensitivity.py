@@ -19,19 +19,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar import _core
 from sevenbar.arrays import Floats
-from sevenbar.dimensions import Dimension, dimensions_of
-from sevenbar.errors import RequestError
+from sevenbar.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.motion import Circuit, Sensitivity
 from sevenbar.rigid import about, cross
-from sevenbar.word import Place, Product, Values, points_of, vector, word_of
+from sevenbar.word import Carried, Place, Values, points_of, vector, word_of
 
 if TYPE_CHECKING:
     from sevenbar.linkage import Linkage
@@ -79,13 +77,8 @@ class Numbers:
     """
 
     def __init__(self, linkage: Linkage) -> None:
-        if not linkage.description:
-            raise RequestError(
-                f"linkage: '{linkage.name}' was made without a description; "
-                "make it by load, rssr, from_dh or from_axes"
-            )
         self.linkage = linkage
-        dimensions = dimensions_of(linkage.description, linkage)
+        dimensions = dimensions_of(description_of(linkage), linkage)
         self.dimensions: tuple[Dimension, ...] = tuple(d for d in dimensions if d.kind != "speed")
         #: The names of the dimensions.
         self.names = tuple(d.name for d in self.dimensions)
@@ -102,17 +95,14 @@ class Numbers:
         #: What a value of each column is in parts of in the core: a radian, or the size.
         self.scales = np.where(self.turns, 1.0, self.size)
         #: Balls, counted among the joints, that stand as two turns.
-        self.spun = linkage.held[0]
-        balls = [joint.kind == "S" for joint in linkage.joints for _ in joint.columns]
+        self.spun, self.held, self.spins = linkage.held
         #: Whether a column (columns,) is a turn of a ball.
-        self.is_ball = np.array(balls)
-        #: Those that are.
-        self.ball_columns = frozenset(np.flatnonzero(self.is_ball).tolist())
+        self.is_ball = np.array([j.kind == "S" for j in linkage.joints for _ in j.columns])
 
-    @cached_property
-    def word(self) -> _Word:
-        """The loop's word, with balls as the core holds them."""
-        return _Word(self)
+        form = next(key for key in ("rssr", "link", "joint") if key in linkage.description)
+        #: The word of the loop, with balls as the core holds them, and its points.
+        self.word = word_of(form, linkage.kind, self.spun)
+        self.points = points_of(form, self.word, linkage.description, linkage.kind)
 
     def values(self, p: Floats) -> Values:
         """The numbers p (k,) by their places, angles in radians."""
@@ -140,8 +130,8 @@ class Numbers:
         q = q.copy()
         values = self.values(self.nominal if p is None else p)
         for joint in self.spun:
-            a, b = self.word.held_axes(joint, values)
-            column = self.word.first[joint]
+            a, b = (self.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in (0, 1))
+            column = self.word.freedoms[joint][0].columns[0]
             turn = ball_rotations(q[:, column : column + 3])
             square = np.cross(a, b)
             first = np.arctan2(turn @ b @ square, turn @ b @ b)
@@ -157,7 +147,8 @@ class Numbers:
         """
         joints, idle = here.by_number.copy(), here.idle.copy()
         joints[:, 1:, :, self.is_ball] = np.nan
-        for joint, column in enumerate(self.word.first):
+        for joint, freedoms in enumerate(self.word.freedoms):
+            column = freedoms[0].columns[0]
             own = slice(column, column + 3)
             if not self.is_ball[column]:
                 continue
@@ -168,54 +159,6 @@ class Numbers:
                 # the axes it is held to are not those of its turns
                 idle[own] = True
         return joints, idle
-
-
-class _Point(NamedTuple):
-    """A point: the step behind which it is (-1: the ground), the frame of its coordinates, and these.
-
-    They stand at a place of the description, or are constant.
-    """
-
-    step: int
-    frame: Product
-    place: Place | None
-    at: tuple[float, float, float]
-
-
-class _Word:
-    """What stands in a linkage's word, as the core takes it."""
-
-    def __init__(self, numbers: Numbers) -> None:
-        linkage = numbers.linkage
-        _, self.held, self.spins = linkage.held
-        form = next(key for key in ("rssr", "link", "joint") if key in linkage.description)
-        word = word_of(form, linkage.kind, numbers.spun)
-        freedoms = [freedom for own in word.freedoms for freedom in own]
-        self.letters = "".join(freedom.letter for freedom in freedoms)
-        self.fixed = word.fixed()
-        self.pitches = [freedom.pitch for freedom in freedoms]
-        #: The step of each column.
-        self.step_of = [k for k, freedom in enumerate(freedoms) for _ in freedom.columns]
-        #: The first column of each joint.
-        self.first = [own[0].columns[0] for own in word.freedoms]
-        self._inner = word.inner
-        last = np.cumsum([len(own) for own in word.freedoms]) - 1
-        self.points: list[_Point] = []
-        for point in points_of(form, word, linkage.description, linkage.kind == "RSSR"):
-            frame = point.frame
-            if point.link == len(linkage.joints):
-                # the ground's own frame is that of the report
-                self.points.append(_Point(-1, frame, point.place, point.at))
-                continue
-            inner = word.inner[point.link - 1]
-            behind = inner[-1] if inner else Product(())
-            step = int(last[point.link - 1])
-            self.points.append(_Point(step, behind + frame, point.place, point.at))
-
-    def held_axes(self, joint: int, values: Values) -> tuple[Floats, Floats]:
-        """The two axes (3,) about which a ball turns that holds a spin, in its own frame."""
-        first, second = (self._inner[joint][k].factors[-1].pose(values)[:3, 2] for k in (0, 1))
-        return first, second
 
 
 class Loop:
@@ -243,20 +186,21 @@ class Loop:
                     twists.append(factors[own[key]] * twist / scale)
         pitches = [
             (own[key], joint, factors[own[key]] / math.tau / numbers.size)
-            for joint, key in enumerate(word.pitches)
+            for joint, key in enumerate(step.pitch for step in word.steps)
             if key in own
         ]
-        points = [self._point(point, values, own) for point in word.points if point.step >= 0]
+        points = [self._point(point, values, own) for point in numbers.points]
         if marks is not None:
-            points += [(word.step_of[marks], np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
+            count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
+            points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
         fixed, advances = self._design(values)
         self._core = _core.Numbers(
-            word.letters,
+            "".join(step.letter for step in word.steps),
             advances,
             fixed,
             input,
-            word.held,
-            word.spins,
+            numbers.held,
+            numbers.spins,
             len(self.only),
             moves,
             np.array(twists).reshape(-1, 6),
@@ -269,17 +213,17 @@ class Loop:
         word, size = self.numbers.word, self.numbers.size
         fixed = np.array([product.pose(values) for product in word.fixed])
         fixed[:, :3, 3] /= size
-        pitches = [0.0 if key is None else values.get(key, 0.0) for key in word.pitches]
+        pitches = [0.0 if step.pitch is None else values.get(step.pitch, 0.0) for step in word.steps]
         return fixed, np.array(pitches) / math.tau / size
 
     def _point(
-        self, point: _Point, values: Values, own: Mapping[Place, int]
+        self, point: Carried, values: Values, own: Mapping[Place, int]
     ) -> tuple[int, Floats, list[tuple[int, Floats]]]:
-        """A point as the core takes it: the step behind which it is, its place there, what moves it."""
-        joint, frame, place, constant = point
+        """A point as the core takes it: the steps before it, its place there, what moves it."""
+        frame, place = point.frame, point.place
         size, dimensions = self.numbers.size, self.numbers.dimensions
         matrix = frame.pose(values)
-        at = np.array(constant) if place is None else vector(values, place)
+        at = np.array(point.at) if place is None else vector(values, place)
         ways: dict[int, Floats] = {}
         for key, twist in frame.moves(values).items() if own else ():
             if key in own:
@@ -290,7 +234,7 @@ class Loop:
                 ways[own[key]] = ways.get(own[key], 0.0) + matrix[:3, k]
         scales = {i: dimensions[k].scale for i, k in enumerate(self.only)}
         ready = [(i, scales[i] * way / size) for i, way in sorted(ways.items())]
-        return joint, (matrix[:3, :3] @ at + matrix[:3, 3]) / size, ready
+        return point.steps, (matrix[:3, :3] @ at + matrix[:3, 3]) / size, ready
 
     def followed(
         self, x: npt.ArrayLike, q: Floats, designs: Floats | None = None, steps: Floats | None = None
@@ -308,7 +252,7 @@ class Loop:
         fixed, advances = (np.array([design[k] for design in built]) for k in (0, 1))
         scaled = None if steps is None else np.ascontiguousarray(steps / scales)
         start = np.ascontiguousarray(q / scales)
-        start[:, self.numbers.word.held] = 0.0
+        start[:, self.numbers.held] = 0.0
         found, sides = self._core.follow(start, inputs, fixed, advances, scaled)
         return found * scales, sides
 
@@ -322,14 +266,13 @@ class Loop:
         rows = np.flatnonzero(np.isfinite(q).all(axis=1))
         return rows, q[rows]
 
-    def closed(self, x: npt.ArrayLike, q: Floats) -> Floats:
-        """The poses (n, columns) of this loop at inputs x (n,), from poses q of it nearby, in a few steps."""
-        return self.carried(x, q, None)
+    def closed(
+        self, x: npt.ArrayLike, q: Floats, p: Floats | None = None, guess: Floats | None = None
+    ) -> Floats:
+        """The poses (n, columns) at inputs x (n,), from poses q of this loop, in as few steps as it takes.
 
-    def carried(self, x: npt.ArrayLike, q: Floats, p: Floats | None, guess: Floats | None = None) -> Floats:
-        """The poses (n, columns) at inputs x (n,) and numbers p (k,), in as few steps as it takes.
-
-        The first attempt begins at q + `guess` (n, columns). NaN where poses are lost.
+        At numbers p (k,), its own by default. The first attempt begins at q + `guess` (n, columns). NaN where
+        poses are lost.
         """
         begin = q[:, self.input]
         way = np.broadcast_to(np.asarray(x, dtype=np.float64), begin.shape) - begin
@@ -360,15 +303,7 @@ class Loop:
         by_time = own ** -np.arange(4.0)
         by = by * scales * by_time[: order + 1, None, None]
         points_by = points_by * size * by_time[:2, None, None]
-        ground = [k for k, point in enumerate(numbers.word.points) if point.step < 0]
-        points, points_by = points * size * by_time[:2, None], points_by
-        for k in ground:
-            at, ways = self._still(k)
-            points = np.insert(points, k, 0.0, axis=1)
-            points[:, k, 0] = at
-            points_by = np.insert(points_by, k, 0.0, axis=1)
-            points_by[:, k, 0, :-1] = ways
-            points_idle = np.insert(points_idle, k, 0.0, axis=2)
+        points = points * size * by_time[:2, None]
         with np.errstate(invalid="ignore"):
             worst = np.where(np.isnan(aside), 0.0, aside).max(axis=0, initial=0.0)
             opening = worst * numbers.units[list(self.only)] > OPENING
@@ -385,15 +320,6 @@ class Loop:
             idle=columns,
             idle_points=spinning,
         )
-
-    def _still(self, point: int) -> tuple[Floats, Floats]:
-        """Where a point of the ground is, (3,), and what its numbers move it by, (k, 3)."""
-        own = {self.numbers.dimensions[k].place: i for i, k in enumerate(self.only)}
-        _, at, ways = self._point(self.numbers.word.points[point], self.numbers.values(self.p), own)
-        by = np.zeros((len(self.only), 3))
-        for number, way in ways:
-            by[number] = way
-        return at * self.numbers.size, by * self.numbers.size
 
 
 def sensitivity_of(linkage: Linkage, circuit: Circuit) -> Sensitivity:

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import reduce
+from dataclasses import dataclass
+from functools import cached_property, reduce
 from typing import Any, Protocol
 
 import numpy as np
@@ -274,13 +274,12 @@ class Freedom:
 
 @dataclass(frozen=True)
 class Carried:
-    """A point that a link carries: the frame of its coordinates in that of the link, and their places.
+    """A point that a link carries, behind so many `steps`, none for the ground.
 
-    `link` counts from 1; what the file does not hold is a constant, `at`.
+    `frame` is that of its coordinates there; they stand at a `place` of the description, or are `at`.
     """
 
-    name: str
-    link: int
+    steps: int
     frame: Product
     place: Place | None = None
     at: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -290,7 +289,8 @@ class Carried:
 class Word:
     """The word of a form: base, links between the joints, and ground; and the freedoms of each joint.
 
-    `inner` stands between the freedoms of joint i. `frames` take a point as it is written to its link's own.
+    `inner` stands before, between and behind the freedoms of joint i, empty where nothing does. `frames` take
+    a point as it is written to its link's own.
     """
 
     base: Product
@@ -298,19 +298,32 @@ class Word:
     ground: Product
     frames: tuple[Product, ...]
     freedoms: tuple[tuple[Freedom, ...], ...]
-    inner: tuple[tuple[Product, ...], ...] = field(default=())
+    inner: tuple[tuple[Product, ...], ...]
 
-    def fixed(self) -> list[Product]:
-        """The F of (1), one more than there are freedoms."""
-        outer = [self.base, *self.links, self.ground.back]
-        found = [outer[0]]
-        for i, freedoms in enumerate(self.freedoms):
-            inside = self.inner[i] if self.inner else ()
+    @cached_property
+    def steps(self) -> tuple[Freedom, ...]:
+        """The Z of (1)."""
+        return tuple(freedom for own in self.freedoms for freedom in own)
+
+    @cached_property
+    def fixed(self) -> tuple[Product, ...]:
+        """The F of (1), one more than there are steps."""
+        outer = [*self.links, self.ground.back]
+        found = [self.base]
+        for freedoms, inside, behind in zip(self.freedoms, self.inner, outer, strict=True):
             parts = inside or (Product(()),) * (len(freedoms) + 1)
             found[-1] = found[-1] + parts[0]
-            found += parts[1:-1]
-            found.append(parts[-1] + outer[i + 1])
-        return found
+            found += [*parts[1:-1], parts[-1] + behind]
+        return tuple(found)
+
+    def point(self, link: int, place: Place) -> Carried:
+        """A point of a link, counted from 1, as it is written at a place."""
+        frame = self.frames[link - 1]
+        if link == len(self.freedoms):
+            # the ground's own frame is that of the report
+            return Carried(0, frame, place)
+        behind = self.inner[link - 1][-1:] or (Product(()),)
+        return Carried(sum(map(len, self.freedoms[:link])), behind[0] + frame, place)
 
 
 def _seen(frame: Floats, moves: Moves) -> Moves:
@@ -422,19 +435,15 @@ def _inner(form: str, kinds: Sequence[str], joint: int) -> tuple[Product, ...]:
     return Product((a,)), Product((Back(a), b)), Product((Back(b), c)), Product((Back(c),))
 
 
-def points_of(form: str, word: Word, description: Mapping[str, Any], rssr: bool) -> list[Carried]:
+def points_of(form: str, word: Word, description: Mapping[str, Any], kind: str) -> list[Carried]:
     """The points of a linkage: the balls A and B of an RSSR, then those of its description."""
     found: list[Carried] = []
     if form == "rssr":
-        found.append(Carried("A", 1, Product((Step(0, slide=("rssr", "L1")),))))
-        found.append(Carried("B", 3, Product(())))
-    elif rssr:
-        found += [Carried(n, link, word.frames[link - 1], ("joint", k, "at")) for n, link, k in _BALLS]
-    for i, table in enumerate(description.get("point", ())):
-        link = int(table["link"])
-        found.append(Carried(table["name"], link, word.frames[link - 1], ("point", i, "at")))
-    return found
-
-
-#: The balls of an RSSR: name, link that carries it, joint.
-_BALLS = (("A", 1, 1), ("B", 3, 2))
+        found += [
+            Carried(1, Product((Step(0, slide=("rssr", "L1")),))),
+            Carried(len(word.steps) - 1, Product(())),
+        ]
+    elif kind == "RSSR":
+        found += [word.point(link, ("joint", joint, "at")) for link, joint in ((1, 1), (3, 2))]
+    tables = enumerate(description.get("point", ()))
+    return found + [word.point(int(table["link"]), ("point", i, "at")) for i, table in tables]

@@ -23,7 +23,7 @@ fn shaped<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<A
 impl Numbers {
     /// From the joints' letters R P H S, their advances for a radian (joints,) and the transforms before, between and behind them
     /// (joints + 1, 4, 4); the driving column, held columns, and how many idle freedoms more there are; how many numbers, and
-    /// what one of each moves: (number, place) with twists (m, 6), (number, joint, rate) of advances, and points: (joint, place,
+    /// what one of each moves: (number, place) with twists (m, 6), (number, joint, rate) of advances, and points: (how many joints before, place,
     /// [(number, way)]).
     #[new]
     #[expect(clippy::too_many_arguments)]
@@ -60,7 +60,7 @@ impl Numbers {
             .collect();
         let points = points
             .into_iter()
-            .map(|(joint, at, ways)| NumberedPoint { joint, at, ways })
+            .map(|(joints, at, ways)| NumberedPoint { joints, at, ways })
             .collect();
         NumberedLoop::new(
             letters, nominal, input, held, spins, numbers, &moves, &pitches, points,

@@ -279,7 +279,7 @@ class _Model:
         x = self.begin + z[-2]
         ahead = np.einsum("nkc,k->nc", here.by_number[:, 0], (p - loop.p)[self.places])
         ahead += here.by_input[:, 0] * (x - poses[:, loop.input])[:, None]
-        poses = loop.carried(x, poses, p, ahead)
+        poses = loop.closed(x, poses, p, ahead)
         found = None
         if np.isfinite(poses).all():
             loop = loop.numbers.loop(loop.input, p, self.places)

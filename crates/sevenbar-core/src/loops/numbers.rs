@@ -51,11 +51,12 @@ pub struct Advance {
     pub rate: f64,
 }
 
-/// A point of the link behind a joint, in the frame there, and what one of each number moves it by.
+/// A point of the link behind so many joints, in the frame there (of the report behind none: the ground's), and what one of each
+/// number moves it by.
 #[derive(Clone, Debug)]
 pub struct NumberedPoint {
-    /// The joint, counted from 0.
-    pub joint: usize,
+    /// How many joints are before it.
+    pub joints: usize,
     /// Where it is.
     pub at: Vec3,
     /// By number, what one of it adds.
@@ -177,6 +178,13 @@ struct Moving {
 
 /// What a coefficient of a power series is as a derivative.
 const FACTORIALS: [f64; ORDERS] = [1.0, 1.0, 2.0];
+
+impl Around {
+    /// The frame behind so many joints.
+    fn behind(&self, joints: usize) -> Pose {
+        joints.checked_sub(1).map_or(Pose::STILL, |last| self.after[last])
+    }
+}
 
 fn plus(sum: &mut Twist, twist: &Twist, factor: f64) {
     for k in 0..6 {
@@ -327,7 +335,7 @@ impl NumberedLoop {
             && free.len() - spins <= COLUMNS
             && points
                 .iter()
-                .all(|p| p.joint < count && p.ways.iter().all(|w| w.0 < numbers));
+                .all(|p| p.joints <= count && p.ways.iter().all(|w| w.0 < numbers));
         fits.then_some(Self {
             joints,
             first,
@@ -611,7 +619,7 @@ impl NumberedLoop {
             let mut around = Around::default();
             self.walk(&self.nominal, &self.state(at), &mut around);
             for (i, point) in self.points.iter().enumerate() {
-                let place = around.after[point.joint].carry(point.at);
+                let place = around.behind(point.joints).carry(point.at);
                 out.points[(row * points + i) * 6..][..3].copy_from_slice(&place);
             }
             if let Some(moving) = self.moving(around, at) {
@@ -687,8 +695,8 @@ impl NumberedLoop {
         }
         let mut places = Vec::with_capacity(points);
         for (i, point) in self.points.iter().enumerate() {
-            let place = moving.around.after[point.joint].carry(point.at);
-            let velocity = carried(&moving.twists[0][point.joint + 1], place);
+            let place = moving.around.behind(point.joints).carry(point.at);
+            let velocity = carried(&moving.twists[0][point.joints], place);
             out.points[(row * points + i) * 6 + 3..][..3].copy_from_slice(&velocity);
             places.push(place);
         }
@@ -716,8 +724,8 @@ impl NumberedLoop {
             for (i, point) in self.points.iter().enumerate() {
                 let way = own
                     .and_then(|n| point.ways.iter().find(|w| w.0 == n))
-                    .map_or([0.0; 3], |w| moving.around.after[point.joint].turn(w.1));
-                let behind = point.joint + 1;
+                    .map_or([0.0; 3], |w| moving.around.behind(point.joints).turn(w.1));
+                let behind = point.joints;
                 let moved = add(carried(&changes.carriers[0][behind], places[i]), way);
                 let to = ((row * points + i) * 2 * all + number) * 3;
                 out.points_by_number[to..][..3].copy_from_slice(&moved);
@@ -737,7 +745,7 @@ impl NumberedLoop {
             let place = row * self.idle() + i;
             out.idle[place * width..][..width].copy_from_slice(&slopes[0]);
             for (k, point) in self.points.iter().enumerate() {
-                let way = carried(&changes.carriers[0][point.joint + 1], places[k]);
+                let way = carried(&changes.carriers[0][point.joints], places[k]);
                 out.points_idle[(place * points + k) * 3..][..3].copy_from_slice(&way);
             }
         }

@@ -119,13 +119,15 @@ class PointLoop:
 
         It is open where joints slide, and of a drawing.
         """
-        word = self._numbers.word
-        joint, frame, place, at = word.points[self._place]
-        if self.dimensions[0].place[0] == "joint" or set(word.letters[: joint + 1]) & {"P", "H"}:
+        word, point = self._numbers.word, self._numbers.points[self._place]
+        letters = {step.letter for step in word.steps[: point.steps]}
+        if self.dimensions[0].place[0] == "joint" or letters & {"P", "H"}:
             return None
         numbers = {d.place: k for k, d in enumerate(self.dimensions)}
-        factors = [factor for product in (*word.fixed[: joint + 1], frame) for factor in product.factors]
+        products = (*word.fixed[: point.steps], point.frame)
+        factors = [factor for product in products for factor in product.factors]
         slides = [f.slide for f in factors if isinstance(f, Step) and f.slide in numbers]
         reach = sum(most[numbers[slide]] for slide in slides if slide is not None)
-        coordinates = at if place is None else [most[numbers[*place, k]] for k in range(3)]
+        place = point.place
+        coordinates = point.at if place is None else [most[numbers[*place, k]] for k in range(3)]
         return reach + math.hypot(*coordinates)

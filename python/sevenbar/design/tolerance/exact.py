@@ -36,7 +36,7 @@ class Designs:
         q, sides = self.loop.followed(self._x, self._q, designs, steps)
         for sample in np.flatnonzero(np.isnan(q).any(axis=(1, 2))):
             lost = np.isnan(q[sample]).any(axis=1)
-            q[sample, lost] = self.loop.carried(self._x[lost], self._q[lost], designs[sample])
+            q[sample, lost] = self.loop.closed(self._x[lost], self._q[lost], designs[sample])
         return q, sides
 
     def _values(self, p: Floats, q: Floats) -> Floats:
@@ -51,6 +51,6 @@ class Designs:
         """The output of changed designs less the nominal one's, (samples, n)."""
         designs = self._numbers.nominal + changes
         apart = np.array([self._values(p, poses) for p, poses in zip(designs, q, strict=True)]) - self.nominal
-        if self._output.place in self._numbers.ball_columns and self._output.joint:
+        if self._output.joint and self._numbers.is_ball[self._output.place]:
             apart = np.remainder(apart + np.pi, math.tau) - np.pi
         return np.asarray(apart.reshape(len(changes), -1))

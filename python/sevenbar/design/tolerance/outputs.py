@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.gradients import PER_TIME, QUANTITIES
@@ -37,11 +36,10 @@ class Output:
 def outputs_of(numbers: Numbers, input: int) -> tuple[Output, ...]:
     """All outputs of a loop: of a ball's turns and of points not every derivative."""
     linkage = numbers.linkage
-    balls = numbers.ball_columns
     found = []
     for k, name in enumerate(linkage.columns):
         unit = "rad" if numbers.turns[k] else linkage.length_unit
-        orders = 0 if k == input else 1 if k in balls else 3
+        orders = 0 if k == input else 1 if numbers.is_ball[k] else 3
         for quantity, per in zip(QUANTITIES[:orders], PER_TIME, strict=False):
             own = name if quantity == "position" else f"{name}.{quantity}"
             found.append(Output(own, unit + per, quantity, name, True, k))
@@ -84,13 +82,6 @@ def slopes_of(numbers: Numbers, outputs: tuple[Output, ...], q: Floats, here: Sl
         ],
         axis=1,
     )
-    slopes[:, idle_outputs(outputs, idle, here)] = np.nan
-    return slopes
-
-
-def idle_outputs(
-    outputs: tuple[Output, ...], idle: npt.NDArray[np.bool_], here: Slopes
-) -> npt.NDArray[np.bool_]:
-    """Which outputs take part in a motion of the loop that the input does not determine."""
     spins = [idle[one.place] if one.joint else here.idle_points[one.place] for one in outputs]
-    return np.array(spins, dtype=bool)
+    slopes[:, spins] = np.nan
+    return slopes
