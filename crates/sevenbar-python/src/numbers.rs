@@ -13,6 +13,9 @@ use sevenbar_core::loops::{Advance, Design, Move, NumberedLoop, NumberedPoint};
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct Numbers(NumberedLoop);
 
+/// How many joints are before it, its place, and what one of each number moves it by.
+type Point = (usize, [f64; 3], Vec<(usize, [f64; 3])>);
+
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 fn shaped<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<Array<'py>> {
@@ -38,7 +41,7 @@ impl Numbers {
         moves: Vec<(usize, usize)>,
         twists: PyReadonlyArray2<'_, f64>,
         pitches: Vec<(usize, usize, f64)>,
-        points: Vec<(usize, [f64; 3], Vec<(usize, [f64; 3])>)>,
+        points: Vec<Point>,
     ) -> PyResult<Self> {
         let wrong = || CoreError::new_err("numbers: the parts of the loop do not fit together");
         let (fixed, twists) = (fixed.as_array(), twists.as_array());

@@ -634,8 +634,7 @@ impl NumberedLoop {
         let kept = self.kept(&around);
         let inverse = self.factored(&around, &kept).inverse();
         let size = inverse.square(6).sqrt();
-        // what is not a number is none
-        if !(size < DEAD) {
+        if size.is_nan() || size >= DEAD {
             return None;
         }
         let still = vec![[0.0; 6]; self.columns];
@@ -883,7 +882,11 @@ mod tests {
 
     #[test]
     fn turns_make_up_their_rotation_again() {
-        for angles in [[0.3, -0.8, 2.0], [3.0, 1.5707963267948966, 0.4], [-2.0, 0.0, 0.0]] {
+        for angles in [
+            [0.3, -0.8, 2.0],
+            [3.0, std::f64::consts::FRAC_PI_2, 0.4],
+            [-2.0, 0.0, 0.0],
+        ] {
             let r = turned(&angles);
             let again = turned(&turns(&r));
             let apart = product(&r, &transposed(&again));
