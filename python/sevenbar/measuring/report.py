@@ -373,7 +373,8 @@ def _digits(reach: float) -> int:
 
 def _parameter_unit(parameter: Parameter, ends: Ends) -> str:
     per = "/turn" if parameter.kind == "pitch" else ""
-    return "deg" if parameter.kind == "angle" else ends.length_unit + per
+    # the numbers of a drawn direction have no unit
+    return {"angle": "deg", "number": ""}.get(parameter.kind, ends.length_unit + per)
 
 
 def _shown(parameter: Parameter, value: float) -> float:
@@ -382,7 +383,7 @@ def _shown(parameter: Parameter, value: float) -> float:
 
 
 def _parameter_value(parameter: Parameter, value: float, ends: Ends) -> str:
-    return f"{_shown(parameter, value):.6g} {_parameter_unit(parameter, ends)}"
+    return f"{_shown(parameter, value):.6g} {_parameter_unit(parameter, ends)}".rstrip()
 
 
 def _rms(values: Any) -> float:

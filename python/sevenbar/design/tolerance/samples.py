@@ -160,11 +160,11 @@ def monte_carlo(
     block = max(1, BLOCK // len(linear.rows))
     for start in range(0, len(exact), block):
         part = slice(start, start + block)
-        moved = changes[:, part, None]
-        u = designs.followed(moved)
-        exact[part] = designs.deviations(moved, u)
+        moved = changes[:, part].T
+        q, determinants = designs.followed(moved)
+        exact[part] = designs.deviations(moved, q)
         if whole_turn and len(linear.rows) == len(linear.status):
-            gap[part] = _gaps(designs.determinants(moved, u))
+            gap[part] = _gaps(determinants)
     lost = gap | np.isnan(exact).any(axis=1)
     kept = exact[~lost]
     reasons, looked_at = _reasons(linear, changes.T[lost])
@@ -227,7 +227,7 @@ def _reasons(linear: Linear, changes: Floats) -> tuple[dict[str, int], int]:
     counts: Counter[str] = Counter()
     for change in changes[:LOOKED_AT]:
         try:
-            motion = found.loop.whole.changed(found.loop.whole.nominal + change).motion(
+            motion = found.changed(change).motion(
                 found.samples, input=found.input_name, output=found.output_name
             )
         except SevenbarError:

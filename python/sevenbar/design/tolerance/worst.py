@@ -68,9 +68,11 @@ def worst_case(
         given if isinstance(given, Linear) else linear_estimate(of, given, output=output, quantity=quantity)
     )
     designs = Designs(linear)
-    # both corners of each row as two samples, evaluated at that row
-    changes = (np.sign(linear.slopes) * linear.tolerances.widths).T[:, None, :] * np.array([1.0, -1.0])[
-        :, None
-    ]
-    high, low = designs.deviations(changes, designs.followed(changes))
+    # the corners of each row, looked at on that row; many rows share theirs
+    corners, own = np.unique(np.sign(linear.slopes) * linear.tolerances.widths, axis=0, return_inverse=True)
+    rows = np.arange(len(linear.rows))
+    high, low = (
+        designs.deviations(changes, designs.followed(changes)[0])[own.ravel(), rows]
+        for changes in (corners, -corners)
+    )
     return WorstCase(linear, high, low)
