@@ -192,7 +192,7 @@ class NumberedLoop:
         if marks is not None:
             count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
             points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
-        fixed, advances = self._design(values)
+        self._own = fixed, advances = self._design(values)
         self._core = _core.Numbers(
             "".join(step.letter for step in word.steps),
             advances,
@@ -245,8 +245,8 @@ class NumberedLoop:
         its sign: that determinant (designs, n) comes second.
         """
         scales = self.numbers.scales
-        given = self.p[None] if designs is None else designs
-        built = [self._design(self.numbers.values(p)) for p in given]
+        changed = [] if designs is None else [self._design(self.numbers.values(p)) for p in designs]
+        built = [self._own] if designs is None else changed
         inputs = np.ascontiguousarray(np.broadcast_to(np.asarray(x) / scales[self.input], (len(q),)))
         fixed, advances = (np.array([design[k] for design in built]) for k in (0, 1))
         scaled = None if steps is None else np.ascontiguousarray(steps / scales)
@@ -265,13 +265,10 @@ class NumberedLoop:
         rows = np.flatnonzero(np.isfinite(q).all(axis=1))
         return rows, q[rows]
 
-    def closed(
-        self, x: npt.ArrayLike, q: Floats, p: Floats | None = None, guess: Floats | None = None
-    ) -> Floats:
+    def closed(self, x: npt.ArrayLike, q: Floats, p: Floats | None = None) -> Floats:
         """The poses (n, columns) at inputs x (n,), from poses q of this loop, in as few steps as it takes.
 
-        At numbers p (k,), its own by default. The first attempt begins at q + `guess` (n, columns). NaN where
-        poses are lost.
+        At numbers p (k,), its own by default. NaN where poses are lost.
         """
         begin = q[:, self.input]
         way = np.broadcast_to(np.asarray(x, dtype=np.float64), begin.shape) - begin
@@ -284,8 +281,7 @@ class NumberedLoop:
             for share in np.arange(1, parts + 1) / parts:
                 p_here = None if p is None else self.p + share * (p - self.p)
                 designs = None if p_here is None else p_here[None]
-                steps = guess[None] if parts == 1 and guess is not None and len(left) == len(q) else None
-                at = loop.followed(begin[left] + share * way[left], at, designs, steps)[0][0]
+                at = loop.followed(begin[left] + share * way[left], at, designs)[0][0]
                 if p_here is not None and parts > 1:
                     loop = NumberedLoop(self.numbers, self.input, p_here, ())
             found[left] = at

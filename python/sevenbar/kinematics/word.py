@@ -127,7 +127,7 @@ class TurnAndSlide:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnFrame:
     """The frame on a joint as drawn, its z along the first or second axis, x towards another joint.
 
     Its numbers move the line; a turn about the line itself, before and behind the joint, changes nothing,
@@ -210,7 +210,7 @@ class Held:
 
     ball: int
     which: int
-    before: Drawn | None = None
+    before: DrawnFrame | None = None
     given: tuple[float, ...] = ()
 
     def _axes(self, values: Values) -> tuple[Floats, Floats, Floats, float]:
@@ -463,14 +463,14 @@ def _rows(kinds: Sequence[str]) -> _Outer:
     return Product((report, spans[-1])), links, ground, tuple(frames)
 
 
-def _drawn_frames(kinds: Sequence[str], joint: int) -> tuple[Drawn, Drawn]:
+def _drawn_frames(kinds: Sequence[str], joint: int) -> tuple[DrawnFrame, DrawnFrame]:
     """The frames before and behind a joint."""
     # x goes towards the joint behind, of the last one towards that before
     towards = joint + 1 if joint + 1 < len(kinds) else joint - 1
     row = KINDS[kinds[joint]]
     key = next((key for key in row.drawn_keys if key in ("axis", "axes")), "")
-    before = Drawn(joint, key, 0, towards, row.has_plane)
-    return before, Drawn(joint, key, 1, towards) if row.has_cross else before
+    before = DrawnFrame(joint, key, 0, towards, row.has_plane)
+    return before, DrawnFrame(joint, key, 1, towards) if row.has_cross else before
 
 
 def _drawn(kinds: Sequence[str]) -> _Outer:

@@ -280,13 +280,14 @@ class _Model:
         x = self.begin + z[-2]
         ahead = np.einsum("nkc,k->nc", here.by_number[:, 0], (p - loop.p)[self.places])
         ahead += here.by_input[:, 0] * (x - poses[:, loop.input])[:, None]
-        poses = loop.closed(x, poses, p, ahead)
+        there = loop.numbers.loop(loop.input, p, self.places)
+        near = there.followed(x, poses, steps=ahead[None])[0][0]
+        if not np.isfinite(near).all():
+            near = loop.closed(x, poses, p)
         found = None
-        if np.isfinite(poses).all():
-            loop = loop.numbers.loop(loop.input, p, self.places)
-            here = loop.slopes(poses, self.order)
-            self._known = (loop, poses, here)
-            found = poses, here
+        if np.isfinite(near).all():
+            found = near, there.slopes(near, self.order)
+            self._known = (there, *found)
         self._last = (key, found)
         return found
 

@@ -351,7 +351,7 @@ def _parameter_table(calibration: Calibration) -> Table:
     heads = ("dimension", "nominal", "calibrated", f"\u00b1 {100 * calibration.confidence:g} %", "change", "")
     rows = []
     for p in calibration.parameters:
-        label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]"
+        label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]".removesuffix(" []")
         nominal, value = _shown(p, p.nominal), _shown(p, p.value)
         if p.status == "calibrated":
             reach = _shown(p, (p.high - p.low) / 2)

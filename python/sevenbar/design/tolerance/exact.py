@@ -11,7 +11,7 @@ from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.outputs import values_of
 
 
-class Designs:
+class ChangedDesigns:
     """Changed designs of a linear estimate, on its rows."""
 
     def __init__(self, linear: Linear) -> None:

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.tolerance.exact import Designs
+from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.errors import RequestError, SevenbarError, shown
@@ -153,7 +153,7 @@ def monte_carlo(
     else:
         linear = linear_estimate(of, given, distribution=distribution, output=output, quantity=quantity)
     changes = linear.tolerances.drawn(int(count), linear.distribution, np.random.default_rng(seed))
-    designs = Designs(linear)
+    designs = ChangedDesigns(linear)
     exact = np.empty((changes.shape[1], len(linear.rows)))
     gap = np.zeros(changes.shape[1], dtype=bool)
     whole_turn = linear.found.circuit.goes_round

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.tolerance.exact import Designs
+from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.kinematics.linkage import Linkage
@@ -67,7 +67,7 @@ def worst_case(
     linear = (
         given if isinstance(given, Linear) else linear_estimate(of, given, output=output, quantity=quantity)
     )
-    designs = Designs(linear)
+    designs = ChangedDesigns(linear)
     # the corners of each row, looked at on that row; many rows share theirs
     corners, own = np.unique(np.sign(linear.slopes) * linear.tolerances.widths, axis=0, return_inverse=True)
     rows = np.arange(len(linear.rows))
