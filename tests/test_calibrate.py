@@ -14,10 +14,11 @@ from evidence.accuracy import reference_rssr
 from evidence.accuracy.reference_loops import Loop
 from evidence.fuzz.random_linkages import Dimensions
 from evidence.fuzz.random_loops import general
+from sevenbar.description.draft import Draft
 from sevenbar.description.gallery import text
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError
 from sevenbar.measuring.calibrate import calibrate
-from sevenbar.measuring.measured import Measured
+from sevenbar.measuring.measured import Ends, Measured
 from sevenbar.measuring.rewrite import calibrated_toml
 
 PAPER = Dimensions(700.0, 700.0, 250.0, 550.0, 0.0, math.sqrt(450**2 + 550**2 + 700**2))
@@ -344,11 +345,63 @@ def test_fewer_values_than_dimensions_are_told():
                   offsets=["input", "output"])  # fmt: skip
 
 
-def test_a_drawn_linkage_is_told_to_have_no_dimensions():
-    linkage = sb.load("rsur")
-    circuit = linkage.motion(24).circuits[0]
-    with pytest.raises(NotCoveredError, match=r"write it as \[rssr\] or as Denavit-Hartenberg rows"):
-        calibrate(linkage, table(input=circuit.input, angle=circuit.output))
+def drawn(name, **changes):
+    """A drawn linkage of the gallery with other numbers, and its output by Newton's method of the reference."""
+    linkage = sb.load(name)
+    draft = Draft.of_linkage(linkage)
+    truth = {
+        key.replace("__", "."): draft.dimension(key.replace("__", ".")).value + by
+        for key, by in changes.items()
+    }
+    real = draft.with_values(truth).linkage
+    circuit = linkage.motion(90).circuits[0]
+    poses = Loop.of(real).polished(circuit.q, circuit.input_column, steps=20)
+    assert Loop.of(real).errors(poses).max() < 1e-11
+    return linkage, truth, circuit.input, poses[:, circuit.output_column]
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        # two balls with a universal joint between them; a screw; a link that spins idly between its balls
+        ("rsur", {"rocker__y": 1.5, "crank__axis_x": 0.01}),
+        ("screw_drill", {"thread__pitch": 1.0}),
+        ("rssp", {"ball_b__x": 2.0, "ball_a__y": -1.0}),
+        ("rscr", {"rocker__x": 1.0}),
+    ],
+)
+def test_known_numbers_of_a_drawn_loop_come_back(name, changes):
+    linkage, truth, inputs, output = drawn(name, **changes)
+    found = calibrate(linkage, table(input=inputs, angle=output), free=list(truth))
+    assert {p.name: p.value for p in found.calibrated} == pytest.approx(truth, rel=1e-8)
+
+
+def test_what_no_curve_tells_of_a_drawing_is_held():
+    linkage, _, inputs, output = drawn("rsur", rocker__y=1.5)
+    found = calibrate(linkage, table(input=inputs, angle=output), free=["crank.*"])
+    status = {p.name: p.status for p in found.parameters if p.name.startswith("crank.")}
+    # along its axis, and by the length of its direction, the crank's line moves nothing
+    assert sum(word == "untold" for word in status.values()) >= 2
+    assert status["crank.z"] == "untold" or status["crank.axis_z"] == "untold"
+
+
+def test_an_output_that_spins_idly_is_told():
+    joints = [
+        {"kind": "R", "at": (0, 0, 0), "axis": (0, 0, 1)},
+        {"kind": "R", "at": (40, 0, 0), "axis": (0, 0, 1), "name": "idle"},
+        {"kind": "R", "at": (40, 0, 30), "axis": (0, 0, 1)},
+        {"kind": "R", "at": (100, 70, 0), "axis": (0, 0, 1)},
+        {"kind": "R", "at": (120, 0, 0), "axis": (0, 0, 1), "name": "rocker"},
+    ]
+    linkage = sb.from_axes(joints)
+    circuit = linkage.motion(40).circuits[0]
+    found = calibrate(linkage, table(input=circuit.input, angle=circuit.output), free=["rocker.x"])
+    assert found.parameter("rocker.x").value == pytest.approx(120.0, rel=1e-9)
+    numbers = table(input=circuit.input, angle=circuit.q[:, 1])
+    with pytest.raises(
+        NotCoveredError, match="idle takes part in an idle motion, which the input does not tell"
+    ):
+        calibrate(linkage, numbers, Ends(linkage.columns[0], "idle"), free=["rocker.x"])
 
 
 def test_a_missing_scipy_is_named_with_its_extra(monkeypatch):

@@ -17,7 +17,7 @@ CORE_FILES = sorted((CORE / "src").rglob("*.rs"))
 
 CORE_IMPORTERS = {
     "__init__",
-    *(f"kinematics/{name}" for name in ("batches", "closed_form", "from_core", "general")),
+    *(f"kinematics/{name}" for name in ("batches", "closed_form", "from_core", "general", "sensitivity")),
 }
 
 NOT_IN_THE_CORE = re.compile(
@@ -69,7 +69,7 @@ def imported_from_core(python: str) -> set[str]:
 
 
 @pytest.mark.slow
-def test_the_core_is_imported_by_the_two_solvers_and_the_batches_only():
+def test_the_core_is_imported_by_the_solvers_the_batches_and_the_sensitivities_only():
     taken = {
         file.relative_to(PACKAGE).with_suffix("").as_posix(): imported_from_core(
             file.read_text(encoding="utf-8")

@@ -170,9 +170,6 @@ def test_a_folder_that_cannot_be_made_leaves_nothing(tmp_path, command):
          "extremes.csv: lowest and highest values are too few to tell dimensions; give the measured rows"),
         (["calibrate", "rssr", "good.csv", "--free", "L4"],
          "free: no dimension 'L4'; this linkage has M, N, L1, L2, L3, D"),
-        (["calibrate", "rsur", "slim.csv"],
-         "calibrate: a linkage drawn as [[joint]] has places and directions, not dimensions that a measurement could "
-         "tell; write it as [rssr] or as Denavit-Hartenberg rows, [[link]]"),
     ],
 )  # fmt: skip
 def test_each_mistake_ends_with_its_message_and_writes_nothing(tmp_path, arguments, message):
@@ -185,7 +182,6 @@ def test_each_mistake_ends_with_its_message_and_writes_nothing(tmp_path, argumen
         "unsorted": header + "0,0\n0.2,4\n0.1,30\n",
         "bare": "time,rocker\n0,0\n0.1,4\n",
         "extremes": "quantity,lowest,highest\nangle [deg],-7,68\n",
-        "slim": "crank [deg],angle [deg]\n0,0\n10,1\n",
     }.items():
         (tmp_path / f"{name}.csv").write_text(text)
     before = files(tmp_path)

@@ -6,7 +6,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.design.synthesis.path.closure import PointClosure
+from sevenbar.design.synthesis.path.point import PointLoop
 from sevenbar.design.synthesis.path.refine import PathProblem
 from sevenbar.design.synthesis.path.search import Seed
 from sevenbar.design.synthesis.path.task import path_task
@@ -33,8 +33,8 @@ def drawn(name, link, at):
     """A linkage of the gallery with a point, its closure, and one closed pose away from the drawn one."""
     draft = Draft.of_linkage(sb.load(name)).with_point("Q", link, at)
     point = draft.linkage.points[-1]
-    whole = PointClosure(draft, point)
-    closure = PointClosure(draft, point, range(len(whole.dimensions)))
+    whole = PointLoop(draft, point)
+    closure = PointLoop(draft, point, range(len(whole.dimensions)))
     circuit = draft.linkage.motion(12).circuits[0]
     return draft, closure, circuit
 

@@ -17,7 +17,7 @@ from sevenbar.design.synthesis.closure import (
     transmissions,
 )
 from sevenbar.design.synthesis.limits import Limits, size_room
-from sevenbar.measuring.sensitivity import RssrClosure, response
+from sevenbar.kinematics.sensitivity import Numbers
 
 DESIGNS = np.array(
     [
@@ -47,9 +47,16 @@ def test_the_slopes_of_the_outputs_are_those_of_the_closure_used_for_calibration
     by_row, by_input = output_slopes(DESIGNS, INPUTS, angles)
     for i, row in enumerate(DESIGNS):
         reached = np.isfinite(angles[i])
-        found = response(RssrClosure(linkage(row), 0), row, INPUTS[reached], angles[i][reached, None], 1)
-        np.testing.assert_allclose(by_row[i][reached], found.by_dimension[0], rtol=1e-9, atol=1e-15)
-        np.testing.assert_allclose(by_input[i][reached], found.rates[1], rtol=1e-9)
+        made = linkage(row)
+        numbers = Numbers(made)
+        modes = [made.assembly_modes(x).q for x in INPUTS[reached]]
+        own = [
+            q[np.abs(np.exp(1j * q[:, -1]) - np.exp(1j * y)).argmin()]
+            for q, y in zip(modes, angles[i][reached], strict=True)
+        ]
+        found = numbers.loop(0).slopes(numbers.poses(np.array(own)), 0)
+        np.testing.assert_allclose(by_row[i][reached], found.by_number[:, 0, :, -1], rtol=1e-9, atol=1e-14)
+        np.testing.assert_allclose(by_input[i][reached], found.rates[:, 0, -1], rtol=1e-9)
 
 
 def test_the_transmission_angle_is_the_one_of_the_ordinary_analysis():

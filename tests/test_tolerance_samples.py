@@ -61,7 +61,7 @@ def test_each_sample_is_the_output_of_its_own_linkage():
     errors = given.drawn(50, "uniform", np.random.default_rng(7))
     by_hand = []
     for column in errors.T:
-        changes = dict(zip(found.loop.whole.names, found.loop.whole.nominal + column, strict=True))
+        changes = dict(zip(found.loop.numbers.names, found.loop.numbers.nominal + column, strict=True))
         circuit = made(linkage, **changes).motion(12).circuits[found.circuit.index]
         by_hand.append(circuit.output - found.circuit.output)
     by_hand = np.remainder(np.array(by_hand) + np.pi, math.tau) - np.pi
@@ -240,7 +240,7 @@ def test_a_name_counts_before_a_pattern_and_the_later_pattern_before_the_earlier
         parsed(["length_2=0.3", "*=1", "twist_*=0.1deg", "length_*=0.2", "link[3].length=0.7"]),
         length_unit="mm",
     )
-    widths = dict(zip(found.loop.whole.names, given.widths, strict=True))
+    widths = dict(zip(found.loop.numbers.names, given.widths, strict=True))
     assert (widths["length_1"], widths["length_2"], widths["length_3"]) == (0.2, 0.3, 0.7)
     assert (widths["twist_1"], widths["offset_1"]) == (0.1, 1.0)
 

@@ -12,10 +12,8 @@ from evidence.accuracy import reference_rssr
 from evidence.fuzz.random_linkages import Dimensions
 from evidence.fuzz.random_loops import general, prismatic
 from sevenbar.description.gallery import names
-from sevenbar.design.tolerance.numbers import Numbered
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.rigid import inverse
 
 #: Change in differences [parts of the size, rad]; their error is its square, rounding over it beside.
 CHANGE = 1e-5
@@ -23,11 +21,8 @@ CHANGE = 1e-5
 
 def changed(found, k, parts):
     """The linkage with one number changed, by the description, and the change in its unit."""
-    whole = found.loop.whole
     step = parts * found.small[k] / 1e-3
-    p = whole.nominal.copy()
-    p[k] += step
-    return whole.changed(p), step
+    return found.changed(step * np.eye(len(found.dimensions))[k]), step
 
 
 def same_circuit(found, linkage):
@@ -35,7 +30,7 @@ def same_circuit(found, linkage):
     motion = linkage.motion(
         found.samples, input=found.input_name, output=found.output_name, speed=found.speed
     )
-    columns = [k for k, c in enumerate(found.loop.columns) if c.turns and not c.ball]
+    columns = np.flatnonzero(found.loop.numbers.turns & ~found.loop.numbers.is_ball)
     mine = np.exp(1j * found.circuit.q[:, columns])
     alike = [c for c in motion.circuits if c.q.shape == found.circuit.q.shape]
     best = min(alike, key=lambda c: np.nanmax(np.abs(np.exp(1j * c.q[:, columns]) - mine)))
@@ -193,7 +188,7 @@ def freudenstein(b, x):
 def test_a_drawn_planar_four_bar_follows_its_closed_form():
     linkage = planar(0.0)
     found = sensitivities(linkage, samples=24)
-    name = found.loop.whole.names.index("b.x")
+    name = found.loop.numbers.names.index("b.x")
     h = 1e-5
     for row, x in enumerate(found.input):
         b, along = np.array([100.0, 70.0]), np.array([h, 0.0])
@@ -202,22 +197,6 @@ def test_a_drawn_planar_four_bar_follows_its_closed_form():
         ) == pytest.approx(0, abs=1e-12)
         slope = (freudenstein(b + along, x) - freudenstein(b - along, x)) / (2 * h)
         assert found.of()[row, name] == pytest.approx(slope, abs=1e-9)
-
-
-def test_numbers_build_the_transforms_of_the_forms():
-    for name in names():
-        linkage = sb.load(name)
-        whole = Numbered.of(linkage)
-        built = whole.built(whole.nominal)
-        base = np.eye(4)
-        base[:3, :3], base[:3, 3] = built.fixed[0]
-        ground = np.eye(4)
-        ground[:3, :3], ground[:3, 3] = built.fixed[-1]
-        if "joint" not in linkage.description:
-            np.testing.assert_allclose(base, linkage.base, atol=1e-12)
-            np.testing.assert_allclose(inverse(ground), linkage.ground, atol=1e-12)
-        assert len(built.points) == len(linkage.points)
-        assert [c.turns for c in whole.columns] == [kind == "turn" for kind in linkage.column_kinds]
 
 
 @pytest.mark.parametrize("name", ["rssr", "seven_r", "rsur"])
@@ -293,7 +272,7 @@ def test_dimensions_that_open_an_overconstrained_loop_are_named():
         f"{word}_{i}" for word in ("offset", "twist") for i in range(1, 5)
     }
     found = sensitivities(sb.load("bennett"), samples=8)
-    assert set(found.opening) == set(found.loop.whole.names)
+    assert set(found.opening) == set(found.loop.numbers.names)
 
 
 def test_the_greatest_effect_comes_first():

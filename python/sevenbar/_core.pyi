@@ -1,5 +1,6 @@
 """The Rust core: arrays in, values of arrays out. Columns are by their number."""
 
+from collections.abc import Sequence
 from typing import Literal, final
 
 import numpy as np
@@ -10,6 +11,7 @@ __all__ = [
     "CoreError",
     "Loop",
     "LoopBatch",
+    "Numbers",
     "RawCircuit",
     "RawCount",
     "RawFound",
@@ -88,6 +90,34 @@ class Loop:
         self, pose: _Floats, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
     ) -> RawCircuit | float | list[int] | None: ...
     def point(self, rows: Rows, link: int, at: _Floats) -> _Floats: ...
+
+@final
+class Numbers:
+    """A loop that knows what its numbers move; lengths in parts of the size."""
+
+    def __new__(
+        cls,
+        letters: str,
+        advances: _Floats,
+        fixed: _Floats,
+        input: int,
+        held: Sequence[int],
+        spins: int,
+        numbers: int,
+        moves: Sequence[tuple[int, int]],
+        twists: _Floats,
+        pitches: Sequence[tuple[int, int, float]],
+        points: Sequence[tuple[int, _Floats, Sequence[tuple[int, _Floats]]]],
+    ) -> Numbers: ...
+    def slopes(self, values: _Floats, order: int) -> list[_Floats]: ...
+    def follow(
+        self,
+        values: _Floats,
+        inputs: _Floats,
+        fixed: _Floats,
+        advances: _Floats,
+        steps: _Floats | None = None,
+    ) -> tuple[_Floats, _Floats]: ...
 
 @final
 class Rows:

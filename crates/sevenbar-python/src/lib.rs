@@ -2,6 +2,7 @@
 
 mod batches;
 mod loops;
+mod numbers;
 mod rssr;
 mod values;
 
@@ -63,6 +64,8 @@ mod _core {
     use super::batches::{LoopBatch, RawMeasures, RssrBatch, classify_rssr, measure_loops, measure_rssr};
     #[pymodule_export]
     use super::loops::{Loop, Rows};
+    #[pymodule_export]
+    use super::numbers::Numbers;
     #[pymodule_export]
     use super::rssr::Rssr;
     #[pymodule_export]

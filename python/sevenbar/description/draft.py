@@ -4,77 +4,18 @@ from __future__ import annotations
 
 import copy
 import tomllib
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 from sevenbar.description.files import loads
 from sevenbar.description.forms import from_description
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
-from sevenbar.kinematics.geometry import Joint
+from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
+from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.text.units import ANGLES, amount, examples_of, sizes_of
-
-#: A place in a description: keys of tables, and counts from 0 in lists.
-Place = tuple[str | int, ...]
-
-
-@dataclass(frozen=True)
-class Dimension:
-    """A number of the description that can be changed.
-
-    `name` is its own among all: "L1"; "length_2"; "crank.axis_x"; "P.u". `value` and `unit` are the file's;
-    `group` is what it belongs to; `follows` where the file leaves it out and it follows from the others.
-    """
-
-    name: str
-    place: Place
-    label: str
-    group: str
-    unit: str
-    value: float
-    positive: bool = False
-    follows: bool = False
-
-    @property
-    def key(self) -> str:
-        """Its place as messages tell it: `rssr.L1`, `link[2].twist`, `joint[1].at[3]`."""
-        parts = [f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in self.place]
-        return "".join(parts).lstrip(".")
-
-    @property
-    def column(self) -> str:
-        """Its name in tables, with the unit: `L1_mm`, `twist_2_deg`."""
-        return f"{self.name}_{self.unit.replace('/', '_')}" if self.unit else self.name
-
-    @property
-    def kind(self) -> Literal["length", "angle", "pitch", "number", "speed"]:
-        """What its value is."""
-        if "/" in self.unit or self.unit == "rpm":
-            return "pitch" if self.unit.endswith("turn") else "speed"
-        if self.unit in ANGLES:
-            return "angle"
-        return "length" if self.unit else "number"
-
-    @property
-    def scale(self) -> float:
-        """The size of its unit beside the one that is carried: radian, length unit."""
-        return ANGLES.get(self.unit, 1.0)
-
-    def read(self, text: str) -> float:
-        """The value that a person wrote, in the dimension's unit: "250", "25 cm", "30deg".
-
-        Raises `RequestError` for a text that is no finite number with a unit that fits.
-        """
-        value = amount(text, sizes_of(self.unit), self.unit)
-        if value is None:
-            comma = " (a decimal point, not a comma)" if "," in text else ""
-            given = shown(text.strip())
-            hint = examples_of(self.unit)
-            raise RequestError(f"{self.key}: {given} is not a finite {self.kind}; give {hint}{comma}")
-        return value
+from sevenbar.kinematics.word import Place
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,14 +39,9 @@ class Draft:
         return Draft(text, tomllib.loads(text), source)
 
     @staticmethod
-    def of_linkage(linkage: Linkage) -> Draft:
+    def of_linkage(linkage: Loop) -> Draft:
         """The draft of a linkage's own description, which has no text with comments."""
-        if not linkage.description:
-            raise RequestError(
-                f"linkage: '{linkage.name}' was made without a description; "
-                "make it by load, rssr, from_dh or from_axes"
-            )
-        return Draft("", linkage.description, linkage.name)
+        return Draft("", description_of(linkage), linkage.name)
 
     def as_opened(self) -> Draft:
         """The draft as its text has it."""
@@ -164,37 +100,7 @@ class Draft:
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
         """Every number that can be changed, in the order of the file."""
-        linkage = self.linkage
-        length, angle = linkage.length_unit, str(self.raw.get("angle_unit", "deg"))
-        found: list[Dimension] = []
-        for key in ("M", "N", "L1", "L2", "L3", "D") if linkage.form == "rssr" else ():
-            given = self.raw["rssr"].get(key)
-            value = linkage.dimensions[key] if given is None else float(given)
-            # D left out is 0; L2 left out follows from the others
-            follows = given is None and key == "L2"
-            place = ("rssr", key)
-            positive = key[0] == "L"
-            found.append(Dimension(key, place, key, "dimensions", length, value, positive, follows))
-        units = {"twist": angle, "angle": angle, "pitch": f"{length}/turn"}
-        joints = linkage.joints
-        for i, row in enumerate(self.raw.get("link", ())):
-            group = f"link {i + 1}, after {joints[i].name} ({joints[i].kind})"
-            for key in joints[i].row.row_keys:
-                unit = units.get(key, length)
-                value = float(row.get(key, 0.0))
-                found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
-        for i, table in enumerate(self.raw.get("joint", ())):
-            found += _of_drawn(i, table, joints[i], length)
-        letters = "uvw" if linkage.form == "rows" else "xyz"
-        for i, table in enumerate(self.raw.get("point", ())):
-            name = table["name"]
-            found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
-        column = linkage.columns.index(linkage.drive.joint)
-        speed = "rad/s" if linkage.column_kinds[column] == "turn" else f"{length}/s"
-        found.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
-        # a point may have the name of a joint
-        taken = Counter(dimension.name for dimension in found)
-        return tuple(replace(d, name=d.key) if taken[d.name] > 1 else d for d in found)
+        return dimensions_of(self.raw, self.linkage)
 
     def written(self, dimension: Dimension, value: float) -> object:
         """What stands in the file for a value of a dimension: a speed with its unit, else the number."""
@@ -226,34 +132,6 @@ class Draft:
 def _plain(value: float) -> float | int:
     """A number as people write it, without the point where it is whole."""
     return int(value) if abs(value) < 1e15 and value.is_integer() else value
-
-
-def _of_drawn(index: int, table: Mapping[str, Any], joint: Joint, length: str) -> list[Dimension]:
-    """The numbers of a joint as drawn."""
-    place = ("joint", index)
-    whose = (joint.name, f"{joint.name} ({joint.kind})")
-    found = _vector((*place, "at"), table["at"], "xyz", whose, length)
-    if "axis" in table:
-        found += _vector((*place, "axis"), table["axis"], ("axis x", "axis y", "axis z"), whose, "")
-    for which, axis in enumerate(table.get("axes", ())):
-        letters = [f"axis {which + 1} {letter}" for letter in "xyz"]
-        found += _vector((*place, "axes", which), axis, letters, whose, "")
-    if "pitch" in table:
-        name, group = whose
-        unit, pitch = f"{length}/turn", float(table["pitch"])
-        found.append(Dimension(f"{name}.pitch", (*place, "pitch"), "pitch", group, unit, pitch))
-    return found
-
-
-def _vector(
-    place: Place, values: Sequence[float], labels: Sequence[str], whose: tuple[str, str], unit: str
-) -> list[Dimension]:
-    """The numbers of a vector; `whose`: the name of its owner, and what the owner is called among others."""
-    name, group = whose
-    return [
-        Dimension(f"{name}.{label.replace(' ', '_')}", (*place, axis), label, group, unit, float(value))
-        for axis, (label, value) in enumerate(zip(labels, values, strict=True))
-    ]
 
 
 def _says(text: str, raw: Mapping[str, Any]) -> bool:

@@ -10,25 +10,19 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
 from sevenbar.description.proportions import disproportions
 from sevenbar.errors import DescriptionError, Problem, shown
-from sevenbar.kinematics.geometry import Drive, Joint, Point
+from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import about, inverse, pose, unit
+from sevenbar.kinematics.rigid import unit
+from sevenbar.kinematics.word import Place, Values, between, word_of
 
 if TYPE_CHECKING:
     from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
 
 #: Below this share of the size of a drawn pose a link has no length.
 NO_LENGTH = 1e-12
-
-#: Report frame of Denavit-Hartenberg rows against the frame of the ground link: x is j, y is k, z is i.
-_I_ALONG_LAST_AXIS = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-
-#: A point (u, v, w) on a row's link: u along its joint, v along the link, w = u x v.
-_UVW = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
 
 
 def rssr(
@@ -202,7 +196,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     if problems := disproportions(form):
         raise DescriptionError(problems, source)
     if form.rssr is not None:
-        linkage = _from_dimensions(form.rssr)
+        linkage = _from_dimensions(form, form.rssr)
     elif form.joint is not None:
         linkage = _from_drawing(form, form.joint, source)
     else:
@@ -217,92 +211,78 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     )
 
 
-def _from_dimensions(form: RssrForm) -> Linkage:
-    base = pose(np.eye(3), [0.0, 0.0, form.N])
-    # joint 4 turns the ground against the rocker, about -x, so that its value is the paper's beta
-    ground = pose([[0, 0, -1], [-1, 0, 0], [0, 1, 0]], [form.M, form.D, 0.0])
-    links = np.stack(
-        [
-            pose(np.eye(3), [form.L1, 0.0, 0.0]),
-            pose(np.eye(3), [form.coupler, 0.0, 0.0]),
-            pose(np.diag([1.0, -1.0, -1.0]), [form.L3, 0.0, 0.0]),
-        ]
-    )
-    from sevenbar.description.written import RSSR_JOINTS
+def _values(form: LinkageForm) -> Values:
+    """The numbers of a form by their places, as its word asks for them."""
+    found: dict[Place, float] = {}
+    if form.rssr is not None:
+        dimensions = {**form.rssr.model_dump(), "L2": form.rssr.coupler}
+        found |= {("rssr", key): value for key, value in dimensions.items()}
+    for i, row in enumerate(form.link or ()):
+        found |= {("link", i, key): getattr(row, key) for key in ("length", "twist", "offset", "angle")}
+    for i, joint in enumerate(form.joint or ()):
+        vectors: dict[Place, Any] = {("at",): joint.at, ("axis",): joint.axis or ()}
+        vectors |= {("axes", which): axis for which, axis in enumerate(joint.axes or ())}
+        for place, vector in vectors.items():
+            found |= {("joint", i, *place, k): value for k, value in enumerate(vector)}
+    return Values(found)
 
+
+def _linkage(form: LinkageForm, written: Form, joints: tuple[Joint, ...], **parts: Any) -> Linkage:
+    """The linkage of a form's word at its numbers."""
+    word, values = word_of(written, [joint.kind for joint in joints]), _values(form)
     return Linkage(
-        name="RSSR",
-        joints=tuple(Joint(kind, name) for name, kind in RSSR_JOINTS),
-        base=base,
-        ground=ground,
-        links=links,
-        point_frames=np.stack([np.eye(4)] * 4),
-        drive=Drive("crank", "rocker"),
-        points=(Point("A", 1, (form.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
-        form="rssr",
-        dimensions={"M": form.M, "N": form.N, "L1": form.L1, "L2": form.coupler, "L3": form.L3, "D": form.D},
+        name=form.name,
+        joints=joints,
+        base=word.base.pose(values),
+        ground=word.ground.pose(values),
+        links=np.stack([link.pose(values) for link in word.links]),
+        point_frames=np.stack([frame.pose(values) for frame in word.frames]),
+        drive=Drive(*form.driven),
+        form=written,
+        **parts,
+    )
+
+
+def _from_dimensions(form: LinkageForm, rssr: RssrForm) -> Linkage:
+    return _linkage(
+        form,
+        "rssr",
+        tuple(Joint(kind, name) for name, kind in form.joints),
+        points=(Point("A", 1, (rssr.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
+        dimensions={**{key: getattr(rssr, key) for key in ("M", "N", "L1")}, "L2": rssr.coupler}
+        | {key: getattr(rssr, key) for key in ("L3", "D")},
     )
 
 
 def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
     """Classic Denavit-Hartenberg rows: the ground's frame is that of the last link, its axes renamed."""
-    report = pose(_I_ALONG_LAST_AXIS)
-    # what follows the joint's own motion in each row: Tz(offset) or Rz(angle), the other being the variable
-    turns = about(2, [row.angle for row in rows])
-    fixed = pose(turns, [(0.0, 0.0, row.offset) for row in rows])
-    spans = pose(about(0, [row.twist for row in rows]), [(row.length, 0.0, 0.0) for row in rows])
-    ground = report @ inverse(fixed[-1])
-    # u, v, w of a point: v goes along the link, so after the fixed angle; u counts from before the offset
-    points = pose(turns @ _UVW)
-    points[-1] = ground @ points[-1]
     dimensions: dict[str, float] = {}
     for i, row in enumerate(rows, 1):
         dimensions |= {f"length_{i}": row.length, f"twist_{i}_deg": _degrees(row.twist)}
-        own = {f"offset_{i}": row.offset, f"angle_{i}_deg": _degrees(row.angle), f"pitch_{i}": row.pitch}
-        keys = KINDS[row.joint].row_keys
-        dimensions |= {name: value for name, value in own.items() if name.split("_")[0] in keys}
-    return Linkage(
-        name=form.name,
-        joints=tuple(
-            Joint(kind, name, pitch=row.pitch) for (name, kind), row in zip(form.joints, rows, strict=True)
-        ),
-        base=report @ spans[-1],
-        ground=ground,
-        links=fixed[:-1] @ spans[:-1],
-        point_frames=points,
-        drive=Drive(*form.driven),
-        form="rows",
-        dimensions=dimensions,
+        dimensions |= (
+            {f"angle_{i}_deg": _degrees(row.angle)} if row.joint == "P" else {f"offset_{i}": row.offset}
+        )
+        dimensions |= {f"pitch_{i}": row.pitch} if row.joint == "H" else {}
+    joints = tuple(
+        Joint(kind, name, pitch=row.pitch) for (name, kind), row in zip(form.joints, rows, strict=True)
     )
+    return _linkage(form, "rows", joints, dimensions=dimensions)
 
 
 def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:
-    """Joints as drawn, all at zero: the frames on both sides of each, in ground coordinates."""
+    """Joints as drawn, all at zero."""
     names, kinds = zip(*form.joints, strict=True)
     rssr = "".join(kinds) == "RSSR"
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
     if problems:
         raise DescriptionError(problems, source)
-    places = [np.array(joint.at) for joint in drawn]
-    # x of a frame goes towards the joint after, of the last one towards that before
-    towards = [*places[1:], places[-2]]
-    angles = [_between(*joint.axes) if joint.axes else 0.0 for joint in drawn]
-    before = pose([_frame(j, t - p) for j, p, t in zip(drawn, places, towards, strict=True)], places)
-    # a joint U at zero is not the identity: it turns from its first axis to its second
-    after = before @ pose(about(0, angles))
-    return Linkage(
-        name=form.name,
-        joints=tuple(
-            Joint(joint.kind, name, pitch=joint.pitch or 0.0, angle=angle)
-            for joint, name, angle in zip(drawn, names, angles, strict=True)
-        ),
-        base=before[0],
-        ground=after[-1],
-        links=inverse(after[:-1]) @ before[1:],
-        point_frames=np.concatenate([inverse(after[:-1]), [np.eye(4)]]),
-        drive=Drive(*form.driven),
-        points=(Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else (),
+    joints = tuple(
+        # a joint U at zero is not the identity: it turns from its first axis to its second
+        Joint(joint.kind, name, joint.pitch or 0.0, between(*joint.axes) if joint.axes else 0.0)
+        for joint, name in zip(drawn, names, strict=True)
     )
+    points = (Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else ()
+    return _linkage(form, "drawn", joints, points=points)
 
 
 def _coincident(drawn: tuple[JointForm, ...], names: Sequence[str]) -> list[Problem]:
@@ -341,35 +321,6 @@ def _coincident_balls(drawn: tuple[JointForm, ...]) -> list[Problem]:
     return problems
 
 
-def _frame(joint: JointForm, towards: Floats) -> Floats:
-    """Columns x, y, z of a joint's frame: z along its axis; of a ball the axes of the ground."""
-    if joint.axes:
-        first, second = joint.axes
-        z, x = unit(first), unit(np.cross(unit(first), unit(second)))
-        return np.column_stack([x, np.cross(z, x), z])
-    return np.eye(3) if joint.axis is None else _frame_about(joint.axis, towards)
-
-
-def _between(first: npt.ArrayLike, second: npt.ArrayLike) -> float:
-    """The angle [rad] from one axis to another."""
-    a, b = unit(first), unit(second)
-    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
-
-
 def _degrees(angle: float) -> float:
     """An angle as a person wrote it: without the last digit, which the way to radians and back may change."""
     return float(f"{math.degrees(angle):.15g}")
-
-
-def _frame_about(axis: npt.ArrayLike, towards: Floats) -> Floats:
-    """Columns x, y, z: z along the axis, x across it towards a place (any where that lies on the axis)."""
-    z = unit(axis)
-    across = towards - (towards @ z) * z
-    if np.linalg.norm(across) <= NO_LENGTH * np.linalg.norm(towards):
-        across = np.eye(3)[np.argmin(np.abs(z))]
-        across = across - (across @ z) * z
-    x = across / np.linalg.norm(across)
-    # of a place almost on the axis the first step leaves little but rounding, some of it along the axis
-    x = x - (x @ z) * z
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])

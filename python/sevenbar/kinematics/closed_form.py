@@ -24,6 +24,7 @@ from sevenbar.kinematics.motion import (
     Trace,
     Words,
 )
+from sevenbar.kinematics.sensitivity import sensitivity_of
 
 Side = Literal["crank", "rocker"]
 
@@ -110,6 +111,7 @@ class ClosedForm:
             law=law,
             size=self.size,
             point=partial(self._trace, rates),
+            sensitivity=partial(sensitivity_of, self._linkage),
         )
 
     def _trace(self, rates: Floats, _order: Integers, _status: Words, link: int, at: Floats) -> Trace:

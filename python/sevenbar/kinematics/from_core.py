@@ -22,6 +22,7 @@ from sevenbar.kinematics.motion import (
     Law,
     OpenRange,
     Search,
+    Sensitivity,
     Trace,
     Words,
 )
@@ -72,6 +73,7 @@ def circuit_from(
     law: Law | None,
     size: float,
     point: Callable[[Integers, Words, int, Floats], Trace],
+    sensitivity: Callable[[Circuit], Sensitivity],
 ) -> Circuit:
     """A circuit as the core has it.
 
@@ -128,6 +130,7 @@ def circuit_from(
         size=size,
         speed=speed if law is None else math.nan,
         _point=partial(point, order, status),
+        _sensitivity=sensitivity,
         _frames=linkage.point_frames,
     )
 

@@ -19,6 +19,7 @@ from sevenbar.kinematics.joints import Z
 from sevenbar.kinematics.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.motion import Circuit, Integers, Law, Modes, Motion, Solvable, Trace, Words
 from sevenbar.kinematics.rigid import axis_to_z, inverse
+from sevenbar.kinematics.sensitivity import sensitivity_of
 
 T = TypeVar("T")
 
@@ -81,6 +82,24 @@ class GeneralLoop:
                     return f"slide of link {link} along the common direction of {second} and {first}"
 
         return tuple(told(*freedom) for freedom in self._idle())
+
+    def held(self) -> tuple[frozenset[int], list[int], int]:
+        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise.
+
+        Balls are joints counted from 0; their third turns are among the columns.
+        """
+        letters = expanded(self._linkage).letters
+        first = np.concatenate([[0], np.cumsum([3 if letter == "S" else 1 for letter in letters])])
+        spun, columns, spins = set(), [], 0
+        for (word, held, _), (_, _, joint, _) in zip(self._core.idle, self._idle(), strict=True):
+            if word == "between-balls":
+                spun.add(joint)
+                columns.append(int(first[held]) + 2)
+            elif word == "chain-between-balls":
+                spins += 1
+            else:
+                columns.append(int(first[held]))
+        return frozenset(spun), columns, spins
 
     def idle_links(self) -> frozenset[int]:
         """The links that have such a freedom, counted from 1."""
@@ -242,6 +261,7 @@ class GeneralLoop:
             law=law,
             size=self.size,
             point=partial(self._trace, raw.rows),
+            sensitivity=partial(sensitivity_of, self._linkage),
         )
 
     def _trace(self, rows: _core.Rows | None, order: Integers, status: Words, link: int, at: Floats) -> Trace:

@@ -159,6 +159,11 @@ class Linkage(Solvable):
         """Freedoms that move no other link."""
         return self._general.idle()
 
+    @cached_property
+    def held(self) -> tuple[frozenset[int], list[int], int]:
+        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
+        return self._general.held()
+
     @property
     def spin_axes(self) -> dict[str, Floats]:
         """The axis (3,) that holds the idle spin beyond a ball, by the ball's name, in the frame before it.

@@ -9,7 +9,9 @@ from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Circuit, Extremes, Motion
+from sevenbar.kinematics.gradients import MeasureSlopes, measure_slopes
+from sevenbar.kinematics.motion import Circuit, Extremes, Motion, chosen_circuit
+from sevenbar.kinematics.sensitivity import Numbers
 
 #: What a measure is a number of: of angles and lengths by the output.
 Quantity = Literal["word", "count", "ratio", "angle", "output", "velocity", "acceleration", "jerk"]
@@ -165,3 +167,23 @@ def rows_of(motion: Motion, measures: Sequence[Measure]) -> list[dict[str, float
     if not motion.circuits:
         return [{"circuit": None} | shared | {m.name: None for m in own}]
     return [{"circuit": c.index} | shared | {m.name: m.value(c) for m in own} for c in motion.circuits]
+
+
+def gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
+    """The measures of a circuit that are numbers, by name, with derivatives by the description's numbers.
+
+    Those of `MEASURES` that vary smoothly, and angle_lowest, angle_highest of the output and limit_1 .. of
+    the input besides; angles in degrees. Derivatives (k,) are exact, in the order of the names that
+    `Circuit.sensitivity` has, by their units; NaN where a measure has none, as at a kink. Raises
+    `RequestError` for a circuit that does not exist and a linkage made without a description.
+
+        >>> import sevenbar as sb
+        >>> found = gradient(sb.load("rssr").motion())["transmission_lowest"]
+        >>> found.unit, found.slopes.shape
+        ('deg', (6,))
+
+    Source: docs/theory_design.md, (6).
+    """
+    chosen = chosen_circuit(motion, circuit)
+    found = measure_slopes(Numbers(motion.linkage), chosen, motion.speed)
+    return {one.name: one for one in found}

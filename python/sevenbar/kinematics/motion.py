@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -202,6 +202,29 @@ class Trace(Printed):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Sensitivity(Printed):
+    """Derivatives of a circuit by the k numbers of its linkage's description, on its n rows.
+
+    `names` and `units` (k,) are those of the numbers, as in the file. `position` (n, columns, k) [rad, or
+    length, by the number's unit], `velocity` and `acceleration` by time at the circuit's own input, which
+    stays as it is; of a ball's turns there is the position only. `points` has each named point's derivative
+    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` tells why), for
+    numbers that open the loop if they change alone (`opening`), and for what spins idly.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    columns: tuple[str, ...]
+    position: Floats
+    velocity: Floats
+    acceleration: Floats
+    points: Mapping[str, Floats]
+    point_velocities: Mapping[str, Floats]
+    opening: tuple[str, ...]
+    status: Words
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Law(Printed):
     """An input law: time [s], input [rad] and its derivatives by time, each of shape (n,).
 
@@ -321,6 +344,7 @@ class Circuit(Printed):
     speed: float
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
+    _sensitivity: Callable[[Circuit], Sensitivity] = field(repr=False)
 
     @property
     def input(self) -> Floats:
@@ -372,6 +396,20 @@ class Circuit(Printed):
         if place.size != 3:
             raise RequestError(f"at: {place.size} numbers; give three")
         return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
+
+    def sensitivity(self) -> Sensitivity:
+        """Exact derivatives of all joints and named points by every number of the linkage's description.
+
+        The input stays as it is. Raises `RequestError` for a linkage made without a description.
+
+        Source: docs/theory_design.md, (1) to (5).
+
+            >>> import sevenbar as sb
+            >>> found = sb.load("rssr").motion(12).circuits[0].sensitivity()
+            >>> found.names, found.position.shape
+            (('M', 'N', 'L1', 'L2', 'L3', 'D'), (12, 8, 6))
+        """
+        return self._sensitivity(self)
 
     def link_motion(self, link: int) -> LinkMotion:
         """How link 1, 2, .. turns along the circuit: angular velocity and acceleration, report frame.
@@ -430,6 +468,11 @@ class Solvable(Loop):
     @property
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
+        raise NotImplementedError
+
+    @property
+    def held(self) -> tuple[frozenset[int], list[int], int]:
+        """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
         raise NotImplementedError
 
     @property

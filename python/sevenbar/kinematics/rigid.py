@@ -15,6 +15,9 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 
+#: Below this share of the way to a place the place lies on an axis.
+ON_AXIS = 1e-12
+
 
 def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
     """The rigid motion (..., 4, 4) with this rotation (..., 3, 3) and this origin (..., 3) [length]."""
@@ -50,6 +53,26 @@ def unit(vector: npt.ArrayLike) -> Floats:
     """The unit vector (3,) along a vector (3,) that is not zero."""
     direction = np.asarray(vector, dtype=np.float64)
     return np.asarray(direction / math.hypot(*direction))
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """The vector product of two vectors (3,)."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
+def frame_about(axis: npt.ArrayLike, towards: Floats) -> Floats:
+    """Columns x, y, z: z along the axis, x across it towards a place (any where that lies on the axis)."""
+    z = unit(axis)
+    across = towards - (towards @ z) * z
+    if np.linalg.norm(across) <= ON_AXIS * np.linalg.norm(towards):
+        across = np.eye(3)[np.argmin(np.abs(z))]
+        across = across - (across @ z) * z
+    x = across / np.linalg.norm(across)
+    # of a place almost on the axis the first step leaves little but rounding, some of it along the axis
+    x = x - (x @ z) * z
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, cross(z, x), z])
 
 
 def perpendicular(vector: Floats) -> Floats:
@@ -119,3 +142,12 @@ def axis_to_z(axis: int) -> Floats:
     matrix = np.eye(4)
     matrix[:3, :3] = np.roll(np.eye(3), 2 - axis, axis=1)
     return matrix
+
+
+def adjoint(motion: Floats) -> Floats:
+    """The matrix (6, 6) that takes twists of a frame (4, 4) to the frame in which that is given."""
+    rotation, (x, y, z) = motion[:3, :3], motion[:3, 3].tolist()
+    found = np.zeros((6, 6))
+    found[:3, :3] = found[3:, 3:] = rotation
+    found[3:, :3] = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) @ rotation
+    return found

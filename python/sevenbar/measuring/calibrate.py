@@ -1,7 +1,7 @@
 """The dimensions of a real linkage from its measured curve: least squares with exact sensitivities.
 
 With r the differences of measured and computed values in parts of their noise and J their exact derivatives
-by the dimensions (`sensitivity`), `|r|^2` is least by scipy's trust-region steps; then
+by the dimensions (`sevenbar.kinematics.sensitivity`), `|r|^2` is least by scipy's trust-region steps; then
 
     s^2 = |r|^2 / (n - k),      covariance s^2 (J^T J)^-1,      value +- t(n - k) sqrt(covariance)         (1)
 
@@ -29,17 +29,20 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
+from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Law
+from sevenbar.kinematics.sensitivity import Numbers, Slopes
 from sevenbar.measuring.compare import Comparison, compare, ends_of, inputs_of
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
-from sevenbar.measuring.sensitivity import Closure, Response, RowsClosure, closure_of, followed, response
 from sevenbar.text.printing import Printed
 
 #: Zeros of the measured joints that may be free too: linkage input = measured input + input_offset,
 #: measured output = linkage output + output_offset.
 OFFSETS = ("input", "output")
+
+#: The order in which dimensions of a row are held where the data do not tell them all.
+ROW_ORDER = ("length", "twist", "angle", "offset", "pitch")
 
 #: Standard error [parts of the linkage's size, or rad] beyond which a direction counts as not told: the curve
 #: bends over such a distance, so that (1), which takes it for straight, would mean nothing.
@@ -141,10 +144,11 @@ def calibrate(
     """The dimensions that explain measured rows best, with their intervals.
 
     `free` names the dimensions to be found and `hold` those to be kept, by names or patterns ("length_*"):
-    M, N, L1, L2, L3, D of an RSSR, length_1, offset_1, twist_1 .. of Denavit-Hartenberg rows. `offsets` of
-    "input" and "output" frees the zeros of the two measured joints. The others are as for `compare`. Raises
-    `RequestError` for a wrong argument and too few rows, `NotCoveredError` for a linkage without dimensions,
-    `MissingExtraError` without scipy.
+    M, N, L1, L2, L3, D of an RSSR, length_1, offset_1, twist_1 .. of Denavit-Hartenberg rows, coordinates of
+    joints and axes as drawn. `offsets` of "input" and "output" frees the zeros of the two measured joints.
+    The others are as for `compare`. Raises `RequestError` for a wrong argument, too few rows and a linkage
+    made without a description, `NotCoveredError` for an output that spins idly, `MissingExtraError` without
+    scipy.
 
         >>> import sevenbar as sb
         >>> real = sb.rssr(M=700, N=700, L1=251, L3=550, L2=998)
@@ -163,16 +167,28 @@ def calibrate(
         if word not in OFFSETS:
             raise RequestError(f"offset: {shown(word)} is not offered; give {' or '.join(OFFSETS)}")
     ends = ends_of(linkage) if ends is None else ends
-    closure = closure_of(linkage, ends.input, ends.output)
+    numbers = Numbers(linkage)
     align = [word for word, side in (("phase", "input"), ("offset", "output")) if side in offsets]
     before = compare(
         linkage, measured, ends, align=align, speed=speed, start=start, circuit=circuit, branch=branch
     )
-    model = _Model(closure, before, inputs_of(measured, before.speed, start), offsets)
+    model = _Model(numbers, before, inputs_of(measured, before.speed, start), offsets)
     wanted = model.chosen(free, hold)
     fit = _Fit(model, wanted)
     untold = fit.run()
     return _told(linkage, measured, before, model, fit, untold, confidence)
+
+
+def _in_order(numbers: Numbers) -> list[int]:
+    """The numbers that move joints, not points alone, in the order in which they are held."""
+
+    def order(k: int) -> tuple[int, int]:
+        place = numbers.dimensions[k].place
+        row = place[0] == "link" and isinstance(place[1], int)
+        return (int(place[1]), ROW_ORDER.index(str(place[2]))) if row else (0, k)
+
+    moving = [k for k, d in enumerate(numbers.dimensions) if d.place[0] != "point"]
+    return sorted(moving, key=order)
 
 
 def _need_scipy() -> None:
@@ -188,9 +204,9 @@ def _need_scipy() -> None:
 class _Model:
     """The measured quantities as functions of all parameters, in units of the linkage's size and radians."""
 
-    def __init__(self, closure: Closure, before: Comparison, inputs: Floats, offsets: Sequence[str]) -> None:
+    def __init__(self, numbers: Numbers, before: Comparison, inputs: Floats, offsets: Sequence[str]) -> None:
         chosen, ends = before.chosen, before.ends
-        self.closure, self.before, self.offsets = closure, before, tuple(offsets)
+        self.before, self.offsets = before, tuple(offsets)
         self.slides = ends.output_slides
         self.speed = before.speed
         count = len(inputs)
@@ -199,28 +215,38 @@ class _Model:
         motion = before.linkage.motion(input=ends.input, output=ends.output, law=law)
         part = slice(chosen.branch * count, (chosen.branch + 1) * count)
         circuit = motion.circuits[chosen.circuit]
-        poses = closure.passive(circuit.q[part])
+        self.places = _in_order(numbers)
+        self.output = circuit.output_column
+        loop = numbers.loop(circuit.input_column, only=self.places)
+        q = circuit.q[part]
         # rates do not exist at a dead centre of the input, nor do sensitivities
-        self.rows = np.flatnonzero((circuit.status[part] != "dead-centre") & np.isfinite(poses).all(axis=1))
-        self.begin = circuit.q[part, circuit.input_column][self.rows] - chosen.phase
-        self.poses = poses[self.rows]
+        self.rows = np.flatnonzero((circuit.status[part] != "dead-centre") & np.isfinite(q).all(axis=1))
+        self.begin = q[self.rows, loop.input] - chosen.phase
+        poses = numbers.poses(q[self.rows])
         self.values = {q: before.measured[q][self.rows].copy() for q in before.outputs}
         if "angle" in self.values:
             self.values["angle"] += chosen.offset
         self.order = max(OUTPUTS.index(q) for q in self.values)
-        self.names = [d.name for d in closure.dimensions] + ["input_offset", "output_offset"]
-        self.kinds = [d.kind for d in closure.dimensions] + [
-            "length" if slides else "angle" for slides in (ends.input_slides, ends.output_slides)
-        ]
-        self.scales = np.array([1.0 if kind == "angle" else closure.size for kind in self.kinds])
-        self.nominal = np.array([d.nominal for d in closure.dimensions] + [0.0, 0.0])
-        self.first = self.nominal + np.array([0.0] * len(closure.dimensions) + [chosen.phase, chosen.offset])
-        self._known = (self.first.copy(), self.poses)
-        self._last: tuple[bytes, Response | None] = (b"", None)
-        opening: tuple[str, ...] = ()
-        if isinstance(closure, RowsClosure):
-            opening = closure.opening(self.nominal[:-2], self.begin + chosen.phase, self.poses)
-        self.opening = frozenset(opening)
+        dimensions = [numbers.dimensions[k] for k in self.places]
+        self.names = [d.name for d in dimensions] + ["input_offset", "output_offset"]
+        self.kinds: list[str] = [d.kind for d in dimensions]
+        self.kinds += ["length" if slides else "angle" for slides in (ends.input_slides, ends.output_slides)]
+        #: The size of one of the file's units, angles being in radians here.
+        self.units = np.array([d.scale for d in dimensions])
+        self.nominal = np.append(numbers.nominal[self.places] * self.units, [0.0, 0.0])
+        lengths = [kind in ("length", "pitch") for kind in self.kinds]
+        size = float(np.abs(self.nominal[lengths]).max(initial=0.0)) or 1.0
+        self.scales = np.where(lengths, size, 1.0)
+        self.first = self.nominal + np.array([0.0] * len(dimensions) + [chosen.phase, chosen.offset])
+        self._last: tuple[bytes, tuple[Floats, Slopes] | None] = (b"", None)
+        here = loop.slopes(poses, 0)
+        self._known = (loop, poses, here)
+        if here.idle[self.output]:
+            raise NotCoveredError(
+                f"calibrate: {ends.output} takes part in an idle motion, which the input does not tell; give "
+                "another output"
+            )
+        self.opening = frozenset(n for n, opens in zip(self.names, here.opening, strict=False) if opens)
 
     def chosen(self, free: Sequence[str], hold: Sequence[str]) -> list[int]:
         """The places of the parameters that are to be found."""
@@ -243,22 +269,25 @@ class _Model:
             raise RequestError("free: nothing is left to be found; free a dimension or an offset")
         return [self.names.index(name) for name in named if name not in self.opening]
 
-    def response(self, z: Floats) -> Response | None:
-        """The output with derivatives at parameters z; `None` where a row does not close on its pass."""
+    def response(self, z: Floats) -> tuple[Floats, Slopes] | None:
+        """Poses and derivatives at parameters z; `None` where a row does not close on its pass."""
         key = z.tobytes()
         if self._last[0] == key:
             return self._last[1]
-        at, poses = self._known
+        loop, poses, here = self._known
+        p = loop.p.copy()
+        p[self.places] = z[:-2] / self.units
+        x = self.begin + z[-2]
+        ahead = np.einsum("nkc,k->nc", here.by_number[:, 0], (p - loop.p)[self.places])
+        ahead += here.by_input[:, 0] * (x - poses[:, loop.input])[:, None]
+        there = loop.numbers.loop(loop.input, p, self.places)
+        near = there.followed(x, poses, steps=ahead[None])[0][0]
+        if not np.isfinite(near).all():
+            near = loop.closed(x, poses, p)
         found = None
-        for parts in (1, 2, 4, 8):
-            pose = poses
-            for share in np.arange(1, parts + 1) / parts:
-                step = at + share * (z - at)
-                pose = followed(self.closure, step[:-2], self.begin + step[-2], pose)
-            if np.isfinite(pose).all():
-                self._known = (z.copy(), pose)
-                found = response(self.closure, z[:-2], self.begin + z[-2], pose, self.order)
-                break
+        if np.isfinite(near).all():
+            found = near, there.slopes(near, self.order)
+            self._known = (there, *found)
         self._last = (key, found)
         return found
 
@@ -267,10 +296,12 @@ class _Model:
         found = self.response(z)
         if found is None:
             return None
+        poses, here = found
         values = {}
         for quantity, measured in self.values.items():
             order = OUTPUTS.index(quantity)
-            value = found.rates[order] * self.speed**order
+            value = poses if order == 0 else here.rates[:, order - 1] * self.speed**order
+            value = value[:, self.output]
             if quantity == "angle":
                 value = value + z[-1]
                 if not self.slides:
@@ -283,11 +314,13 @@ class _Model:
         found = self.response(z)
         if found is None:
             raise ArithmeticError("derivatives were asked for where the loop does not close")
+        here = found[1]
         slopes = {}
         for quantity in self.values:
             order = OUTPUTS.index(quantity)
             aside = np.full(len(self.begin), float(quantity == "angle"))
-            rates = [found.by_dimension[order], found.by_input[order][:, None]]
+            by_number = here.by_number[:, order, :, self.output] / self.units
+            rates = [by_number, here.by_input[:, order, self.output, None]]
             matrix = np.column_stack([*(r * self.speed**order for r in rates), aside])
             slopes[quantity] = matrix * self.scales
         return slopes

@@ -353,7 +353,7 @@ def _parameter_table(calibration: Calibration) -> Table:
     heads = ("dimension", "nominal", "calibrated", f"\u00b1 {100 * calibration.confidence:g} %", "change", "")
     rows = []
     for p in calibration.parameters:
-        label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]"
+        label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]".removesuffix(" []")
         nominal, value = _shown(p, p.nominal), _shown(p, p.value)
         if p.status == "calibrated":
             reach = _shown(p, (p.high - p.low) / 2)
@@ -375,7 +375,8 @@ def _digits(reach: float) -> int:
 
 def _parameter_unit(parameter: Parameter, ends: Ends) -> str:
     per = "/turn" if parameter.kind == "pitch" else ""
-    return "deg" if parameter.kind == "angle" else ends.length_unit + per
+    # the numbers of a drawn direction have no unit
+    return {"angle": "deg", "number": ""}.get(parameter.kind, ends.length_unit + per)
 
 
 def _shown(parameter: Parameter, value: float) -> float:
@@ -384,7 +385,7 @@ def _shown(parameter: Parameter, value: float) -> float:
 
 
 def _parameter_value(parameter: Parameter, value: float, ends: Ends) -> str:
-    return f"{_shown(parameter, value):.6g} {_parameter_unit(parameter, ends)}"
+    return f"{_shown(parameter, value):.6g} {_parameter_unit(parameter, ends)}".rstrip()
 
 
 def _rms(values: Any) -> float:

@@ -33,8 +33,8 @@ def _head(calibration: Calibration) -> list[str]:
     for p in calibration.calibrated:
         degrees = p.kind == "angle"
         value, reach = ((math.degrees(v) if degrees else v) for v in (p.value, (p.high - p.low) / 2))
-        unit = "deg" if degrees else calibration.ends.length_unit
-        lines.append(f"  {p.name} = {value:.9g} {unit}, +- {reach:.2g}")
+        unit = {"angle": " deg", "number": ""}.get(p.kind, f" {calibration.ends.length_unit}")
+        lines.append(f"  {p.name} = {value:.9g}{unit}, +- {reach:.2g}")
     unidentified = [p.name for p in calibration.parameters if p.status == "untold"]
     if unidentified:
         lines.append(

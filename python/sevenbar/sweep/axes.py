@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.description.draft import Dimension
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.motion import Integers
 from sevenbar.text.ranges import split_grid, split_list, split_name, split_range
 

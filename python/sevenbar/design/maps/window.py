@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.description.draft import Dimension, Draft
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.text.ranges import split_named, split_range
 
 #: The form of a range, for messages.

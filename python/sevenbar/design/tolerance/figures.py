@@ -62,7 +62,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
             axes.grid(lw=0.6)
             axes.set_axisbelow(True)
             axes.margins(x=0)
-            if linear.found.loop.columns[linear.found.loop.input].turns:
+            if linear.found.input_turns:
                 axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
             if name:
                 axes.set_title(name, fontsize=9)
@@ -77,7 +77,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
 
 def _input_label(linear: Linear) -> str:
     found = linear.found
-    unit = "deg" if found.loop.columns[found.loop.input].turns else found.linkage.length_unit
+    unit = "deg" if found.input_turns else found.linkage.length_unit
     return f"input: {short(found.input_name, 40)} [{unit}]"
 
 
@@ -109,7 +109,7 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     def shown(values: Floats) -> Floats:
         return np.insert(plain(linear, values)[rows], gaps, np.nan)
 
-    turns = found.loop.columns[found.loop.input].turns
+    turns = found.input_turns
     places = np.insert(np.degrees(x) if turns else x, gaps, np.nan)
     worst, sigma = shown(linear.worst), shown(3 * linear.deviation)
     axes.fill_between(places, -worst, worst, color=BAND, lw=0, label="linear, worst case")

@@ -18,10 +18,10 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.description.draft import Dimension
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Integers, Words
 
@@ -151,7 +151,7 @@ def linear_estimate(
     place = found.place(output, quantity)
     slopes = np.where(given.widths > 0, found.slopes[:, place], 0.0)
     one = found.outputs[place]
-    if np.isnan(found.values[found.poses.rows, place]).all() or np.isnan(slopes[status == "ok"]).any():
+    if np.isnan(found.values[found.rows, place]).all() or np.isnan(slopes[status == "ok"]).any():
         raise RequestError(
             f"output: {one.name} takes part in an idle motion, which the input does not tell; give another"
         )

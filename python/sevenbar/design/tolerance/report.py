@@ -45,7 +45,7 @@ def text(findings: Findings) -> RenderableType:
     found = linear.found
     facts = Facts()
     facts.add("told", f"{told_name(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})")
-    unit = "rad" if found.loop.columns[found.loop.input].turns else found.linkage.length_unit
+    unit = "rad" if found.input_turns else found.linkage.length_unit
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
     facts.add("errors", f"independent, {linear.distribution}{spread}")

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.tolerance.exact import Designs
+from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.errors import RequestError, SevenbarError, shown
@@ -153,18 +153,18 @@ def monte_carlo(
     else:
         linear = linear_estimate(of, given, distribution=distribution, output=output, quantity=quantity)
     changes = linear.tolerances.drawn(int(count), linear.distribution, np.random.default_rng(seed))
-    designs = Designs(linear)
+    designs = ChangedDesigns(linear)
     exact = np.empty((changes.shape[1], len(linear.rows)))
     gap = np.zeros(changes.shape[1], dtype=bool)
     whole_turn = linear.found.circuit.goes_round
     block = max(1, BLOCK // len(linear.rows))
     for start in range(0, len(exact), block):
         part = slice(start, start + block)
-        moved = changes[:, part, None]
-        u = designs.followed(moved)
-        exact[part] = designs.deviations(moved, u)
+        moved = changes[:, part].T
+        q, determinants = designs.followed(moved)
+        exact[part] = designs.deviations(moved, q)
         if whole_turn and len(linear.rows) == len(linear.status):
-            gap[part] = _gaps(designs.determinants(moved, u))
+            gap[part] = _gaps(determinants)
     lost = gap | np.isnan(exact).any(axis=1)
     kept = exact[~lost]
     reasons, looked_at = _reasons(linear, changes.T[lost])
@@ -227,7 +227,7 @@ def _reasons(linear: Linear, changes: Floats) -> tuple[dict[str, int], int]:
     counts: Counter[str] = Counter()
     for change in changes[:LOOKED_AT]:
         try:
-            motion = found.loop.whole.changed(found.loop.whole.nominal + change).motion(
+            motion = found.changed(change).motion(
                 found.samples, input=found.input_name, output=found.output_name
             )
         except SevenbarError:

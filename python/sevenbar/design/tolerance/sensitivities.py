@@ -6,16 +6,17 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.description.draft import Dimension
-from sevenbar.design.tolerance.loop import Loop, Poses
-from sevenbar.design.tolerance.measures import MeasureSlopes, measure_slopes
-from sevenbar.design.tolerance.numbers import Numbered
-from sevenbar.design.tolerance.outputs import QUANTITIES, Output, outputs_of, slopes_of
-from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.description.draft import Draft
+from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
+from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
+from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.gradients import QUANTITIES, MeasureSlopes, measure_slopes
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Circuit, Words, chosen_circuit
+from sevenbar.kinematics.motion import Circuit, Integers, Solvable, Words, chosen_circuit
+from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.text.printing import Printed, lines, text_of
 
 #: A change that counts as small where no tolerance is given [parts of the linkage's size, rad].
@@ -25,6 +26,9 @@ SMALL = 1e-3
 #: centre may itself be moved by: there the output goes with the root of the distance, and at three such parts
 #: the root of what is left, sqrt(1 - 1/3), differs by a tenth from its tangent, 1 - 1/6 .. in its change.
 CLEAR = 3.0
+
+#: The quantities of a joint that are told.
+TOLD = QUANTITIES[:3]
 
 #: The status of a row that is nearer.
 NEAR = "near-dead-centre"
@@ -37,11 +41,12 @@ class Sensitivities(Printed):
     `values` (rows, outputs) and `slopes` (rows, outputs, dimensions) are in the outputs' units (angles in
     rad), and by the dimensions' units, which are the file's. NaN in rows whose `status` tells why, in columns
     of dimensions that open the loop (`opening`), and in outputs of what spins idly. `input` (rows,) [rad, or
-    length]; rates are at `speed`.
+    length]; rates are at `speed`. `poses` (n, columns) are those of the `loop` on some `rows` (n,).
     """
 
-    loop: Loop
-    poses: Poses
+    loop: NumberedLoop
+    rows: Integers
+    poses: Floats
     circuit: Circuit
     input_name: str
     output_name: str
@@ -55,14 +60,14 @@ class Sensitivities(Printed):
     opening: tuple[str, ...]
 
     @property
-    def linkage(self) -> Linkage:
+    def linkage(self) -> Solvable:
         """The linkage as it is meant."""
-        return self.loop.whole.linkage
+        return self.loop.numbers.linkage
 
     @property
     def dimensions(self) -> tuple[Dimension, ...]:
         """The dimensions in the order of the file."""
-        return self.loop.whole.dimensions
+        return self.loop.numbers.dimensions
 
     @property
     def input(self) -> Floats:
@@ -74,8 +79,8 @@ class Sensitivities(Printed):
 
         Raises `RequestError` for one that does not exist.
         """
-        if quantity not in QUANTITIES:
-            raise RequestError(f"quantity: {shown(quantity)} is not offered; give {', '.join(QUANTITIES)}")
+        if quantity not in TOLD:
+            raise RequestError(f"quantity: {shown(quantity)} is not offered; give {', '.join(TOLD)}")
         name = self.output_name if output is None else output
         for k, one in enumerate(self.outputs):
             if name == one.name and quantity in ("position", one.quantity):
@@ -104,10 +109,25 @@ class Sensitivities(Printed):
         )
 
     @property
+    def opens(self) -> npt.NDArray[np.bool_]:
+        """Which dimensions (dimensions,) open the loop."""
+        return np.array([name in self.opening for name in self.loop.numbers.names])
+
+    @property
+    def input_turns(self) -> bool:
+        """Whether the input is an angle, not a slide."""
+        return bool(self.loop.numbers.turns[self.loop.input])
+
+    def changed(self, change: Floats) -> Linkage:
+        """The linkage that a file with other numbers describes, by the change (dimensions,) of each."""
+        numbers = self.loop.numbers
+        values = dict(zip(numbers.names, (numbers.nominal + change).tolist(), strict=True))
+        return Draft.of_linkage(numbers.linkage).with_values(values).linkage
+
+    @property
     def small(self) -> Floats:
         """A change of each dimension that counts as small, in its unit."""
-        sizes = [self.loop.size if d.kind in ("length", "pitch") else 1 / d.scale for d in self.dimensions]
-        return SMALL * np.array(sizes)
+        return np.asarray(SMALL * self.loop.numbers.units)
 
     def clear(self, reach: Floats) -> Words:
         """The status (rows,) if dimensions may be off by `reach` (dimensions,): also "near-dead-centre"."""
@@ -116,7 +136,7 @@ class Sensitivities(Printed):
             if not one.name.startswith("limit_"):
                 continue
             apart = self.input - one.value * one.scale
-            if self.loop.columns[self.loop.input].turns:
+            if self.input_turns:
                 apart = np.remainder(apart + np.pi, math.tau) - np.pi
             moves = float(np.nansum(np.abs(one.slopes) * reach)) * one.scale
             status[(status == "ok") & (np.abs(apart) <= CLEAR * moves)] = NEAR
@@ -158,30 +178,31 @@ def sensitivities(
         >>> [dimension.name for dimension, _, _ in found.ranking()[:2]]
         ['L2', 'L1']
     """
-    whole = Numbered.of(linkage)
+    numbers = Numbers(linkage)
     motion = linkage.motion(samples, input=input, output=output, speed=speed)
     chosen = chosen_circuit(motion, circuit)
-    loop = Loop(whole, chosen.input_column)
-    poses = loop.poses(chosen.q)
-    opening = loop.opening(poses)
-    outputs = outputs_of(loop)
+    loop = numbers.loop(chosen.input_column)
+    rows, poses = loop.poses(chosen)
+    here = loop.slopes(poses)
+    good = np.isfinite(here.rates[:, 0]).all(axis=1)
+    if not good.any():
+        raise NotCoveredError("tolerance: no joint follows the input, so there is nothing to be told")
+    rows, poses = rows[good], poses[good]
+    here = loop.slopes(poses)
+    outputs = outputs_of(numbers, loop.input)
     count = len(chosen.q)
     values = np.full((count, len(outputs)), np.nan)
-    slopes = np.full((count, len(outputs), len(whole.names)), np.nan)
-    values[poses.rows], slopes[poses.rows] = slopes_of(
-        loop, poses, outputs, chosen.q[poses.rows], motion.speed
-    )
-    opens = [name in opening for name in whole.names]
-    slopes[:, :, opens] = np.nan
-    measures = measure_slopes(loop, chosen, motion.speed)
-    for one in measures:
-        one.slopes[opens] = np.nan
+    slopes = np.full((count, len(outputs), len(numbers.names)), np.nan)
+    values[rows] = values_of(outputs, np.where(numbers.is_ball, chosen.q[rows], poses), here, motion.speed)
+    slopes[rows] = slopes_of(numbers, outputs, chosen.q[rows], here, motion.speed)
+    slopes[:, :, here.opening] = np.nan
     status = chosen.status.astype("<U20")
-    status[~np.isin(np.arange(count), poses.rows) & (status == "ok")] = "dead-centre"
+    status[~np.isin(np.arange(count), rows) & (status == "ok")] = "dead-centre"
     # where a pose stands but its rates do not exist, so do derivatives not
     slopes[status == "dead-centre"] = np.nan
     found = Sensitivities(
         loop=loop,
+        rows=rows,
         poses=poses,
         circuit=chosen,
         input_name=motion.input,
@@ -192,10 +213,12 @@ def sensitivities(
         status=status,
         values=values,
         slopes=slopes,
-        measures=measures,
-        opening=opening,
+        measures=tuple(
+            one for one in measure_slopes(numbers, chosen, motion.speed) if not one.name.startswith("jerk_")
+        ),
+        opening=tuple(np.array(numbers.names)[here.opening].tolist()),
     )
-    if np.isnan(found.of()).all() and not all(opens):
+    if np.isnan(found.of()).all() and not here.opening.all():
         raise RequestError(f"output: {motion.input} does not determine {motion.output}; give another output")
     return found
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.description.draft import Dimension
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.text.ranges import split_name
 from sevenbar.text.units import LENGTHS
 

@@ -35,6 +35,6 @@ def plain(linear: Linear, values: npt.ArrayLike) -> Floats:
 def input_text(linear: Linear, value: float) -> str:
     """An input as people read it."""
     found = linear.found
-    if found.loop.columns[found.loop.input].turns:
+    if found.input_turns:
         return f"{math.degrees(value):.4g}°"
     return f"{value:.4g} {found.linkage.length_unit}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.tolerance.exact import Designs
+from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.kinematics.linkage import Linkage
@@ -67,10 +67,12 @@ def worst_case(
     linear = (
         given if isinstance(given, Linear) else linear_estimate(of, given, output=output, quantity=quantity)
     )
-    designs = Designs(linear)
-    # both corners of each row as two samples, evaluated at that row
-    changes = (np.sign(linear.slopes) * linear.tolerances.widths).T[:, None, :] * np.array([1.0, -1.0])[
-        :, None
-    ]
-    high, low = designs.deviations(changes, designs.followed(changes))
+    designs = ChangedDesigns(linear)
+    # the corners of each row, looked at on that row; many rows share theirs
+    corners, own = np.unique(np.sign(linear.slopes) * linear.tolerances.widths, axis=0, return_inverse=True)
+    rows = np.arange(len(linear.rows))
+    high, low = (
+        designs.deviations(changes, designs.followed(changes)[0])[own.ravel(), rows]
+        for changes in (corners, -corners)
+    )
     return WorstCase(linear, high, low)

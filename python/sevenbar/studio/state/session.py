@@ -7,9 +7,10 @@ import time
 
 import numpy as np
 
-from sevenbar.description.draft import Draft, Place
+from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.word import Place
 from sevenbar.reporting.summary import meaning
 from sevenbar.studio.state.view import View, modes_at, nearest, views_of
 

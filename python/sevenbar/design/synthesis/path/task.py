@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.description.draft import Dimension, Draft
+from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.design.synthesis.path.closure import PointClosure
+from sevenbar.design.synthesis.path.point import PointLoop
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
+from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.linkage import Linkage
 
@@ -62,9 +63,9 @@ class PathTask:
     limits: Limits
 
     @cached_property
-    def closure(self) -> PointClosure:
-        """The closure of the linkage, with the point."""
-        return PointClosure(self.draft, self.point, self.varied)
+    def closure(self) -> PointLoop:
+        """The loop of the linkage, with the point."""
+        return PointLoop(self.draft, self.point, self.varied)
 
     @property
     def dimensions(self) -> tuple[Dimension, ...]:
@@ -372,23 +373,14 @@ def _usual(d: Dimension, size: float, *, drawn: bool) -> tuple[float, float]:
 def _refuse_unreachable(task: PathTask) -> None:
     """`RequestError` for a path that is larger than the linkage can reach within the bounds."""
     values = {number: (low, high) for number, low, high in zip(task.varied, task.low, task.high, strict=True)}
-    start = task.closure.start
-    word = task.closure.word(start)
-    reach = 0.0
-    for step in word.steps[: word.carried]:
-        if step.slide.column is not None or step.pitch is not None or np.any(step.place):
-            return
-        for number in step.slide.dimensions:
-            ends = values.get(number, (start[number], start[number]))
-            reach += max(abs(end) for end in ends)
-    if word.at_moves:
-        most = [max(map(abs, values.get(number, (start[number],) * 2))) for number in word.at_moves]
-        reach += math.hypot(*most)
-    else:
-        reach += float(np.linalg.norm(word.at))
+    most = {number: abs(value) for number, value in enumerate(task.closure.start)}
+    most |= {number: max(abs(low), abs(high)) for number, (low, high) in values.items()}
+    reach = task.closure.reach(most)
+    if reach is None:
+        return
     unit = task.draft.linkage.length_unit
     if not task.place:
-        far = np.linalg.norm(task.wanted - word.start[:3, 3], axis=1)
+        far = np.linalg.norm(task.wanted, axis=1)
         if far.max() > reach:
             raise RequestError(
                 f"points: point {far.argmax() + 1} lies {far.max():.4g} {unit} from the origin, and the "
