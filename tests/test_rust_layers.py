@@ -31,7 +31,8 @@ loops::curve loops::follow loops::on_curve loops::turnings loops::join loops::me
 loops::change_points loops::arcs loops::found loops::known_curves loops::search
 
 loops::row loops::row_lanes loops::passes loops::extremes loops::rows loops::assembly loops::circuit
-loops::motion loops::measures loops::numbers
+loops::motion loops::measures
+loops::motions loops::numbers loops::number_slopes
 loops
 """
 ORDER = IN_ORDER.split()

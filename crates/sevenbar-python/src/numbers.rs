@@ -7,7 +7,7 @@ use numpy::{
     PyReadonlyArray4, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
-use sevenbar_core::loops::{Advance, Design, Move, NumberedLoop, NumberedPoint};
+use sevenbar_core::loops::{Advance, Design, Move, NumberedLoop, NumberedPoint, slopes};
 
 /// A loop that knows what its numbers move; lengths in parts of the size.
 #[pyclass(frozen, module = "sevenbar._core")]
@@ -91,7 +91,7 @@ impl Numbers {
         let values = values
             .as_slice()
             .map_err(|_| CoreError::new_err("values: the array is not contiguous"))?;
-        let found = py.detach(|| self.0.slopes(values, order));
+        let found = py.detach(|| slopes(&self.0, values, order));
         let (all, points, idle) = (self.0.numbers() + 1, self.0.points(), self.0.idle());
         Ok(vec![
             shaped(py, found.rates, &[rows, 3, width])?,
