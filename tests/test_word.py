@@ -43,11 +43,11 @@ def rows(rng):
 
 def drawn(rng):
     """Joints of any kind as drawn."""
-    kinds = ["R", *rng.choice(list("RPHCUS"), size=rng.integers(2, 6)), "R"]
+    kinds = ["R", *rng.choice(list("RPHCUSE"), size=rng.integers(2, 6)), "R"]
     joints = []
     for kind in kinds:
         joint = {"kind": str(kind), "at": rng.normal(size=3)}
-        if kind in "RPHC":
+        if kind in "RPHCE":
             joint["axis"] = rng.normal(size=3)
         if kind == "U":
             joint["axes"] = rng.normal(size=(2, 3))
