@@ -34,15 +34,15 @@ MADE = ("accuracy.md", "benchmarks.md", "hard-use.md", "changelog.md")
 
 #: How often each word may still be in the sources. A smaller number is always right; none may grow.
 ALLOWED = {
-    "told": 414,
-    "comes to": 41,
+    "told": 407,
+    "comes to": 33,
     "misfit": 67,
     "established": 3,
     "stands": 92,
     "beside": 170,
-    "but for": 23,
-    "parts of": 172,
-    "looks": 121,
+    "but for": 11,
+    "parts of": 93,
+    "looks": 103,
     "hard use": 8,
     "asks of": 43,
     "is said": 4,

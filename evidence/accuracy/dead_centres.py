@@ -38,7 +38,7 @@ ARRIVED = mp.mpf(10) ** -24
 #: Most of them: each doubles the digits.
 NEWTON_STEPS = 8
 
-#: Asked for in a place, in parts of 1 or of the dead centre's condition where that is more.
+#: Asked for in a place, relative to 1 or to the dead centre's condition where that is more.
 ASKED = {"closed form": 1e-12, "general": 1e-10}
 
 
@@ -196,7 +196,7 @@ def measured(name: str, *, distances: Sequence[float] = DISTANCES, most: int = M
 
 
 def _by_distance(rows: list[Row], closed_form: bool) -> list[dict[str, object]]:
-    """For each distance the greatest condition, errors, and errors in parts of the bound, of the joints."""
+    """For each distance the greatest condition, errors, and errors relative to the bound, of the joints."""
     steps = []
     for distance in DISTANCES:
         # half way to the next distances, in decades

@@ -24,13 +24,13 @@ FLAT = 1e-9
 #: Vertices farther [rad] than this are none of the extreme that was told.
 FAR = 1e-3
 
-#: Asked for in a value, in parts of the greater of both extremes, or of the input's pace.
+#: Asked for in a value, relative to the greater of both extremes, or of the input's pace.
 ASKED = 1e-10
 
 
 @dataclass(frozen=True)
 class Extreme:
-    """An extreme beside the exact one: its error in parts of the greater of both, that of its place [rad]."""
+    """An extreme beside the exact one: its error relative to the greater of both, that of its place [rad]."""
 
     linkage: str
     circuit: int

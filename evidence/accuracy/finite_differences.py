@@ -89,7 +89,7 @@ SCHEMES = {"forward": _forward_rates, "central": _central_rates}
 def errors_by_step() -> dict[str, object]:
     """Errors of differences of the point's places at each step, and of exact rates, against 60 digits.
 
-    The greatest error at any input, in parts of the greatest exact rate of all inputs; each a list by step,
+    The greatest error at any input, relative to the greatest exact rate of all inputs; each a list by step,
     for velocity, acceleration and jerk. Places are in double precision, as any program would have them.
     """
     linkage = sb.load("seven_r")

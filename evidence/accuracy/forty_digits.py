@@ -4,7 +4,7 @@ The references are `precise_loops` (any loop, from the product round it) and, fo
 (from the distance of its two balls): poses by Newton's method, derivatives by differences, in 60 and 80
 digits.
 
-Scales: a joint's position in radians, a slide and a place in parts of the longest link. A rate of order k in
+Scales: a joint's position in radians, a slide and a place relative to the longest link. A rate of order k in
 parts of the greatest component of the exact vector in the same row, or, where that is smaller, of the input's
 speed to the power k: beside an output dead centre a velocity passes zero and has no relative error.
 """
@@ -157,7 +157,7 @@ def joint_errors(
 
 
 def point_errors(got: np.ndarray, exact: Moments, size: float, pace: float) -> list[float]:
-    """Of a point (4, 3): the greatest component of the error, in parts of the size and of the scales."""
+    """Of a point (4, 3): the greatest component of the error, relative to the size and to the scales."""
     return joint_errors(got, exact, np.full(3, size), pace, np.zeros(3, bool))
 
 

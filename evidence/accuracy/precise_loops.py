@@ -57,7 +57,7 @@ class PreciseLoop:
         return _times(self.frames(q)[self.loop.ends[number - 1]], _exact_rows(back))
 
     def residual(self, q: Sequence[mp.mpf]) -> list[mp.mpf]:
-        """The sine of the product's turn about x, y, z, and its place in parts of the size."""
+        """The sine of the product's turn about x, y, z, and its place relative to the size."""
         r = self.frames(q)[-1]
         turned = [(r[2][1] - r[1][2]) / 2, (r[0][2] - r[2][0]) / 2, (r[1][0] - r[0][1]) / 2]
         return turned + [row[3] / self.loop.size for row in r]

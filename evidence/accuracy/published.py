@@ -50,7 +50,7 @@ def formulas_of_rates() -> list[dict[str, object]]:
     """The paper's eq. (12) and (13), signs mended and as printed, beside the rates of its branch 0.
 
     `beta' = -+ alpha' L1 (M sin - D cos - L3 cos cos) / R`, `beta'' = -+ (alpha'^2 Q + beta'^2 S + 2 alpha'
-    beta' T) / R`. Errors in parts of the greatest rate over the inputs.
+    beta' T) / R`. Errors relative to the greatest rate over the inputs.
     """
     linkage = sb.load("rssr")
     M, N, L1, L3, D = (linkage.dimensions[name] for name in ("M", "N", "L1", "L3", "D"))
@@ -83,7 +83,7 @@ def seven_r() -> dict[str, object]:
     """Greatest errors at the poses of the 7R paper's linkage that were worked out elsewhere in 40 digits.
 
     Angles in radians, rates of angles as they are (the input's speed is 1), places and rates of the paper's
-    point in parts of their greatest length over all poses.
+    point relative to their greatest length over all poses.
     """
     modes = _read("seven_r_modes.json")["modes"]
     assert isinstance(modes, list)

@@ -106,7 +106,7 @@ class Rssr:
         return (self.crank, self.rocker) if driver == "crank" else (self.rocker, self.crank)
 
     def closure_error(self, crank: np.ndarray, rocker: np.ndarray) -> np.ndarray:
-        """`| |A - B| - L2 |` in parts of the size."""
+        """`| |A - B| - L2 |` relative to the size."""
         apart = np.linalg.norm(self.crank.turned(crank) - self.rocker.turned(rocker), axis=1)
         return np.abs(apart - self.coupler) / self.size
 

@@ -13,9 +13,9 @@ ENGINES = ("exudyn", "mujoco")
 
 
 def measured(name: str, engine: str, steps: int) -> dict[str, object]:
-    """Quantiles of the output's differences, in parts of the greatest value or of the input's pace.
+    """Quantiles of the output's differences, relative to the greatest value or to the input's pace.
 
-    Angles are not scaled [rad], slides and places are in parts of the size.
+    Angles are not scaled [rad], slides and places are relative to the size.
     """
     run = simulate(sb.load(name), engine, steps=steps)
     circuit = run.course.circuit

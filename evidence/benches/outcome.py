@@ -1,4 +1,4 @@
-"""What a case comes to: tables and plots, as they are kept in the JSON and shown on the page."""
+"""The result of a case: tables and plots, as they are kept in the JSON and shown on the page."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from sevenbar.kinematics.measures import MEASURES, rows_of
 from sevenbar.reporting import report
 from sevenbar.reporting.summary import summary
 
-#: Closure error of a row: radians, lengths in parts of the size. Promised by the tests of circuits.
+#: Closure error of a row: radians, lengths relative to the size. Promised by the tests of circuits.
 CLOSED = 1e-10
 
 #: The same where condition numbers are past `WELL`: Newton's last step is then lost in rounding.
@@ -43,10 +43,10 @@ ON_CIRCUIT = 1e-3
 #: Share of their spread by which a row may lie beyond the extremes of a rate.
 BEYOND = 1e-6
 
-#: Rates of an output at rest are rounding, in parts of the greatest rate of the joints up to this order.
+#: Rates of an output at rest are rounding, relative to the greatest rate of the joints up to this order.
 RESTING = 1e-14
 
-#: How far rows may lie outside the range of their circuit, in parts of it: limits may be roots of roundings.
+#: How far rows may lie outside the range of their circuit, relative to it: limits may be roots of roundings.
 WITHIN = 1e-6
 
 #: Rows of a turn: enough to meet every pass, few enough for a million linkages.
@@ -220,7 +220,7 @@ def independently_closed(linkage: sb.Linkage, motion: sb.Motion) -> None:
         good = _posed(circuit) & np.isfinite(circuit.q).all(axis=1)
         if not good.any():
             continue
-        # the walk measures gaps in parts of another size
+        # the walk measures gaps relative to another size
         allowed = _promised(motion, circuit)[good] * max(1.0, circuit.size / loop.size)
         worst = float((loop.errors(circuit.q[good]) / allowed).max())
         hold(

@@ -26,7 +26,7 @@ from evidence.fuzz.ways import WAYS, Job, _text, run
 #: Memory that a worker may hold [bytes]: an ordinary one has a tenth.
 MOST_MEMORY = 2_000_000_000
 
-#: How often workers are looked at [s].
+#: How often workers are checked [s].
 GLANCE = 0.25
 
 #: Time [s] in which a worker must have begun its first case: it imports everything first.

@@ -7,7 +7,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Zeros nearer to each other than this [rad] are not told apart: a change of 1e-12 in the coefficients
+/// Zeros nearer to each other than this [rad] are not distinct: a change of 1e-12 in the coefficients
 /// makes two of them meet, which no drawing or machine can promise not to happen.
 pub const DOUBLE_ZERO_DISTANCE: f64 = 1e-6;
 
@@ -151,7 +151,7 @@ impl TrigQuadratic {
     }
 }
 
-/// Joins zeros that are not told apart into multiple ones, round the circle.
+/// Joins zeros that are not distinct into multiple ones, round the circle.
 fn merged(mut zeros: Vec<Zero>, relative_noise: f64) -> Vec<Zero> {
     let reach = DOUBLE_ZERO_DISTANCE.max(8.0 * relative_noise.sqrt());
     zeros.sort_by(|a, b| a.angle.total_cmp(&b.angle));

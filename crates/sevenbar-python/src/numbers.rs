@@ -9,7 +9,7 @@ use numpy::{
 use pyo3::prelude::*;
 use sevenbar_core::loops::{Advance, Design, Move, NumberedLoop, NumberedPoint, slopes};
 
-/// A loop that knows what its numbers move; lengths in parts of the size.
+/// A loop that knows what its numbers move; lengths relative to the size.
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct Numbers(NumberedLoop);
 

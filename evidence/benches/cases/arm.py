@@ -11,10 +11,10 @@ from functools import cached_property
 
 import numpy as np
 
-#: Sine of the angle between axes that are parallel, but for rounding.
+#: Sine of the angle between axes that are parallel, up to rounding.
 PARALLEL = 1e-9
 
-#: Distance in parts of the arm's size of lines that meet, but for rounding.
+#: Distance relative to the arm's size of lines that meet, up to rounding.
 MEETS = 1e-9
 
 

@@ -141,7 +141,7 @@ def turned(angles: np.ndarray) -> np.ndarray:
 
 
 def off(rows: Rows, truth: Rows) -> tuple[float, float, float]:
-    """Greatest differences of angles [rad], and of velocities and accelerations in parts of the greatest."""
+    """Greatest differences of angles [rad], and of velocities and accelerations relative to the greatest."""
     return (
         float(np.abs(turned(rows.q - truth.q)).max()),
         float(np.abs(rows.dq - truth.dq).max() / np.abs(truth.dq).max()),

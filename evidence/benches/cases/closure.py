@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import numpy as np
 
-#: Closure error (radians, lengths in parts of the size) of a pose that closes.
+#: Closure error (radians, lengths relative to the size) of a pose that closes.
 CLOSED = 1e-9
 
 #: Greatest difference [rad] in any joint of two names of one mode, both polished.
 SAME = 1e-6
 
-#: Sine of a turn below which it is its own sine, but for rounding.
+#: Sine of a turn below which it is its own sine, up to rounding.
 SMALL = 1e-9
 
-#: Damping in parts of the squared error, and what keeps a singular matrix solvable.
+#: Damping relative to the squared error, and what keeps a singular matrix solvable.
 DAMPING, ROUNDING = 0.01, 1e-15
 
 #: Longest step [rad] of a search in any joint; far from a pose longer ones lead nowhere.
@@ -47,7 +47,7 @@ class Closure:
         return out
 
     def residual(self, frames: np.ndarray) -> np.ndarray:
-        """The turn that is left over [rad] about x, y, z, and the place in parts of the size, (n, 6)."""
+        """The turn that is left over [rad] about x, y, z, and the place relative to the size, (n, 6)."""
         end = frames[:, 7]
         skew = 0.5 * np.stack(
             [end[:, 2, 1] - end[:, 1, 2], end[:, 0, 2] - end[:, 2, 0], end[:, 1, 0] - end[:, 0, 1]], axis=1
@@ -65,7 +65,7 @@ class Closure:
         return error
 
     def jacobian(self, frames: np.ndarray) -> np.ndarray:
-        """How the last frame turns and moves with each joint, (n, 6, 7), lengths in parts of the size."""
+        """How the last frame turns and moves with each joint, (n, 6, 7), lengths relative to the size."""
         axis, apart = frames[:, :7, :3, 2], frames[:, 7:, :3, 3] - frames[:, :7, :3, 3]
         return np.concatenate([axis, np.cross(axis, apart) / self.size], axis=2).swapaxes(1, 2)
 

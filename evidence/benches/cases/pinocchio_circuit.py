@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-#: Closure error at which Newton's method stops, lengths in parts of the size.
+#: Closure error at which Newton's method stops, lengths relative to the size.
 CLOSED = 1e-12
 
 #: Steps of Newton's method after which it has failed.
@@ -19,7 +19,7 @@ Follow = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.nda
 def follower(pin: Any, links: np.ndarray) -> Follow:
     """From a pose (7,) and inputs (n,) [rad] to angles, velocities, accelerations (n, 7) at 1 rad/s.
 
-    `links` (7, 4, 4) are the transforms of the loop; lengths are put in parts of the longest.
+    `links` (7, 4, 4) are the transforms of the loop; lengths are put relative to the longest.
     """
     scaled = links.copy()
     scaled[:, :3, 3] /= np.linalg.norm(links[:, :3, 3], axis=1).max()

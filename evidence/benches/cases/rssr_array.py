@@ -18,7 +18,7 @@ ABOUT = """\
 in NumPy (each array operation once) and compiled by numba (one loop, `fastmath` off). Two branches an
 input, so two poses; position, velocity and acceleration of each. CPU time, one thread."""
 
-#: Allowed difference of two answers, in parts of the greatest value: some hundred roundings.
+#: Allowed difference of two answers, relative to the greatest value: some hundred roundings.
 AGREEMENT = 1e-11
 
 

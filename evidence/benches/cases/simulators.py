@@ -24,7 +24,7 @@ STEPS = (225, 450, 900, 1800, 3600, 7200)
 #: Position errors [rad] that a time is told for.
 ASKED = (1e-3, 1e-4, 1e-5, 1e-6)
 
-#: A turn of a joint's angle below this [rad] is the same but for rounding; logarithms need a number.
+#: A turn of a joint's angle below this [rad] is the same up to rounding; logarithms need a number.
 ROUNDING = 1e-16
 
 
@@ -49,7 +49,7 @@ def run(setting: Setting) -> Outcome:
 
 
 def ours(linkage: sb.Linkage, steps: tuple[int, ...]) -> list[tuple[int, float, float]]:
-    """Samples, seconds, and the greatest closure error in parts of the size."""
+    """Samples, seconds, and the greatest closure error relative to the size."""
     found = []
     for count in steps:
         motion = linkage.motion(count)

@@ -33,7 +33,7 @@ SAME_VALUE = 1e-6
 #: So many rows nearest to a value are tried: the passes of two turns go by it, with a row on both sides.
 NEAREST = 8
 
-#: A time ratio nearer to 1 is 1 but for rounding; there either stroke may become the slower: a kink.
+#: A time ratio nearer to 1 is 1 up to rounding; there either stroke may become the slower: a kink.
 EQUAL_STROKES = 1e-9
 
 #: 1 - sin of a transmission angle of 90 degrees, and sin of one of 0: there it has a kink, or stays.

@@ -264,7 +264,7 @@ class Linkage(Solvable):
     def _asked(
         self, samples: int, input: str | None, output: str | None, speed: float | str | None
     ) -> tuple[int, int, int, float]:
-        """Columns of input and output, a count, and the speed, once looked at."""
+        """Columns of input and output, a count, and the speed, once checked."""
         column, output_column = self._ends(
             input, self.drive.output if output is None and input is None else output
         )

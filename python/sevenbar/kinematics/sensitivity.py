@@ -34,7 +34,7 @@ from sevenbar.kinematics.word import Carried, Place, Values, holding_axis, point
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
 OPENING = 1e-9
 
-#: Share of a column, or of a point [parts of the size], in an idle motion that is more than rounding.
+#: Share of a column, or of a point [share of the size], in an idle motion that is more than rounding.
 TAKES_PART = 1e-9
 
 #: Steps in which a change of numbers or inputs is made where it is too great for one.
@@ -88,7 +88,7 @@ class Numbers:
             [self.size if d.kind in ("length", "pitch") else 1 / d.scale for d in self.dimensions]
         )
         self.turns = np.array([kind == "turn" for kind in linkage.column_kinds])
-        #: What a value of each column is in parts of in the core: a radian, or the size.
+        #: What a value of each column is relative to in the core: a radian, or the size.
         self.scales = np.where(self.turns, 1.0, self.size)
         #: Balls, counted among the joints, that stand as two turns.
         self.spun, self.held, self.spins = linkage.held
@@ -208,7 +208,7 @@ class NumberedLoop:
         )
 
     def _design(self, values: Values) -> tuple[Floats, Floats]:
-        """The fixed transforms, lengths in parts of the size, and the advances for a radian."""
+        """The fixed transforms, lengths relative to the size, and the advances for a radian."""
         word, size = self.numbers.word, self.numbers.size
         fixed = np.array([product.pose(values) for product in word.fixed])
         fixed[:, :3, 3] /= size

@@ -1,6 +1,6 @@
 """The dimensions of a real linkage from its measured curve: least squares with exact sensitivities.
 
-With r the differences of measured and computed values in parts of their noise and J their exact derivatives
+With r the differences of measured and computed values relative to their noise and J their exact derivatives
 by the dimensions (`sevenbar.kinematics.sensitivity`), `|r|^2` is least by scipy's trust-region steps; then
 
     s^2 = |r|^2 / (n - k),      covariance s^2 (J^T J)^-1,      value +- t(n - k) sqrt(covariance)         (1)
@@ -44,11 +44,11 @@ OFFSETS = ("input", "output")
 #: The order in which dimensions of a row are held where the data do not tell them all.
 ROW_ORDER = ("length", "twist", "angle", "offset", "pitch")
 
-#: Standard error [parts of the linkage's size, or rad] beyond which a direction counts as not told: the curve
+#: Standard error [share of the linkage's size, or rad] beyond which a direction counts as not told: the curve
 #: bends over such a distance, so that (1), which takes it for straight, would mean nothing.
 UNTOLD = 0.03
 
-#: Singular value, in parts of the greatest, that is zero but for rounding.
+#: Singular value, relative to the greatest, that is zero up to rounding.
 ROUNDING = 1e-9
 
 #: A share in a direction below which a dimension does not take part in it.
@@ -57,7 +57,7 @@ TAKES_PART = 1e-2
 #: Correlation of neighbouring residuals, in standard deviations of that of random ones, that is told of.
 FOLLOWS = 4.0
 
-#: How often the choice of what is held, or the noise of each quantity, is looked at again.
+#: How often the choice of what is held, or the noise of each quantity, is checked again.
 MOST_ROUNDS = 8
 
 Status = Literal["calibrated", "fixed", "untold", "opens the loop"]
@@ -345,7 +345,7 @@ class _Fit:
         return len(self.model.begin) * len(self.model.values)
 
     def residual(self, z: Floats) -> Floats:
-        """Computed less measured in parts of the noise; NaN where the loop does not close."""
+        """Computed less measured relative to the noise; NaN where the loop does not close."""
         computed = self.model.computed(z)
         if computed is None:
             return np.full(self.count, np.nan)

@@ -1,4 +1,4 @@
-"""What a motion comes to: one object for programs, a page of text for people, a folder of files to keep.
+"""The result of a motion: one object for programs, a page of text for people, a folder of files to keep.
 
 A report only writes down what the motion holds; it solves nothing.
 """

@@ -1,4 +1,4 @@
-"""What a motion comes to, in words and tables for people; what circuits share is said once."""
+"""The result of a motion, in words and tables for people; what circuits share is said once."""
 
 from __future__ import annotations
 

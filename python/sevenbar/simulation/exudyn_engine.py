@@ -19,7 +19,7 @@ from sevenbar.simulation.prototype import GROUND, GYRATION, Body, Connection, Pr
 SPECTRAL_RADIUS = 0.6
 
 #: Newton's iterations end where the residual falls below this, or below this part of the step's first one:
-#: lengths in parts of the size, times in the input's time for a radian (or a size, where it slides).
+#: lengths relative to the size, times in the input's time for a radian (or a size, where it slides).
 TOLERANCE, SHARE = 1e-12, 1e-10
 
 #: A body's mass. Small against lengths of size one, so that constraints weigh most in the residual.

@@ -1,4 +1,4 @@
-"""What a simulation comes to: a page of text for people, JSON, and a folder with figures and every row."""
+"""The result of a simulation: a page of text for people, JSON, and a folder with figures and every row."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def as_dict(run: Simulation) -> dict[str, Any]:
-    """What a run comes to, as plain values: angles in radians, lengths in the linkage's unit."""
+    """The result of a run, as plain values: angles in radians, lengths in the linkage's unit."""
     way = run.course
     told = {
         "format": 1,
@@ -145,7 +145,7 @@ def write(
 
 
 def as_json(run: Simulation) -> str:
-    """What a run comes to as JSON text."""
+    """The result of a run as JSON text."""
     return json_text(as_dict(run))
 
 

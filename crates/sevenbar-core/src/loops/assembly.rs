@@ -7,7 +7,7 @@ use super::rows::joint_values;
 /// All assembly modes at one input.
 #[derive(Clone, Debug)]
 pub struct Modes {
-    /// The joint values of each, and its closure error in parts of the size or radians.
+    /// The joint values of each, and its closure error relative to the size or radians.
     pub modes: Vec<(Vec<f64>, f64)>,
     /// How complete they are.
     pub completeness: Completeness,

@@ -20,7 +20,7 @@ pub(super) const BALLS: usize = 2;
 pub(super) enum Joint {
     Turn,
     Slide,
-    /// Advance for each radian, in parts of the size.
+    /// Advance for each radian, relative to the size.
     Screw(f64),
     /// The n-th ball.
     Ball(usize),
@@ -34,7 +34,7 @@ impl Joint {
     }
 }
 
-/// `Z1 G1 Z2 .. Zn Gn = 1`, lengths in parts of the size.
+/// `Z1 G1 Z2 .. Zn Gn = 1`, lengths relative to the size.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
     pub joints: Vec<Joint>,
@@ -283,7 +283,7 @@ impl Chain {
         by
     }
 
-    /// How far the loop is from closing: the greater of the angle [rad] and the gap in parts of the size.
+    /// How far the loop is from closing: the greater of the angle [rad] and the gap relative to the size.
     #[inline(always)]
     pub fn residual<N: Number>(&self, placed: &Placed<N>) -> N {
         let e = &placed.error;

@@ -70,7 +70,7 @@ const NO_FREEDOM: f64 = 1e-4;
 pub(super) struct Ray {
     /// Its place on the sphere, and the direction outwards there.
     pub start: Start,
-    /// Seen from the pose, the places on the sphere and on the one of half its radius, in parts of the radius.
+    /// Seen from the pose, the places on the sphere and on the one of half its radius, relative to the radius.
     seen: [Columns; 2],
     /// How near to the pose it can be followed [rad, or parts of the size].
     hidden: f64,

@@ -20,7 +20,7 @@ pub(super) const JOINTS: usize = 7;
 /// most.
 const EXCHANGED: f64 = 8.0;
 
-/// `|e^(i t)|`, or a slide in parts of the size, beyond which a path has left for infinity.
+/// `|e^(i t)|`, or a slide relative to the size, beyond which a path has left for infinity.
 const INFINITE: f64 = 1e7;
 
 /// Parameters of the closure.
@@ -98,7 +98,7 @@ pub(super) fn moved<V: Vector>(
     out
 }
 
-/// The greatest part of a move: [rad], or slides in parts of the size or of themselves.
+/// The greatest part of a move: [rad], or slides relative to the size or to themselves.
 #[inline(always)]
 pub(super) fn size<V: Vector>(slides: &Slides, x: &[Lanes<V>; UNKNOWNS], by: &[Lanes<V>; UNKNOWNS]) -> Reals {
     // a sum, so that what is not a number shows

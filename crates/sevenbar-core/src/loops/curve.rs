@@ -14,7 +14,7 @@
 //! other solution lies in the wider tube: what closes in there is a place of this curve.
 //!
 //! In a chain with redundant constraints the argument holds for the constraints that count, and that the others close as well
-//! is looked at in every node. A ball's three columns are the vector of its turn.
+//! is checked in every node. A ball's three columns are the vector of its turn.
 //!
 //! Source: docs/theory.md, (7) to (12).
 
@@ -134,7 +134,7 @@ impl Curve {
         self.nodes.iter().any(Node::is_crossing)
     }
 
-    /// Whether a column stands still, but for rounding, all along.
+    /// Whether a column stands still, up to rounding, all along.
     pub fn rests(&self, column: usize) -> bool {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for node in &self.nodes {

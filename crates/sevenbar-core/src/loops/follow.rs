@@ -19,7 +19,7 @@ const MOST_NODES: usize = 100_000;
 /// The same of a piece between starts, which many walk at once; a longer one is left to the ordinary way.
 const MOST_PIECE_NODES: usize = 5_000;
 
-/// Slides [parts of the size] and screws [rad] are not followed farther than this.
+/// Slides [share of the size] and screws [rad] are not followed farther than this.
 const FARTHEST: f64 = 50.0;
 
 /// A closed configuration and the direction in which to leave it.

@@ -19,7 +19,7 @@ const ROUNDING: f64 = NO_TWIST;
 /// Axes that are parallel but for less than this sine have their common normal far away: such a closure keeps the frames it has.
 const LEAST_SINE: f64 = 0.01;
 
-/// The same for frames that would be farther apart than this [parts of the size].
+/// The same for frames that would be farther apart than this [share of the size].
 const FARTHEST: f64 = 3.0;
 
 /// Ways round the loop after which a frame moves no other.
@@ -152,7 +152,7 @@ impl Pattern {
     }
 }
 
-/// The quarter turns that a turn is, but for rounding.
+/// The quarter turns that a turn is, up to rounding.
 fn quarters(turn: Complex64) -> Quarters {
     (0..4).find(|&n| (turn - turn_of(n)).norm() < ROUNDING)
 }

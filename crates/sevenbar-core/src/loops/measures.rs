@@ -16,7 +16,7 @@ pub enum Driven {
     ManyFreedoms = 2,
 }
 
-/// What a loop comes to.
+/// The result of a loop.
 #[derive(Clone, Debug)]
 pub struct Measures {
     /// Whether there is a motion.

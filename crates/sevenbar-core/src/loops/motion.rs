@@ -48,7 +48,7 @@ pub struct Motion {
 pub enum Through {
     /// The loop closes near the pose, and moves.
     Circuit(Box<Circuit>),
-    /// It does not close near it; how far it is from closing, in parts of the size or radians.
+    /// It does not close near it; how far it is from closing, relative to the size or radians.
     Apart(f64),
     /// It closes and no motion could be followed.
     Still,

@@ -71,7 +71,7 @@ pub struct Design {
     pub advances: Vec<f64>,
 }
 
-/// A loop of turns (R), slides (P), screws (H) and balls (S) with its numbers; lengths in parts of the size.
+/// A loop of turns (R), slides (P), screws (H) and balls (S) with its numbers; lengths relative to the size.
 ///
 /// Columns are the joints' values, three of a ball: on the way in and out its turns about z, y and x, and in derivatives its
 /// rotation about x, y and z of the frame before it.

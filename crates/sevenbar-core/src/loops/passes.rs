@@ -194,7 +194,7 @@ impl<'a> Passes<'a> {
         let (a, b) = (&self.curve.nodes[segment], &self.curve.nodes[segment + 1]);
         let middle = a.at.values[input] + a.gone(input, 0.5 * a.step);
         let (start, end) = (a.at.values[input], b.at.values[input]);
-        // by the nearer end, so that the series is short; the last node may fall on the one before it, but for rounding
+        // by the nearer end, so that the series is short; the last node may fall on the one before it, up to rounding
         let first = (value < middle) == (start < end);
         let reach = 0.6 * a.step.max(0.0);
         let (node, low, high) = if first {

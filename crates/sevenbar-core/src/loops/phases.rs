@@ -27,7 +27,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// The factors that are looked at.
+    /// The factors that are checked.
     pub fn watched(&self) -> impl Iterator<Item = usize> + '_ {
         let joints = (0..UNKNOWNS).filter(|&i| self.values[i].is_some());
         std::iter::once(0).chain(joints.flat_map(|i| [1 + 2 * i, 2 + 2 * i]))

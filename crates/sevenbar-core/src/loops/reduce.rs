@@ -222,7 +222,7 @@ impl Building {
     }
 }
 
-/// The chain of a description: lengths in parts of the size.
+/// The chain of a description: lengths relative to the size.
 pub(super) fn reduce(kinds: &[Kind], base: &Pose, ground: &Pose, links: &[Pose]) -> Reduced {
     let count = kinds.len();
     let (idle, held) = idle_freedoms(kinds, links);

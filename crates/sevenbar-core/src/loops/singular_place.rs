@@ -23,7 +23,7 @@ const SAME_LIMIT: f64 = 1e-6;
 /// Curves that pass each other at more than this [rad, or parts of the size] are followed apart, whatever their limits.
 const APART: f64 = 1e-5;
 
-/// Curves that pass each other nearer than this [rad, or parts of the size] are not told apart: a relative change of some 1e-12 in a
+/// Curves that pass each other nearer than this [rad, or parts of the size] are not distinct: a relative change of some 1e-12 in a
 /// dimension makes as much, and rounding hides the way between them.
 const TOUCHING: f64 = 1e-6;
 
@@ -78,7 +78,7 @@ impl Place {
         2.0 * (2.0 * (value * bent).abs()).sqrt()
     }
 
-    /// Whether it counts as a change point for these columns: it is one, but for rounding, or their limits nearly meet; or nothing
+    /// Whether it counts as a change point for these columns: it is one, up to rounding, or their limits nearly meet; or nothing
     /// can be followed between curves so near.
     pub fn counts(&self, wished: &[usize], stuck: bool) -> bool {
         let passing = self.passing();

@@ -11,7 +11,7 @@ use crate::rigid::{Pose, Vec3, add, cross, dot, norm, scale, sub, unit};
 /// The least sine of the angle between the line and the axis before at which that axis holds the spin: three degrees.
 const NEAR: f64 = 0.05;
 
-/// Values of the first joint at which the line is looked at.
+/// Values of the first joint at which the line is checked.
 const LOOKS: usize = 96;
 
 /// Directions of the half sphere among which another axis is chosen.
@@ -102,7 +102,7 @@ fn pieces(way: &Way, length: f64) -> Vec<[Vec3; 2]> {
     found
 }
 
-/// How far a slide as the first joint is looked at; `None` where the second joint does not move the balls apart, or is a screw.
+/// How far a slide as the first joint is checked; `None` where the second joint does not move the balls apart, or is a screw.
 fn reach(way: &Way, length: f64) -> Option<f64> {
     let start = norm(way.poses[0].inverse().translation);
     let sum = length + start + norm(way.poses[1].translation) + norm(way.poses[2].translation);

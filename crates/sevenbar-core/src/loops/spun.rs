@@ -23,7 +23,7 @@ type Series<const N: usize> = [[Taylor<N>; 3]; 3];
 /// A path nearer to the ball than this part of the size is taken as one through it, and has no plane.
 const STRAIGHT: f64 = 1e-8;
 
-/// Places of a joint, two turns of it, at which its balls' line is looked at.
+/// Places of a joint, two turns of it, at which its balls' line is checked.
 const LOOKS: usize = 720;
 
 /// Links between two balls with one joint among them, in the frame of the first ball.

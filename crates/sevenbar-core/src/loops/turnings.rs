@@ -21,7 +21,7 @@ const SAME_PLACE: f64 = 1e-6;
 const NEAR: f64 = 1e3;
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// How far [rad, or parts of the size] from a change point a column's direction is looked at to see whether it turns back there.
+/// How far [rad, or parts of the size] from a change point a column's direction is checked to see whether it turns back there.
 const BESIDE: f64 = 1e-3;
 
 /// Places looked at within a step for a change of a column's direction.
@@ -124,7 +124,7 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
         marks.clear();
         for look in 0..=LOOKS {
             let s = a.step * look as f64 / LOOKS as f64;
-            // at the nodes their own rates, so that two steps see one sign of a rate that is zero but for rounding
+            // at the nodes their own rates, so that two steps see one sign of a rate that is zero up to rounding
             let rate = match look {
                 0 => a.rates[0][column],
                 LOOKS => b.rates[0][column],
@@ -143,7 +143,7 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
         if marks.len() < 2 {
             continue;
         }
-        // both ends are known, and the places between are looked at
+        // both ends are known, and the places between are checked
         let count = marks.len();
         for (k, mark) in marks.iter_mut().enumerate() {
             *mark = if k == 0 {

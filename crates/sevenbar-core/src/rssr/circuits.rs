@@ -23,7 +23,7 @@ pub struct Row {
     pub mode: usize,
     /// Joint values in loop order: value and three derivatives by time.
     pub joints: [[f64; 4]; JOINT_COLUMNS],
-    /// The closure error in parts of the linkage's size.
+    /// The closure error relative to the linkage's size.
     pub residual: f64,
     /// How much a relative error of the squared lengths is magnified in what all rates rest on.
     pub condition: f64,

@@ -59,7 +59,7 @@ pub(super) struct Domain {
     /// Angles inside an extent where the two solutions meet and part again.
     pub(super) touches: Vec<f64>,
     pub(super) limits: Vec<f64>,
-    /// Where zeros meet, or are not told apart.
+    /// Where zeros meet, or are not distinct.
     pub(super) change_points: Vec<f64>,
     /// True where rounding decides how many extents there are.
     pub(super) degenerate: bool,

@@ -159,7 +159,7 @@ impl Rssr {
         Ok(moved.map(|x| x.scale(self.unit)))
     }
 
-    /// `| |A - B| - L2 |` in parts of [`Self::size`].
+    /// `| |A - B| - L2 |` relative to [`Self::size`].
     pub fn residual(&self, crank: f64, rocker: f64) -> f64 {
         (norm(sub(self.crank.at(crank), self.rocker.at(rocker))) - self.coupler).abs()
     }

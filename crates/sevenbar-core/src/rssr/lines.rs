@@ -44,19 +44,19 @@ const LINE_MARGIN: f64 = 1e-5;
 /// The least value of one line at a zero of the other: such zeros are at least so many radians apart.
 const CROSSING_MARGIN: f64 = 1e-3;
 
-/// The greatest error of W in parts of its slope at a zero [rad]: within it Newton's steps converge in two.
+/// The greatest error of W relative to its slope at a zero [rad]: within it Newton's steps converge in two.
 const ZERO_ERROR: f64 = 1e-8;
 
-/// The greatest error of W in parts of its own least size away from zeros.
+/// The greatest error of W relative to its own least size away from zeros.
 const COUNT_ERROR: f64 = 1e-3;
 
-/// Rounding of W in parts of the sum of its terms, in generous measure: twice that of the other solver.
+/// Rounding of W relative to the sum of its terms, in generous measure: twice that of the other solver.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A last Newton step [rad] greater than this has not converged.
 const SETTLED: f64 = 1e-8;
 
-/// M, N, L1, L2, L3 and D of each linkage, in parts of a power of two near the greatest of its own.
+/// M, N, L1, L2, L3 and D of each linkage, relative to a power of two near the greatest of its own.
 pub(super) type Dimensions = [Lane; 6];
 
 /// A direction of the closure at one linkage: the driving ball is at `(d + r sin t, f)` in the plane of the follower and at
@@ -144,7 +144,7 @@ impl Lines {
         }
     }
 
-    /// The trigonometric polynomial of a linkage: turned, and in parts of its second harmonic.
+    /// The trigonometric polynomial of a linkage: turned, and relative to its second harmonic.
     #[inline(always)]
     fn set_up<const FUSED: bool>(&mut self, cubic: &mut Cubic, drive: &Drive, i: usize) {
         let Drive { d, f, m, r, radius, coupler } = *drive;

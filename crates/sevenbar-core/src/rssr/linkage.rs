@@ -146,7 +146,7 @@ impl Rssr {
         [self.crank.radius, self.coupler, self.rocker.radius].map(|x| x * self.unit)
     }
 
-    /// The greatest dimension, rounded down to a power of two; residuals are given in parts of it.
+    /// The greatest dimension, rounded down to a power of two; residuals are given relative to it.
     pub fn size(&self) -> f64 {
         self.unit
     }

@@ -11,7 +11,7 @@ use crate::outcome::{CircuitMeasures, Ends};
 use crate::parallel::in_order;
 use std::f64::consts::PI;
 
-/// What a motion comes to.
+/// The result of a motion.
 #[derive(Clone, Debug)]
 pub struct MotionMeasures {
     /// The motion type as a number, or [`INVALID`].

@@ -8,7 +8,7 @@ use crate::trigonometric::{TrigLinear, TrigQuadratic};
 use crate::twofold::Twofold;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Rounding of a squared reach, in parts of coupler times size: within it a solution just out of reach is at a limit.
+/// Rounding of a squared reach, relative to coupler times size: within it a solution just out of reach is at a limit.
 pub(super) const REACH_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// From this condition on no digit of the rates is left: the pose is a dead centre of the input.

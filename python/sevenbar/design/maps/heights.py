@@ -40,7 +40,7 @@ INSIDE, BEND = 3e-5, 7.5e-3
 #: Rounds in which narrow places are given more samples.
 ROUNDS = 3
 
-#: A triangle lies in its region when points this far from its sides [parts of the way to its middle] do.
+#: A triangle lies in its region when points this far from its sides [share of the way to its middle] do.
 SHRUNK = 0.02
 
 

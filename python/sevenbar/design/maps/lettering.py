@@ -14,7 +14,7 @@ from sevenbar.design.maps.atlas import Map
 #: Places across a map where the name of a region is tried.
 RASTER = 160
 
-#: Height and width of a letter, in parts of the size of the font.
+#: Height and width of a letter, relative to the size of the font.
 LETTER = (1.35, 0.56)
 
 #: The ink of boundaries and names.

@@ -24,7 +24,7 @@ Edge = tuple[Corner, Corner]
 #: Where a chord ends: on an edge, or in the middle of a square, told by one corner twice as large.
 Node = tuple[Corner, ...]
 
-#: More squares of one width in which boundaries are not told apart are not halved; their width is told.
+#: More squares of one width in which boundaries are not distinct are not halved; their width is told.
 MOST_HIDING = 10_000
 
 #: More squares than this are not kept, whatever their boundaries look like.
@@ -33,7 +33,7 @@ MOST_SQUARES = 200_000
 
 @dataclass(frozen=True)
 class Scheme:
-    """How finely a map is looked at.
+    """How finely a map is checked.
 
     `cells` squares along each range to begin with; those with a boundary are halved `regular` times, those in
     which boundaries meet or cannot be told apart `finest` times. A chord is within `tolerance` [share of the
@@ -92,7 +92,7 @@ class _Making:
         self.kinds: dict[Corner, int] = {}
         #: Of each edge cut: where, and whether a third kind stands between its ends.
         self.cuts: dict[Node, tuple[tuple[float, float], bool]] = {}
-        #: Squares of the least width in which boundaries are not told apart.
+        #: Squares of the least width in which boundaries are not distinct.
         self.hiding: set[Square] = set()
         #: Squares that were set aside.
         self.quiet: set[Square] = set()
@@ -169,7 +169,7 @@ class _Making:
             if gaps is None:
                 return kept + squares
             near = np.sort(np.where(np.abs(gaps) <= plane.reach(width)[:, None], gaps, np.nan), axis=1)
-            # boundaries nearer to each other than the tolerance are not told apart
+            # boundaries nearer to each other than the tolerance are not distinct
             same = plane.reach(np.array([scheme.tolerance]))
             parts = np.isfinite(near[:, 0]).astype(int) + (np.diff(near, axis=1) > same).sum(axis=1)
             wide = array[:, 2] > 1 << (scheme.finest - scheme.regular)

@@ -29,13 +29,13 @@ NEAR = 0.02
 #: By how much a pose may lie behind the one before it [rows]: several see one corner of the polygon.
 PLACE_SLACK = 0.1
 
-#: Inputs over the used range at which the transmission angle is looked at.
+#: Inputs over the used range at which the transmission angle is checked.
 RANGE_SAMPLES = 361
 
 #: By how much a limit may be missed through rounding: [rad] and parts of a length.
 LIMIT_ROUNDING = 1e-9
 
-#: Two designs are one where no dimension, in parts of the longest [or rad], differs by more.
+#: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
 
 Fault = Literal["assembly", "circuit", "dead centre", "order", "error", "transmission", "size", "motion type"]
@@ -197,7 +197,7 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
 
 
 def _apart(difference: Floats, turning: Sequence[bool], size: float) -> Floats:
-    """Differences of joint values (.., columns), angles to the nearest turn, slides in parts of the size."""
+    """Differences of joint values (.., columns), angles to the nearest turn, slides relative to the size."""
     wrapped = (difference + math.pi) % math.tau - math.pi
     return np.where(turning, wrapped, difference / size)
 

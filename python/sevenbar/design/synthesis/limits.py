@@ -93,7 +93,7 @@ _PAIRS = [
 
 
 def size_room(row: Floats, limits: Limits, *, scale_free: bool) -> tuple[Floats, Floats]:
-    """What must not be negative for the size, in parts of it (k,), and its derivatives (k, 6).
+    """What must not be negative for the size, relative to it (k,), and its derivatives (k, 6).
 
     `scale_free` where all lengths may be made longer together: then only their ratio counts.
     """

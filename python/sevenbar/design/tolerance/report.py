@@ -26,7 +26,7 @@ from sevenbar.reporting.page import Facts, drive_text, number_table
 #: Dimensions of a corner design that the page names; the JSON has all.
 MOST_NAMED = 8
 
-#: An effect in parts of the greatest that is rounding.
+#: An effect relative to the greatest that is rounding.
 NO_EFFECT = 1e-9
 
 

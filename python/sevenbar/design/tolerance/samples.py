@@ -41,7 +41,7 @@ SURE = 3.0
 #: Poses that are solved at once, so that their arrays stay in the processor's memory.
 BLOCK = 20_000
 
-#: Lost samples that are looked at by the ordinary analysis.
+#: Lost samples that are checked by the ordinary analysis.
 LOOKED_AT = 40
 
 #: The most samples.
@@ -55,7 +55,7 @@ class MonteCarlo(Printed):
     Along the `linear.rows` (n,): `quantiles` (levels, n) of the deviations, at `LEVELS`, `mean` and
     `deviation` (n,), the standard deviation; all in the output's unit, of the samples that go round. Of the
     `count` samples `lost` do not, for reasons counted in `reasons` of `looked_at` of them. `ratio` is that of
-    standard deviations over the cycle, exact to linear; `bias` the greatest along the cycle in parts of the
+    standard deviations over the cycle, exact to linear; `bias` the greatest along the cycle relative to the
     linear standard deviation, each with its statistical error. `greatest` is the greatest deviation seen.
     """
 

@@ -19,10 +19,10 @@ from sevenbar.kinematics.motion import Circuit, Integers, Solvable, Words, chose
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.text.printing import Printed, lines, text_of
 
-#: A change that counts as small where no tolerance is given [parts of the linkage's size, rad].
+#: A change that counts as small where no tolerance is given [share of the linkage's size, rad].
 SMALL = 1e-3
 
-#: How far a row must be from a dead centre of the input for a linear estimate, in parts of what that dead
+#: How far a row must be from a dead centre of the input for a linear estimate, relative to what that dead
 #: centre may itself be moved by: there the output goes with the root of the distance, and at three such parts
 #: the root of what is left, sqrt(1 - 1/3), differs by a tenth from its tangent, 1 - 1/6 .. in its change.
 CLEAR = 3.0

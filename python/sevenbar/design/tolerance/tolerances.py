@@ -33,7 +33,7 @@ _CLASS = re.compile(r"\s*iso\s*2768(?:-1)?\s*[- ]\s*(\w+)\s*", re.IGNORECASE)
 #: Half widths of a normal distribution in its standard deviations; beyond it is cut.
 CUT = 3.0
 
-#: Standard deviation of each distribution in parts of the half width. That of the cut normal one is smaller
+#: Standard deviation of each distribution relative to the half width. That of the cut normal one is smaller
 #: than a third by what the tails hold.
 _TAIL = 2 * CUT * math.exp(-(CUT**2) / 2) / math.sqrt(math.tau) / math.erf(CUT / math.sqrt(2))
 DEVIATIONS = {

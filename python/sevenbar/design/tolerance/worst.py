@@ -43,7 +43,7 @@ class WorstCase:
 
     @property
     def difference(self) -> float:
-        """How far the exact deviation at `at` is from the linear estimate, in parts of it; NaN if none."""
+        """How far the exact deviation at `at` is from the linear estimate, relative to it; NaN if none."""
         linear = float(self.linear.worst[self.at])
         exact = max(abs(self.high[self.at]), abs(self.low[self.at]))
         return float(exact / linear - 1) if linear > 0 else 0.0

@@ -96,7 +96,7 @@ class Scenery:
         return True
 
     def _take(self, view: View, *, grey: bool) -> None:
-        """Draws another view; what was opened anew is looked at from where all of it is seen."""
+        """Draws another view; what was opened anew is checked from where all of it is seen."""
         fresh = self._looked_at is not self._session.draft.text
         if fresh:
             # of every circuit, so that none is out of the picture when it is chosen

@@ -67,7 +67,7 @@ class Quantity:
             return 0.0
         angles = np.degrees(view.circuit.q[:, self.column])
         known = angles[np.isfinite(angles)]
-        # a start at half a turn but for rounding stays at +180
+        # a start at half a turn up to rounding stays at +180
         return -360.0 * math.ceil((float(known[0]) - 180.0 - 1e-6) / 360.0) if known.size else 0.0
 
     def natural(self, view: View) -> float:

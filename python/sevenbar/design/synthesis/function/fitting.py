@@ -1,6 +1,6 @@
 """The fit of one RSSR to a wanted function: structural error and limits, with their exact gradients.
 
-Unknown are M, N, L1, L2, D in parts of L3 and the zeros u, v of the two dials, unless they are given. The
+Unknown are M, N, L1, L2, D relative to L3 and the zeros u, v of the two dials, unless they are given. The
 error at a reading a of the input is
 
     e(a) = beta(u + a) - v - b(a)                                                                        (1)

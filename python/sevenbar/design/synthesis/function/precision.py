@@ -36,7 +36,7 @@ FIXED_ZEROS_MOST, FREE_ZEROS_MOST = 5, 7
 #: Fewest points that are worth a design.
 FEWEST = 3
 
-#: Rank of a system of points, in parts of its greatest singular value, below which points repeat each other.
+#: Rank of a system of points, relative to its greatest singular value, below which points repeat each other.
 RANK = 1e-10
 
 #: Share of L1 (or 1 / L1) in L3 beyond which a design of few points is not tried.

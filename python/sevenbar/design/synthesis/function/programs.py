@@ -24,7 +24,7 @@ MOST_STEPS = 60
 #: Reach of a step [units of the unknowns]: at first, at most, and where it gives up.
 FIRST_REACH, MOST_REACH, LEAST_REACH = 0.1, 1.0, 1e-9
 
-#: Gain of a step, in parts of the greatest height, below which it is the last.
+#: Gain of a step, relative to the greatest height, below which it is the last.
 WORTH = 1e-5
 
 #: Weight of a missed room relative to the greatest height: above any multiplier, so that none is missed for a
@@ -53,7 +53,7 @@ class MinimaxValues:
         return max(float(self.height.max()), LEAST_UNIT)
 
     def merit(self, unit: float) -> float:
-        """The greatest height and the worst missed room, in parts of a unit."""
+        """The greatest height and the worst missed room, relative to a unit."""
         missed = max(float(-self.room.min()), 0.0)
         return (float(self.height.max()) + MISSED * missed) / unit
 
@@ -100,7 +100,7 @@ def lowered(
 
 
 def _gained(now: MinimaxValues, then: MinimaxValues | None) -> float:
-    """By how much a place is better than another, in parts of its unit."""
+    """By how much a place is better than another, relative to its unit."""
     return -np.inf if then is None else now.merit(now.unit) - then.merit(now.unit)
 
 
@@ -112,7 +112,7 @@ def _bent(now: MinimaxValues, then: MinimaxValues, step: Floats) -> MinimaxValue
 
 
 def _step(now: MinimaxValues, reach: float, held: tuple[int, ...]) -> tuple[Floats, float]:
-    """The step (k,) of one program, and the gain it promises in parts of the unit."""
+    """The step (k,) of one program, and the gain it promises relative to the unit."""
     from scipy.optimize import linprog
 
     unit, count = now.unit, now.height_slopes.shape[1]

@@ -37,7 +37,7 @@ from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
 from sevenbar.design.synthesis.limits import Limits, size_room, turning_room
 from sevenbar.errors import RequestError
 
-#: Designs of the global search, and inputs of a turn at which they are looked at.
+#: Designs of the global search, and inputs of a turn at which they are checked.
 SEARCHED, LOOKED_AT = 16384, 72
 
 #: How many of them are refined for each design requested, and at least.
@@ -50,7 +50,7 @@ START_APART = 0.12
 END_SAMPLES = 181
 
 #: Newton's steps on the ends of a swing and on a wish, the last step [rad, parts of L3] that ends them, and
-#: G and G_alpha, in parts of the size squared, with which they have arrived.
+#: G and G_alpha, relative to the size squared, with which they have arrived.
 MOST_NEWTON, LAST_STEP, ARRIVED = 30, 1e-14, 1e-11
 
 #: Room that is left at each limit for what lies between the inputs looked at.

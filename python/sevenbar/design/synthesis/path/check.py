@@ -19,7 +19,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Law
 from sevenbar.kinematics.rigid import rotation_vector
 
-#: How much further off than the solution, in parts of its error and of the path's extent, the points may be
+#: How much further off than the solution, relative to its error and to the path's extent, the points may be
 #: on one pass: more, and the solution lies on several.
 TORN = 1e-6
 

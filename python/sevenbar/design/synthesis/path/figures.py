@@ -131,7 +131,7 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
 
 
 def _near(whole: Floats, seen: Floats) -> Floats:
-    """A circuit's rows without those far beyond what is looked at, which would make the rest small."""
+    """A circuit's rows without those far beyond what is checked, which would make the rest small."""
     middle, half = (seen.max(axis=0) + seen.min(axis=0)) / 2, float(np.ptp(seen, axis=0).max())
     rows = whole.copy()
     rows[(np.abs(whole - middle) > half).any(axis=1)] = np.nan

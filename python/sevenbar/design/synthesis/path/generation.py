@@ -20,7 +20,7 @@ from sevenbar.kinematics.linkage import Linkage
 #: Starts by default, the most, and the most designs.
 STARTS, MOST_STARTS, MOST_DESIGNS = 256, 65536, 50
 
-#: Of the starts so many for each design wanted are looked at closer, and of these so many to the end.
+#: Of the starts so many for each design wanted are checked closer, and of these so many to the end.
 LOOKED_AT, TAKEN = 8, 3
 
 __all__ = ["MOST_POINTS", "STARTS", "generated", "path_generation", "path_task"]

@@ -31,7 +31,7 @@ TOLERANCE = 1e-15
 #: A step after which a passive joint stands further away [rad] has left its branch and is not taken.
 LONGEST_STEP = 1.2
 
-#: Limits weigh so much beside the path, in parts of its extent, more in each of these rounds; and by how much
+#: Limits weigh so much beside the path, relative to its extent, more in each of these rounds; and by how much
 #: they are kept with room [sin^2 of an angle], since a penalty is never quite met.
 WEIGHTS, ROOM = (1.0, 10.0, 100.0), 1e-4
 

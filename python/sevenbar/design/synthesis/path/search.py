@@ -14,7 +14,7 @@ from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
 from sevenbar.kinematics.motion import Circuit, Integers
 
-#: Inputs of a turn at which a start's circuits are looked at.
+#: Inputs of a turn at which a start's circuits are checked.
 SAMPLES = 72
 
 #: Of the starts one in so many lies near the description's own dimensions, within this part of the bounds.
@@ -23,7 +23,7 @@ NEAR_ONE_IN, NEAR = 4, 0.12
 #: Starts of an input law that are tried in a turn.
 PHASES = 36
 
-#: Two starts are one where no dimension differs by more, in parts of its bounds.
+#: Two starts are one where no dimension differs by more, relative to its bounds.
 SAME = 0.02
 
 

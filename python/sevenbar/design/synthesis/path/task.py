@@ -23,10 +23,10 @@ from sevenbar.kinematics.linkage import Linkage
 #: Points of a wanted path: fewer say nothing of a curve; more only cost time, each is an unknown.
 FEWEST_POINTS, MOST_POINTS = 3, 200
 
-#: A path whose last point is this near to its first, in parts of its extent, is closed.
+#: A path whose last point is this near to its first, relative to its extent, is closed.
 SAME_POINT = 1e-9
 
-#: Bounds where none are given, in parts of the greater of the linkage's longest dimension and the path's
+#: Bounds where none are given, relative to the greater of the linkage's longest dimension and the path's
 #: extent: of lengths that must be positive, and how far others may go from zero.
 SHORTEST, LONGEST = 0.02, 2.0
 
