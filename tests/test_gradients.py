@@ -38,8 +38,10 @@ def test_the_gradient_of_every_measure_is_that_of_differences(linkage):
     told = measures_named([m.name for m in smooth if values[m.name] is not None])
     assert {m.name for m in told} <= set(found)
     assert {"jerk_lowest", "jerk_highest", "swing", "time_ratio"} <= set(found)
-    by = 500 * CHANGE
-    for k, number in enumerate(motion.circuits[0].sensitivity().names):
+    sensitivity = motion.circuits[0].sensitivity()
+    for k, (number, unit) in enumerate(zip(sensitivity.names, sensitivity.units, strict=True)):
+        # a component of a direction is a number of about one
+        by = 500 * CHANGE if unit else 10 * CHANGE
         high, low = (rows_of(side.motion(36), told)[0] for side in sides(linkage, number, by))
         for m in told:
             one = found[m.name]

@@ -150,8 +150,11 @@ def test_processes_forked_after_threads_have_run_get_the_same_bits() -> None:
 
 
 INTERRUPTED = """
-import sys, time
+import signal, sys, time
 import test_threads as t
+
+# a shell that starts its jobs in the background has them ignore it
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 loops = t.seven_r(1) * 80
 t.loop_motions(loops[:4], 0, 6, 36, 1)
