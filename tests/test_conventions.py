@@ -12,8 +12,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.tolerance.sensitivities import NEAR
+from sevenbar.kinematics.circuits import SPIN_UNDEFINED, STATUSES
 from sevenbar.kinematics.joints import KINDS
-from sevenbar.kinematics.motion import SPIN_UNDEFINED, STATUSES
 
 PAGE = (Path(__file__).parent.parent / "docs" / "conventions.md").read_text(encoding="utf-8")
 

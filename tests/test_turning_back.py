@@ -15,8 +15,8 @@ from sevenbar.export import pose
 from sevenbar.export.adams import write_cmd
 from sevenbar.export.layout import arrange
 from sevenbar.kinematics.batches import loop_motions
+from sevenbar.kinematics.circuits import Law
 from sevenbar.kinematics.measures import MEASURES, rows_of
-from sevenbar.kinematics.motion import Law
 from sevenbar.kinematics.poses import walk
 from sevenbar.reporting import report
 from sevenbar.reporting.summary import summary

@@ -19,8 +19,8 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.wish import wish_of_function
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
-from sevenbar.kinematics.motion import Circuit, Law
 
 SAMPLES = 24
 

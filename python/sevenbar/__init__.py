@@ -17,22 +17,10 @@ from sevenbar._core import __version__
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
 from sevenbar.description.law_file import load_law
+from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
 from sevenbar.kinematics.geometry import Drive, Joint, Point
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import (
-    ChangePoint,
-    Circuit,
-    Count,
-    DeadCentre,
-    Extremes,
-    Law,
-    Modes,
-    Motion,
-    OpenRange,
-    Output,
-    Search,
-    Trace,
-)
+from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
 from sevenbar.text.printing import SAID_IN
 
 __all__ = [

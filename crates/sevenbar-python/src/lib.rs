@@ -3,6 +3,7 @@
 mod batches;
 mod loops;
 mod numbers;
+mod rows;
 mod rssr;
 mod values;
 
@@ -63,9 +64,11 @@ mod _core {
     #[pymodule_export]
     use super::batches::{LoopBatch, RawMeasures, RssrBatch, classify_rssr, measure_loops, measure_rssr};
     #[pymodule_export]
-    use super::loops::{Loop, Rows};
+    use super::loops::Loop;
     #[pymodule_export]
     use super::numbers::Numbers;
+    #[pymodule_export]
+    use super::rows::Rows;
     #[pymodule_export]
     use super::rssr::Rssr;
     #[pymodule_export]

@@ -1,14 +1,14 @@
 //! Any single loop, for Python.
 
+use crate::rows::Rows;
 use crate::values::{RawCircuit, RawFound, RawMotion, RawSearch, RowArrays, change_point};
 use crate::{CoreError, flat, law_rows};
 use numpy::ndarray::{ArrayView2, Axis};
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyReadonlyArray3, PyUntypedArrayMethods,
+    PyReadonlyArray3,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyType;
 use sevenbar_core::loops::{self, Circuit, Idle, Kind, Through};
 use sevenbar_core::rigid::Pose;
 
@@ -19,10 +19,6 @@ pub(crate) fn pose(m: ArrayView2<'_, f64>) -> Pose {
 /// A single closed loop of R, P, H and S joints.
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct Loop(loops::Loop);
-
-/// Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers.
-#[pyclass(frozen, module = "sevenbar._core")]
-pub(crate) struct Rows(loops::Rows);
 
 /// Joints by their letters, screws with their advance for a radian.
 pub(crate) fn kinds(letters: &str, advances: &[f64]) -> PyResult<Vec<Kind>> {
@@ -47,8 +43,6 @@ type Modes<'py> = (
     &'static str,
     Vec<f64>,
 );
-
-type RowNumbers<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, f64);
 
 fn no_input(column: usize) -> PyErr {
     CoreError::new_err(format!("column {column} has no freedom of its own"))
@@ -240,32 +234,5 @@ impl Loop {
             condition: rows.conditions().into_pyarray(py).unbind(),
         };
         Ok(RawCircuit::new(arrays, &measures, Some(Py::new(py, Rows(rows))?)))
-    }
-}
-
-#[pymethods]
-impl Rows {
-    /// From numbers (n, numbers of a row), turns to be added to each column, and the speed.
-    #[new]
-    fn new(
-        numbers: PyReadonlyArray2<'_, f64>,
-        offsets: PyReadonlyArray1<'_, f64>,
-        speed: f64,
-    ) -> PyResult<Self> {
-        let numbers = numbers
-            .as_slice()
-            .ok()
-            .filter(|_| numbers.shape()[1] == loops::ROW_NUMBERS)
-            .ok_or_else(|| CoreError::new_err(format!("rows need {} numbers each", loops::ROW_NUMBERS)))?;
-        loops::Rows::from_numbers(numbers, flat("offsets", &offsets)?.to_vec(), speed)
-            .map(Self)
-            .ok_or_else(|| CoreError::new_err("no rows of a circuit have these numbers"))
-    }
-
-    /// The class and what it makes these rows of again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyType>, RowNumbers<'py>)> {
-        let numbers = PyArray1::from_vec(py, self.0.numbers()).reshape([self.0.len(), loops::ROW_NUMBERS])?;
-        let offsets = PyArray1::from_slice(py, self.0.offsets());
-        Ok((py.get_type::<Self>(), (numbers, offsets, self.0.speed())))
     }
 }

@@ -3,7 +3,7 @@
 //! Columns are by their number, angles in radians, lengths in the unit of the description; extremes are the lowest value, the input
 //! there, the highest value and the input there.
 
-use crate::loops::Rows;
+use crate::rows::Rows;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use sevenbar_core::loops::{ChangePoint, Completeness, Count, Found, Search};

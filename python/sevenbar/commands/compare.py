@@ -46,7 +46,7 @@ Output = Annotated[
 Start = Annotated[
     str, typer.Option(help="Input at time 0 where the table has no input, as in '30deg' or '5mm'.")
 ]
-ChosenCircuit = Annotated[int | None, typer.Option(help="The circuit; the one of least misfit by default.")]
+ChosenCircuit = Annotated[int | None, typer.Option(help="The circuit; the one of least residual by default.")]
 ChosenBranch = Annotated[int | None, typer.Option(help="The pass of the circuit, for an input that rocks.")]
 
 

@@ -14,7 +14,7 @@ from sevenbar.text.units import amount, examples_of, sizes_of
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.limits import Limits
-    from sevenbar.kinematics.motion import Law
+    from sevenbar.kinematics.circuits import Law
 
 
 def check_law(law: Path | None, speed: str | None) -> None:

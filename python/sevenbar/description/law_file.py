@@ -11,8 +11,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
+from sevenbar.kinematics.circuits import Law
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
-from sevenbar.kinematics.motion import Law
 from sevenbar.text.table import TextTable, read_table
 
 #: Degree of the spline: its third derivative, the jerk, is still smooth.

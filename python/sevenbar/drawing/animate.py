@@ -23,7 +23,8 @@ from sevenbar.drawing import plot, scene
 from sevenbar.drawing.figure import STYLE, new_figure, shown_value, slides, title, written_whole
 from sevenbar.drawing.skeleton import skeleton
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
-from sevenbar.kinematics.motion import Circuit, Motion, chosen_circuit
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import Walk, walk
 
 Picture = npt.NDArray[np.uint8]

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import short
 from sevenbar.errors import OutputError, shown
-from sevenbar.kinematics.motion import Circuit, Motion
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.motion import Motion
 
 #: What a figure can be written as.
 FORMATS = ("png", "svg", "pdf")

@@ -28,8 +28,9 @@ from sevenbar.drawing.figure import (
 from sevenbar.drawing.scene import INPUT, OUTPUT, bars, keys, prepare_view, put, stage
 from sevenbar.drawing.skeleton import one_pose, short, skeleton_of
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits import Circuit, Integers
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Circuit, Integers, Modes, Motion, chosen_circuit
+from sevenbar.kinematics.motion import Modes, Motion, chosen_circuit
 from sevenbar.kinematics.poses import frames_of, walk
 
 

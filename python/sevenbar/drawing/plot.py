@@ -36,7 +36,8 @@ from sevenbar.drawing.paths import joints, modes_overview, point_path
 from sevenbar.drawing.scene import bars, keys, label, put, stage
 from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.motion import Circuit, Extremes, Motion, chosen_circuit
+from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import walk
 
 __all__ = ["FORMATS", "configuration", "curves", "joints", "modes_overview", "point_path", "save"]

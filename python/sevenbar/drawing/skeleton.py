@@ -11,8 +11,9 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop, Point
-from sevenbar.kinematics.motion import Circuit, Motion
+from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.poses import at_row, frames_along, frames_of, joint_frames, walk
 
 #: Half the length of a joint's drawn axis and of its cylinder, and how far a plate reaches past what slides

@@ -14,8 +14,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, unit_of
 from sevenbar.export.pose import Pose
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.joints import Shape
-from sevenbar.kinematics.motion import Integers
 
 #: Sweeps over all joints; most layouts no longer change after two.
 SWEEPS = 4

@@ -11,8 +11,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Circuit, Law, Motion, Solvable, chosen_circuit
+from sevenbar.kinematics.motion import Motion, Solvable, chosen_circuit
 from sevenbar.kinematics.poses import frames_along, joint_frames
 
 #: Poses of a circuit for which a layout is chosen: enough to meet what links sweep over, and quick.

@@ -13,7 +13,8 @@ from typing import Any, Literal
 import numpy as np
 
 from sevenbar.errors import MissingExtraError
-from sevenbar.kinematics.motion import Circuit, Motion
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.motion import Motion
 from sevenbar.reporting.folder import write_columns
 from sevenbar.text.units import LENGTHS
 

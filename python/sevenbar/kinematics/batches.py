@@ -12,9 +12,9 @@ import numpy.typing as npt
 
 from sevenbar import _core
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.general import expanded, merged, size_of
 from sevenbar.kinematics.geometry import Loop, following_coupler
-from sevenbar.kinematics.motion import Integers
 from sevenbar.text.printing import Printed
 
 #: The core's codes of motion types, and of dimensions that make no linkage.

@@ -10,20 +10,9 @@ import numpy as np
 from sevenbar import _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits import SPIN_UNDEFINED, Circuit, Integers, Law, Trace, Words
 from sevenbar.kinematics.from_core import change_points_from, circuit_from
-from sevenbar.kinematics.motion import (
-    SPIN_UNDEFINED,
-    Circuit,
-    Integers,
-    Law,
-    Modes,
-    Motion,
-    Output,
-    Search,
-    Solvable,
-    Trace,
-    Words,
-)
+from sevenbar.kinematics.motion import Modes, Motion, Output, Search, Solvable
 from sevenbar.kinematics.sensitivity import sensitivity_of
 
 Side = Literal["crank", "rocker"]

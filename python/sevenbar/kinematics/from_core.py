@@ -10,22 +10,19 @@ import numpy as np
 
 from sevenbar import _core
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import (
+from sevenbar.kinematics.circuits import (
     STATUSES,
-    ChangePoint,
     Circuit,
-    Count,
     DeadCentre,
     Extremes,
     Integers,
     Law,
-    OpenRange,
-    Search,
     Sensitivity,
     Trace,
     Words,
 )
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search
 
 _STATUS_WORDS = np.array(STATUSES)
 

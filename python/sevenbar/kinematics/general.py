@@ -13,11 +13,12 @@ import numpy.typing as npt
 from sevenbar import _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits import Circuit, Integers, Law, Trace, Words
 from sevenbar.kinematics.from_core import change_points_from, circuit_from, search_from
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joints import Z
 from sevenbar.kinematics.mobility import Mobility, redundant_constraints
-from sevenbar.kinematics.motion import Circuit, Integers, Law, Modes, Motion, Solvable, Trace, Words
+from sevenbar.kinematics.motion import Modes, Motion, Solvable
 from sevenbar.kinematics.rigid import axis_to_z, inverse
 from sevenbar.kinematics.sensitivity import sensitivity_of
 

@@ -11,10 +11,11 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import NotCoveredError, RequestError, shown
+from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.general import GeneralLoop
 from sevenbar.kinematics.mobility import Mobility
-from sevenbar.kinematics.motion import Circuit, Law, Modes, Motion, Output, Solvable
+from sevenbar.kinematics.motion import Modes, Motion, Output, Solvable
 from sevenbar.text.units import sliding_speed, turning_speed
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.gradients import MeasureSlopes, measure_slopes
-from sevenbar.kinematics.motion import Circuit, Extremes, Motion, chosen_circuit
+from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.sensitivity import Numbers
 
 #: What a measure is a number of: of angles and lengths by the output.

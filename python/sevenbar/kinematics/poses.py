@@ -12,8 +12,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.circuits import Circuit, Integers
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Circuit, Integers
 from sevenbar.kinematics.rigid import inverse, pose
 
 

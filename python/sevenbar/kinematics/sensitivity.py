@@ -25,8 +25,9 @@ import numpy.typing as npt
 
 from sevenbar import _core
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.circuits import Circuit, Sensitivity
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
-from sevenbar.kinematics.motion import Circuit, Sensitivity, Solvable
+from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import about, cross
 from sevenbar.kinematics.word import Carried, Place, Values, holding_axis, points_of, vector, word_of
 

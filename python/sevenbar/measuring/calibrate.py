@@ -30,8 +30,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError, shown, suggestion
+from sevenbar.kinematics.circuits import Law
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Law
 from sevenbar.kinematics.sensitivity import Numbers, Slopes
 from sevenbar.measuring.compare import Comparison, compare, ends_of, inputs_of
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured

@@ -16,8 +16,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits import Law
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Law
 from sevenbar.measuring.extremes import Extent
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.text.printing import Printed

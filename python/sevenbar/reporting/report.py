@@ -18,9 +18,10 @@ from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
+from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
-from sevenbar.kinematics.motion import Circuit, Extremes, Modes, Motion
+from sevenbar.kinematics.motion import Modes, Motion
 from sevenbar.reporting.figures import draw_for_report, posed_circuit, write_figures
 from sevenbar.reporting.files import Report, columns_file, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open

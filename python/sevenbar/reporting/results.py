@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.circuits import Circuit, Extremes, Trace, Words
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Circuit, Extremes, Modes, Motion, Output, Trace, Words
+from sevenbar.kinematics.motion import Modes, Motion, Output
 from sevenbar.reporting.summary import (
     COMPLETE,
     Shown,

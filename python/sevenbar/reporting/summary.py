@@ -9,9 +9,10 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
-from sevenbar.kinematics.motion import Circuit, DeadCentre, Extremes, Modes, Motion, Solvable
+from sevenbar.kinematics.motion import Modes, Motion, Solvable
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
 

@@ -13,8 +13,9 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.joints import KINDS, JointKind
-from sevenbar.kinematics.motion import Circuit, Solvable
+from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.poses import frames_along
 from sevenbar.kinematics.rigid import about, inverse, pose
 

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.dimensions import Dimension
-from sevenbar.kinematics.motion import Integers
 from sevenbar.text.ranges import split_grid, split_list, split_name, split_range
 
 #: Most values of one axis that are listed: the sweep's description holds each of them.

@@ -21,8 +21,8 @@ from sevenbar.kinematics.batches import (
     rssr_rows,
     rssr_types,
 )
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Integers
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, SweepPlan
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure
-from sevenbar.kinematics.motion import Integers
 from sevenbar.sweep.plan import SweepPlan
 
 #: The status of a linkage that was measured.

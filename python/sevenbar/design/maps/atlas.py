@@ -17,8 +17,9 @@ from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
 from sevenbar.design.maps.rssr_plane import RssrPlane
 from sevenbar.design.maps.window import MapAxis, Range, axes_of
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 
 #: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.

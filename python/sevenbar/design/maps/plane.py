@@ -14,8 +14,9 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import MapAxis
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure, rows_of
-from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.kinematics.motion import Motion
 
 #: Counts the motions that were solved, and those in sight.
 Progress = Callable[[int, int], None]

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.motion import Circuit, Law, Motion, Trace, chosen_circuit
+from sevenbar.kinematics.circuits import Circuit, Law, Trace
+from sevenbar.kinematics.motion import Motion, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
 ORDERS = ("position", "velocity", "acceleration", "jerk")

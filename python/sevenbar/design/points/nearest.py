@@ -21,7 +21,8 @@ from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.motion import Integers, Motion
+from sevenbar.kinematics.circuits import Integers
+from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 
 #: Starts along each side of the box: from the 27 points of a grid the basins of a closed curve are met.

@@ -19,7 +19,8 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.motion import Motion, Words
+from sevenbar.kinematics.circuits import Words
+from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 
 #: The least singular value of G, relative to its greatest, of a single pole. G is known to some 1e-12; a pole

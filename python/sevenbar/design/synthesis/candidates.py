@@ -15,8 +15,9 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.closure import row_of, transmissions
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
+from sevenbar.kinematics.circuits import Circuit, Integers
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Circuit, Integers, Motion
+from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed, brief, lines, text_of
 
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.

@@ -14,7 +14,7 @@ from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import plain, told_name, unit_of
 from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
 from sevenbar.drawing.skeleton import short
-from sevenbar.kinematics.motion import Integers
+from sevenbar.kinematics.circuits import Integers
 
 #: Bars beyond the first so many share one, and their height [inch].
 MOST_BARS, BAR = 14, 0.28

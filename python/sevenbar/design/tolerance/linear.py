@@ -21,9 +21,9 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.circuits import Integers, Words
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Integers, Words
 
 #: What tolerances may be given as.
 Given = Tolerances | Mapping[str, float | str]

@@ -12,10 +12,11 @@ from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
+from sevenbar.kinematics.circuits import Circuit, Integers, Words
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.gradients import QUANTITIES, MeasureSlopes, measure_slopes
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Circuit, Integers, Solvable, Words, chosen_circuit
+from sevenbar.kinematics.motion import Solvable, chosen_circuit
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.text.printing import Printed, lines, text_of
 

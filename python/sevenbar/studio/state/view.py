@@ -12,8 +12,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
+from sevenbar.kinematics.circuits import Circuit, Trace
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import Circuit, Motion, Trace
+from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.poses import Walk, along, at_row, walk
 from sevenbar.reporting.summary import joint_text
 

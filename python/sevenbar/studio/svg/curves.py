@@ -13,7 +13,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import CIRCUIT_COLOURS, input_label, shown_value, slides, told_range
 from sevenbar.drawing.plot import inputs_between, place_of
-from sevenbar.kinematics.motion import Extremes, Motion
+from sevenbar.kinematics.circuits import Extremes
+from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.picture import (

@@ -15,8 +15,8 @@ from sevenbar.design.synthesis.path.refine import Refined
 from sevenbar.design.synthesis.path.search import SAMPLES
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, RequestError
+from sevenbar.kinematics.circuits import Law
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.motion import Law
 from sevenbar.kinematics.rigid import rotation_vector
 
 #: How much further off than the solution, relative to its error and to the path's extent, the points may be

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.motion import Integers
+from sevenbar.kinematics.circuits import Integers
 
 #: Places along the wanted path, and along a curve, at which shapes are compared.
 SHAPE, CURVE = 24, 96

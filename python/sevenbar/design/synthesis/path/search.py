@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.path.match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
-from sevenbar.kinematics.motion import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit, Integers
 
 #: Inputs of a turn at which a start's circuits are checked.
 SAMPLES = 72

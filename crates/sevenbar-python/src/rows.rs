@@ -1,0 +1,40 @@
+//! The rows of a circuit as Python keeps them.
+
+use crate::{CoreError, flat};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyType;
+use sevenbar_core::loops;
+
+/// Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct Rows(pub loops::Rows);
+
+type RowNumbers<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, f64);
+
+#[pymethods]
+impl Rows {
+    /// From numbers (n, numbers of a row), turns to be added to each column, and the speed.
+    #[new]
+    fn new(
+        numbers: PyReadonlyArray2<'_, f64>,
+        offsets: PyReadonlyArray1<'_, f64>,
+        speed: f64,
+    ) -> PyResult<Self> {
+        let numbers = numbers
+            .as_slice()
+            .ok()
+            .filter(|_| numbers.shape()[1] == loops::ROW_NUMBERS)
+            .ok_or_else(|| CoreError::new_err(format!("rows need {} numbers each", loops::ROW_NUMBERS)))?;
+        loops::Rows::from_numbers(numbers, flat("offsets", &offsets)?.to_vec(), speed)
+            .map(Self)
+            .ok_or_else(|| CoreError::new_err("no rows of a circuit have these numbers"))
+    }
+
+    /// The class and what it makes these rows of again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyType>, RowNumbers<'py>)> {
+        let numbers = PyArray1::from_vec(py, self.0.numbers()).reshape([self.0.len(), loops::ROW_NUMBERS])?;
+        let offsets = PyArray1::from_slice(py, self.0.offsets());
+        Ok((py.get_type::<Self>(), (numbers, offsets, self.0.speed())))
+    }
+}
