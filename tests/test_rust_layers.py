@@ -19,9 +19,9 @@ rssr::linkage rssr::pair rssr::rates rssr::domain rssr::extremes rssr::frames rs
 rssr::batch rssr::lines rssr::classify rssr::measures
 rssr
 
-loops::dense loops::flat loops::rotations loops::screws loops::chain loops::kinds loops::rates loops::spun
-loops::spin_axis
-loops::idle loops::reduce loops::description loops::polish loops::many_starts
+loops::dense loops::flat loops::rotations loops::screws loops::chain loops::kinds loops::velocities loops::turns
+loops::points loops::rank loops::spun loops::spin_axis
+loops::idle loops::reduce loops::description loops::joint_values loops::polish loops::many_starts
 
 loops::complex_frame loops::lanes loops::closure loops::poles loops::phases loops::continuation
 loops::straight loops::circle loops::locating loops::geometry loops::starts loops::chain_closure loops::modes
@@ -129,7 +129,7 @@ def test_no_file_is_longer_than_a_reader_keeps_in_mind() -> None:
         ("use crate::rigid::{Pose, Vec3};", {"rigid"}),
         ("pub(super) use super::chain::Chain;", {"loops::chain"}),
         ("use super::{dense::{self, dot}, curve::Curve as C};", {"loops::dense", "loops::curve"}),
-        ("fn f() { super::rates::carry(); crate::simd::level() }", {"simd", "loops::rates"}),
+        ("fn f() { super::velocities::carry(); crate::simd::level() }", {"simd", "loops::velocities"}),
         ("use std::f64::consts::TAU; let x = self.chain.first;", set()),
         ("use super::super::outcome::RowStatus;", {"outcome"}),
     ],

@@ -1,8 +1,8 @@
 //! Every assembly mode of a described loop.
 
 use super::description::Loop;
+use super::joint_values::joint_values;
 use super::modes::{Completeness, ModeFinder};
-use super::rows::joint_values;
 
 /// All assembly modes at one input.
 #[derive(Clone, Debug)]

@@ -6,11 +6,11 @@ use super::dense::{COLUMNS, Columns};
 use super::description::{Column, Loop};
 use super::extremes::output_extremes;
 use super::passes::Passes;
-use super::rates::ORDERS;
 use super::rotations::short_way;
 use super::row::Row;
 use super::rows::Rows;
 use super::turnings::{self, Turning};
+use super::velocities::ORDERS;
 use crate::outcome::{CircuitMeasures, DeadCentre, DeadCentreKind, Role, RowStatus};
 use std::f64::consts::TAU;
 

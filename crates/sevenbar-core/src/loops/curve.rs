@@ -1,7 +1,7 @@
 //! One connected motion of a chain, followed by arc length in steps that cannot leave it.
 //!
 //! At a node `x0` let `A` be the screws, `t` the unit tangent, `A+` the pseudo-inverse, and `p(s)` the cubic whose rates
-//! `t + u1 s + u2 s^2` solve the closure of velocities to that order (see [`super::rates`]). On the plane `t (x - x0) = s` the
+//! `t + u1 s + u2 s^2` solve the closure of velocities to that order (see [`super::velocities`]). On the plane `t (x - x0) = s` the
 //! simplified Newton map about `p(s)` changes by at most
 //!
 //! `k = s |A+ A1| + s^2 |A+ A2| + |A+| (s^3 K3 / 6 + L r)`
@@ -20,9 +20,9 @@
 
 use super::chain::{Chain, Configuration, Joint};
 use super::dense::{COLUMNS, Columns, Inverse, combined, dot, length};
-use super::rates::{self, Rates};
 use super::rotations::{cross, short_way, squared_up};
 use super::screws::{Twist, bordered_inverse, correction, twist_of};
+use super::velocities::{self, Rates};
 use crate::number::Number;
 
 /// Longest step [rad, or parts of the size].
@@ -253,7 +253,7 @@ pub(super) fn stand<N: Number>(chain: &Chain, rough: &Configuration<N>, before: 
             square = square.plus_product(screw[k], screw[k]);
         }
     }
-    let (rates, screws) = rates::rates(chain, &placed, &inverse, &[one, zero, zero], None);
+    let (rates, screws) = velocities::rates(chain, &placed, &inverse, &[one, zero, zero], None);
     let mut slopes = [zero; 2];
     for order in 0..2 {
         for screw in &screws[order + 1][..chain.columns] {

@@ -8,8 +8,8 @@
 
 use super::dense::Columns;
 use super::passes::Passes;
-use super::rates::{self, ORDERS};
 use super::row::{Row, UNIT};
+use super::velocities::{self, ORDERS};
 use crate::outcome::{Ends, RowStatus};
 
 /// A derivative of the output at unit speed, of order four, below which it is zero.
@@ -94,7 +94,7 @@ impl Search<'_, '_> {
             self.rate(row, order + 1)
         } else {
             let chain = self.passes.chain;
-            rates::fourth_derivative(chain, &row.at, self.passes.input, self.output)
+            velocities::fourth_derivative(chain, &row.at, self.passes.input, self.output)
         }
     }
 

@@ -3,7 +3,7 @@
 use super::chain::{Chain, Configuration, Joint};
 use super::curve::{self, Curve, End, Node, Stand};
 use super::dense::{COLUMNS, Columns, dot, length};
-use super::polish::AGREE;
+use super::rank::AGREE;
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};
 

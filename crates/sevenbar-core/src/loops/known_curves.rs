@@ -9,7 +9,7 @@ use super::follow::{self, Start};
 use super::found::{Found, Search};
 use super::modes::Completeness;
 use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
-use super::polish::{NO_RANK, rank, unyielding};
+use super::rank::{NO_RANK, rank, unyielding};
 
 /// Modes of a loop without screws at an input; where more are found, curves of them are, and few are followed at once.
 pub(super) const MOST_MODES: usize = 16;

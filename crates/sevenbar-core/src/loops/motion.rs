@@ -5,11 +5,11 @@ use super::counting::Uncounted;
 use super::curve::Curve;
 use super::description::Loop;
 use super::found::{Found, Search};
+use super::joint_values::{configuration, joint_values};
 use super::known_curves::Curves;
 use super::modes::Completeness;
 use super::passes::Passes;
 use super::polish::{Settled, polish};
-use super::rows;
 use super::search::curves;
 
 /// How far a joint of a given pose [rad, or parts of the size] may be moved to close the loop.
@@ -98,7 +98,7 @@ pub fn motion(
         .change_points
         .iter()
         .map(|point| ChangePoint {
-            values: rows::joint_values(linkage, &point.at),
+            values: joint_values(linkage, &point.at),
             circuits: (0..passes.len())
                 .filter(|&k| point.is_on(chain, &passes[k].curve))
                 .collect(),
@@ -164,7 +164,7 @@ pub fn circuit_through(
 ) -> Option<Through> {
     let chain = linkage.reduced.chain.as_ref()?;
     let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
-    let rough = rows::configuration(linkage, values);
+    let rough = configuration(linkage, values);
     let Some(Settled { at: pose, .. }) =
         polish(chain, driver.inner, &rough, PUT_RIGHT).filter(Settled::agrees)
     else {

@@ -3,9 +3,9 @@
 use super::dense::Inverse;
 use super::motions::{adjoined, carried, plus, sliding};
 use super::numbers::{Around, NumberedLoop};
-use super::rates::ORDERS;
 use super::rotations::cross;
 use super::screws::{Twist, bracket};
+use super::velocities::ORDERS;
 use crate::rigid::add;
 
 /// Norm of the pseudo-inverse [per rad, or size] beyond which the input does not determine what follows: a dead centre.

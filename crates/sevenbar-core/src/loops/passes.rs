@@ -4,11 +4,11 @@ use super::chain::{Chain, Configuration};
 use super::curve::{self, Curve, End, Node};
 use super::dense::{COLUMNS, combined, dot, length};
 use super::follow;
-use super::polish::AGREE;
-use super::rates::ORDERS;
+use super::rank::AGREE;
 use super::row::{self, Row, Solved, UNIT};
 use super::row_lanes::{Near, rows_near};
 use super::turnings::{self, begun_at, insert, turns_at};
+use super::velocities::ORDERS;
 use crate::outcome::RowStatus;
 use std::f64::consts::TAU;
 

@@ -7,21 +7,15 @@
 
 use super::chain::{Chain, Configuration};
 use super::dense::{COLUMNS, Columns, Factored, ROWS, least_squares, singular_values};
+use super::rank::{AGREE, NO_RANK, rank, unyielding};
 use super::rotations::squared_up;
 
 /// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
 pub(super) const CLOSED: f64 = 1e-11;
 
-/// The closure error [rad, or parts of the size] up to which redundant constraints agree: a nanometre in a metre, far below what can be
-/// made or measured, and far above rounding.
-pub const AGREE: f64 = 1e-9;
-
 /// The misfit [rad, or parts of the size] up to which it is told that redundant constraints alone keep a pose open: what a path to a
 /// real solution may leave of joints that are not there.
 const NEARLY: f64 = 1e-5;
-
-/// Singular values below this part of the greatest are zero: those that a misfit within [`AGREE`] may bring.
-pub(super) const NO_RANK: f64 = 10.0 * AGREE;
 
 /// A move [rad, or parts of the size] after which the next would be rounding.
 const SETTLED: f64 = 1e-12;
@@ -49,31 +43,6 @@ impl Settled {
     pub fn agrees(&self) -> bool {
         self.misfit < AGREE
     }
-}
-
-/// The rank of columns with these singular values, falling, where those below a part of the greatest are zero.
-pub(super) fn rank(values: &[f64], zero: f64) -> usize {
-    values.iter().take(6).filter(|&&v| v > zero * values[0]).count()
-}
-
-/// Two bases, of unit length and square: rows that see a motion of columns of a rank, and those of power zero on every screw; moment,
-/// then force.
-pub(super) fn wrenches(columns: &[Vec<f64>], rank: usize) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
-    let rows: Vec<Vec<f64>> = (0..6)
-        .map(|r| {
-            let mut row: Vec<f64> = columns.iter().map(|c| c[r]).collect();
-            row.resize(row.len().max(6), 0.0);
-            row
-        })
-        .collect();
-    let mut seen = singular_values(&rows).1;
-    let unyielding = seen.split_off(rank.min(6));
-    (seen, unyielding)
-}
-
-/// A basis of the rows of power zero on every screw.
-pub(super) fn unyielding(columns: &[Vec<f64>], rank: usize) -> Vec<Vec<f64>> {
-    wrenches(columns, rank).1
 }
 
 /// Newton's method with the input held; `None` where it does not close but for redundant constraints, or goes farther than `reach`.

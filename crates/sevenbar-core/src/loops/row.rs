@@ -2,9 +2,9 @@
 
 use super::chain::{Chain, Configuration, Placed};
 use super::dense::{COLUMNS, Inverse, length};
-use super::rates::{self, ORDERS, Rates};
 use super::rotations::squared_up;
 use super::screws::{bordered_inverse, input_row};
+use super::velocities::{self, ORDERS, Rates};
 use crate::number::Number;
 use crate::outcome::RowStatus;
 
@@ -99,7 +99,7 @@ pub(super) fn finished<N: Number>(
     let one = N::splat(1.0);
     // the rate's series has half its second derivative
     let series = [N::splat(given[0]), N::splat(given[1]), N::splat(given[2] / 2.0)];
-    let (rates, _) = rates::rates(chain, placed, inverse, &series, Some(input));
+    let (rates, _) = velocities::rates(chain, placed, inverse, &series, Some(input));
     let mut square = one;
     for x in placed.screws.as_flattened() {
         square = square.plus_product(*x, *x);

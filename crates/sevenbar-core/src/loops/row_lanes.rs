@@ -2,9 +2,9 @@
 
 use super::chain::{Chain, Configuration};
 use super::dense::{COLUMNS, length};
-use super::rates::ORDERS;
 use super::row::{self, Row, UNIT};
 use super::screws::{bordered_inverse, correction, input_row};
+use super::velocities::ORDERS;
 use crate::outcome::RowStatus;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 

@@ -4,10 +4,10 @@
 
 use super::chain::{Chain, Configuration};
 use super::dense::{COLUMNS, Columns, least_squares, length, singular_values};
-use super::polish::{self, AGREE, NO_RANK, wrenches};
-use super::rates;
+use super::rank::{self, AGREE, NO_RANK, wrenches};
 use super::rotations::squared_up;
 use super::screws::{Twist, twist_of};
+use super::velocities;
 
 /// Singular values below this part of the greatest, and this many times the one that is known to vanish near by, vanish there too.
 const NEARLY_ZERO: f64 = 1e-3;
@@ -90,7 +90,7 @@ impl Place {
 /// The screws' first derivatives along rates of the joints.
 pub(super) fn carried(chain: &Chain, screws: &[Twist; COLUMNS], rates: &Columns) -> [Twist; COLUMNS] {
     let mut series = [*screws, [[0.0; 6]; COLUMNS]];
-    rates::carry(chain, &mut series, &[*rates, [0.0; COLUMNS]], 1);
+    velocities::carry(chain, &mut series, &[*rates, [0.0; COLUMNS]], 1);
     series[1]
 }
 
@@ -107,7 +107,7 @@ pub(super) fn singular_place(chain: &Chain, rough: &Configuration) -> Option<Pla
         if length(&chain.difference(rough, &at)) > NEAR {
             return None;
         }
-        let there = polish::rank(&singular_values(&chain.screws(&at)).0, NO_RANK);
+        let there = rank::rank(&singular_values(&chain.screws(&at)).0, NO_RANK);
         if there > rank {
             return None;
         }

@@ -9,8 +9,8 @@
 
 use super::flat::Flat;
 use super::kinds::Kind;
-use super::rates::{product_series, turned_series};
 use super::rotations::{Rotation, product, transposed};
+use super::turns::{product_series, turned_series};
 use crate::rigid::{
     Pose, Vec3, Vec3Taylor, cross, cross_taylor, dot, dot_taylor, most_perpendicular_axis, norm, scale,
     scale_taylor, sub, unit,
