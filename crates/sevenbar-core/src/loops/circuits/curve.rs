@@ -1,7 +1,7 @@
 //! One connected motion of a chain, followed by arc length in steps that cannot leave it.
 //!
 //! At a node `x0` let `A` be the screws, `t` the unit tangent, `A+` the pseudo-inverse, and `p(s)` the cubic whose rates
-//! `t + u1 s + u2 s^2` solve the closure of velocities to that order (see [`crate::loops::rates::velocities`]). On the plane `t (x - x0) = s` the
+//! `t + u1 s + u2 s^2` solve the closure of velocities to that order (see [`velocities`]). On the plane `t (x - x0) = s` the
 //! simplified Newton map about `p(s)` changes by at most
 //!
 //! `k = s |A+ A1| + s^2 |A+ A2| + |A+| (s^3 K3 / 6 + L r)`

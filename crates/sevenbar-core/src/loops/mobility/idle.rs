@@ -1,8 +1,9 @@
 //! Idle freedoms: those that move some links and no joint elsewhere.
 
-use crate::loops::equation::chain::Chain;
+use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::singular_values;
 use crate::loops::equation::kinds::Kind;
+use crate::loops::equation::rotations::ball_rotation;
 use crate::random::Random;
 use crate::rigid::Pose;
 
@@ -97,14 +98,12 @@ fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
                 .collect(),
             vec![*link, Pose::STILL],
         );
-        let mut at = crate::loops::equation::chain::Configuration::ZERO;
+        let mut at = Configuration::ZERO;
         for value in &mut at.values {
             *value = 2.0 * random.uniform() - 1.0;
         }
         for ball in &mut at.balls {
-            *ball = crate::loops::equation::rotations::ball_rotation(&std::array::from_fn(|_| {
-                3.0 * random.uniform()
-            }));
+            *ball = ball_rotation(&std::array::from_fn(|_| 3.0 * random.uniform()));
         }
         let (values, _) = singular_values(&chain.screws(&at));
         values[values.len() - 1] < 1e-9 * values[0]
