@@ -419,7 +419,7 @@ pub(crate) fn ahead(chain: &Chain, from: &Node, s: f64) -> Option<Node> {
     (off <= tube(chain, from, s) && node.inverse_norm.is_finite()).then_some(node)
 }
 
-/// Whether the turns of a configuration are near enough for [`Chain::passes_through`]: it tells most nodes apart at once.
+/// Whether the turns of a configuration are near enough for [`passes_through`]: it tells most nodes apart at once.
 pub(super) fn may_pass(chain: &Chain, node: &Node, at: &Configuration) -> bool {
     chain.joints.iter().zip(&chain.first).all(|(joint, &c)| {
         *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= REACH * node.step
