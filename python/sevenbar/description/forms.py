@@ -186,12 +186,14 @@ def _plain(value: Any) -> Any:
 
 
 def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
-    """The linkage that a description tells of, by the tables and keys of a file; it keeps them.
+    """The linkage that a description tells of, by the tables and keys of a file.
 
-    Raises `DescriptionError` with all that is wrong; `source` is the file it came from.
+    It keeps the description, with the number of each formula in its place. Raises `DescriptionError` with
+    all that is wrong; `source` is the file it came from.
     """
-    from sevenbar.description import schema
+    from sevenbar.description import formulas, schema
 
+    raw = formulas.with_numbers(raw)
     form = schema.check(raw, source=source)
     if problems := disproportions(form):
         raise DescriptionError(problems, source)

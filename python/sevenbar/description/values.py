@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.text.units import sliding_speed, turning_speed, unknown_unit
+from sevenbar.text.expression import Kind, value_of
+from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
 LARGEST_DIMENSION = 1e100
@@ -28,9 +29,18 @@ def refuse(message: str) -> PydanticCustomError:
     return PydanticCustomError("sevenbar", "{message}", {"message": message})
 
 
-def _number(value: object) -> float:
+def number_of(text: str, kind: Kind, context: Mapping[str, Any]) -> float:
+    """The number of a formula in the units of its file: `length_unit` and `angle_unit` of the context."""
+    units = {key: str(context[key]) for key in ("length_unit", "angle_unit") if key in context}
+    return value_of(text, kind, **units)
+
+
+def _number(value: object, info: ValidationInfo, kind: Kind = "number") -> float:
     if isinstance(value, str):
-        raise refuse(f"{shown(value)} is text; give a number without quotes")
+        try:
+            value = number_of(value, kind, info.context or {})
+        except RequestError as error:
+            raise refuse(str(error)) from None
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise refuse(f"{shown(value)} is not a number; give a number")
     if isinstance(value, float) and not math.isfinite(value):
@@ -40,8 +50,12 @@ def _number(value: object) -> float:
     return float(value)
 
 
-def _length(value: object) -> float:
-    number = _number(value)
+def _signed_length(value: object, info: ValidationInfo) -> float:
+    return _number(value, info, "length")
+
+
+def _length(value: object, info: ValidationInfo) -> float:
+    number = _signed_length(value, info)
     if number <= 0:
         raise refuse(f"{shown(value)} is not a length; give a number > 0")
     if number < 1 / LARGEST_DIMENSION:
@@ -49,15 +63,19 @@ def _length(value: object) -> float:
     return number
 
 
-def _vector(value: object) -> tuple[float, float, float]:
+def _three(value: object, info: ValidationInfo, kind: Kind) -> tuple[float, float, float]:
     if not isinstance(value, (list, tuple)) or len(value) != 3:
         raise refuse(f"{shown(value)} is not a point or direction; give three numbers, as in [0, 0, 1]")
-    x, y, z = (_number(v) for v in value)
+    x, y, z = (_number(v, info, kind) for v in value)
     return x, y, z
 
 
-def _direction(value: object) -> tuple[float, float, float]:
-    vector = _vector(value)
+def _vector(value: object, info: ValidationInfo) -> tuple[float, float, float]:
+    return _three(value, info, "length")
+
+
+def _direction(value: object, info: ValidationInfo) -> tuple[float, float, float]:
+    vector = _three(value, info, "number")
     if math.hypot(*vector) < 1 / LARGEST_DIMENSION:
         raise refuse(f"{shown(value)} has no direction; give three numbers, not all 0")
     return vector
@@ -65,7 +83,8 @@ def _direction(value: object) -> tuple[float, float, float]:
 
 def _angle(value: object, info: ValidationInfo) -> float:
     """An angle [rad], written in the file's unit."""
-    return _number(value) * float((info.context or {}).get("angle", 1.0))
+    context = info.context or {}
+    return _number(value, info, "angle") * ANGLES[context.get("angle_unit", "rad")]
 
 
 def crossing(axes: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
@@ -108,10 +127,15 @@ def _speed(value: object, info: ValidationInfo) -> float:
         raise refuse(str(error)) from None
 
 
-Number = Annotated[float, BeforeValidator(_number)]
-Angle = Annotated[float, BeforeValidator(_angle)]
-Length = Annotated[float, BeforeValidator(_length), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})]
-Vector = Annotated[tuple[float, float, float], BeforeValidator(_vector)]
-Direction = Annotated[tuple[float, float, float], BeforeValidator(_direction)]
+#: In a file a number may be a formula in quotes.
+_OR_TEXT = WithJsonSchema({"type": ["number", "string"]})
+_POSITIVE = WithJsonSchema({"type": ["number", "string"], "exclusiveMinimum": 0})
+
+Number = Annotated[float, BeforeValidator(_signed_length), _OR_TEXT]
+Angle = Annotated[float, BeforeValidator(_angle), _OR_TEXT]
+Length = Annotated[float, BeforeValidator(_length), _POSITIVE]
+_Component = Annotated[float, _OR_TEXT]
+Vector = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_vector)]
+Direction = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_direction)]
 Text = Annotated[str, BeforeValidator(_text)]
 Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]
