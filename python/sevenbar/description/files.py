@@ -10,7 +10,7 @@ from pathlib import Path
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
 from sevenbar.description.tables import ENDINGS, description_of_bytes, is_table
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.errors import DescriptionError, Problem, SevenbarError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.workbook import ZIP
 
@@ -38,7 +38,7 @@ def load(source: str | os.PathLike[str]) -> Linkage:
         return loads(text(source), source)
     content = _read(path)
     if _is_table(content, path) and len(content) <= LARGEST_TABLE:
-        return description_of_bytes(content, str(source)).linkage(str(source))
+        return description_of_bytes(content, str(source)).linkage(from_description, str(source))
     return loads(decoded(content, str(path)), str(source))
 
 
@@ -54,12 +54,19 @@ def text_of(source: str | os.PathLike[str]) -> str:
 
 
 def note_of(source: str | os.PathLike[str]) -> str:
-    """How a table was read, in a sentence; empty for TOML files and the gallery. Raises as `load` does."""
+    """How a table was read, in a sentence; empty for other files, and for one that is wrong."""
     path = Path(source)
     if not path.is_file() or (isinstance(source, str) and source in names() and not path.exists()):
         return ""
     content = _read(path)
-    return description_of_bytes(content, str(path)).note if _is_table(content, path) else ""
+    if not _is_table(content, path):
+        return ""
+    try:
+        found = description_of_bytes(content, str(path))
+        found.linkage(from_description, str(path))
+    except SevenbarError:  # which the command reports
+        return ""
+    return found.note
 
 
 def loads(content: str, source: str = "text") -> Linkage:
@@ -164,7 +171,7 @@ def decoded(content: bytes, place: str) -> str:
         )
     if table:
         found = description_of_bytes(content, place)
-        found.linkage(place)  # its mistakes, with their places in the table
+        found.linkage(from_description, place)  # its mistakes, with their places in the table
         return found.toml(Path(place).name)
     if kind := next((what for mark, what in _OTHER_KINDS.items() if content.startswith(mark)), ""):
         raise _unreadable(place, kind)

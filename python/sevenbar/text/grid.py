@@ -88,7 +88,7 @@ def grid_of_frame(frame: Any) -> Grid:
 
 
 def listed(values: Any) -> Any:
-    """A column of a data frame, or an array, as a list; other values as they are."""
+    """A column of a data frame, an array or a tuple as a list; others as they are."""
     for way in ("tolist", "to_list"):
         if hasattr(values, way):
             return getattr(values, way)()
