@@ -162,7 +162,7 @@ class _Reader:
     @property
     def _own(self) -> list[int]:
         """The columns that make a row one of the table."""
-        marks = ("joint", "order", "input", "output")
+        marks = ("joint", "order", "input", "output", "speed")
         return [column for key, column in self.columns.items() if key not in marks] or list(
             self.columns.values()
         )
@@ -279,7 +279,12 @@ class _Reader:
         self.places |= {f"rssr.{key}": self.grid.place(row, self.columns[key]) for key in numbers}
         self.places["rssr"] = self.grid.place(row)
         raw: dict[str, Any] = {}
-        drive = self._drive({row: "crank"})
+        # the joints of an RSSR have no rows of their own: the input is named
+        named = self.text(row, "input") in ("crank", "rocker")
+        drive = {"joint": self.text(row, "input")} if named else {}
+        inputs = {key: column for key, column in self.columns.items() if key == "input" and named}
+        self.columns = {key: column for key, column in self.columns.items() if key not in inputs}
+        drive = {**self._drive({row: "crank"}), **drive}
         if drive:
             raw["drive"] = drive
         raw["rssr"] = {key: value for key, value in numbers.items() if value is not None}
@@ -470,12 +475,14 @@ class _Reader:
             if not marked:
                 continue
             word = self.text(marked[0], key)
+            # a freedom of a joint that has several, as `cross.2`
+            owned = re.fullmatch(rf"{re.escape(names[marked[0]])}\.\d", word) is not None
             if key == "input" and word.lower() in ("output", "out"):
                 drive["output"] = names[marked[0]]
                 continue
-            drive[target] = names[marked[0]]
+            drive[target] = word if owned else names[marked[0]]
             self.places[f"drive.{target}"] = self.grid.place(marked[0], self.columns[key])
-            if word.lower() in MARKS:
+            if word.lower() in MARKS or owned:
                 continue
             if key == "input" and re.match(r"[-+]?[\d.]", word):
                 drive["speed"] = word
@@ -483,6 +490,13 @@ class _Reader:
             else:
                 self._wrong(f"{shown(word)} marks nothing; write x, or a speed as in '60 rpm'", marked[0],
                             self.columns[key])  # fmt: skip
+        spoken = [row for row in names if self.text(row, "speed")]
+        for row in spoken[:1]:
+            column = self.columns["speed"]
+            drive["speed"] = f"{self.text(row, 'speed')} {self.grid.unit(column)}".strip()
+            self.places["drive.speed"] = self.grid.place(row, column)
+        for row in spoken[1:]:
+            self._wrong("is a second speed; give one, in the row of the input", row, self.columns["speed"])
         return drive
 
 
