@@ -56,11 +56,11 @@ def test_a_linkage_cannot_be_changed():
 
 
 def test_all_errors_of_a_file_are_told_at_once():
-    text = changed(DIMENSIONS, ("M = 700", 'M = "700"'), ("L1 = 250", "L1 = -250"), ('"mm"', '"mmm"'))
+    text = changed(DIMENSIONS, ("M = 700", 'M = "wide"'), ("L1 = 250", "L1 = -250"), ('"mm"', '"mmm"'))
     assert complaints(changed(text, ("10 rad/s", "0 rad/s"))) == [
         "f.toml: length_unit: 'mmm' is not a unit known here; did you mean 'mm'? allowed: um, mm, cm, m, in, ft",
         "f.toml: drive.speed: '0 rad/s' moves nothing; give a finite speed other than 0, as in '10 rad/s'",
-        "f.toml: rssr.M: '700' is text; give a number without quotes",
+        "f.toml: rssr.M: 'wide': no 'wide' is known; give a length, as in 250, '25 cm' or '50*sin(30deg)'",
         "f.toml: rssr.L1: -250 is not a length; give a number > 0",
     ]
 

@@ -13,13 +13,13 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.synthesis.closure import NAMES
-from sevenbar.text.expression import function_of
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.report import synthesis_report
 from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import RequestError
+from sevenbar.text.expression import function_of
 
 QUARTER = (0.0, math.pi / 2)
 PAGE = Path(__file__).parent.parent / "docs" / "synthesis.md"

@@ -11,12 +11,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from sevenbar.design.synthesis.function.expression import function_of
 
 import sevenbar as sb
 from sevenbar.arrays import Floats
 from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.wish import wish_of_function
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit, Law

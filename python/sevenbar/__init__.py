@@ -31,6 +31,7 @@ from sevenbar.description.families import (
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
 from sevenbar.description.law_file import load_law
+from sevenbar.description.step_axes import PartAxis, axes_of_step
 from sevenbar.description.tables import from_table
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
 from sevenbar.kinematics.geometry import Drive, Joint, Point
@@ -52,10 +53,12 @@ __all__ = [
     "Motion",
     "OpenRange",
     "Output",
+    "PartAxis",
     "Point",
     "Search",
     "Trace",
     "__version__",
+    "axes_of_step",
     "bennett",
     "bricard_line",
     "bricard_plane",

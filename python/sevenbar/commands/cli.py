@@ -47,6 +47,7 @@ _ELSEWHERE = {
     "calibrate": "sevenbar.commands.compare:calibrate",
     "simulate": "sevenbar.commands.simulate:simulate",
     "export": "sevenbar.commands.export:export",
+    "axes": "sevenbar.commands.axes:axes",
     "sweep": "sevenbar.commands.sweep:sweep",
     "map": "sevenbar.commands.maps:map_",
     "tolerance": "sevenbar.commands.tolerance:tolerance",

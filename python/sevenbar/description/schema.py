@@ -25,6 +25,7 @@ from sevenbar.description.values import (
     EXAMPLE_OF_AXES,
     Angle,
     Direction,
+    InputName,
     Length,
     Number,
     Speed,
@@ -160,7 +161,7 @@ class DriveForm(_Form):
         Speed,
         _key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
     ] = 1.0
-    joint: Annotated[Text | None, _key("the input; left out, the first joint that is no ball")] = None
+    joint: Annotated[InputName | None, _key("the input; left out, the first joint that is no ball")] = None
     output: Annotated[
         Text | None, _key("the output; left out, the last joint that is neither a ball nor the input")
     ] = None

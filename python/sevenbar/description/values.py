@@ -119,6 +119,16 @@ def _text(value: object) -> str:
     return value.strip()
 
 
+def _one_joint(value: object) -> str:
+    if isinstance(value, list | tuple) and len(value) > 1:
+        what = "inputs" if len(value) == 2 else f"{len(value)} inputs"
+        raise refuse(
+            f"{shown(value)} are {'two ' if len(value) == 2 else ''}{what}; give one, as a loop is driven at one "
+            'joint here ("Two inputs" in the page "What is not covered" says what to do instead)'
+        )
+    return _text(value)
+
+
 def _speed(value: object, info: ValidationInfo) -> float:
     slides = (info.context or {}).get("slides")
     try:
@@ -128,8 +138,9 @@ def _speed(value: object, info: ValidationInfo) -> float:
 
 
 #: In a file a number may be a formula in quotes.
-_OR_TEXT = WithJsonSchema({"type": ["number", "string"]})
-_POSITIVE = WithJsonSchema({"type": ["number", "string"], "exclusiveMinimum": 0})
+_FORMULA = {"type": ["number", "string"], "pattern": "[0-9]|pi|\u03c0"}
+_OR_TEXT = WithJsonSchema(_FORMULA)
+_POSITIVE = WithJsonSchema({**_FORMULA, "exclusiveMinimum": 0})
 
 Number = Annotated[float, BeforeValidator(_signed_length), _OR_TEXT]
 Angle = Annotated[float, BeforeValidator(_angle), _OR_TEXT]
@@ -138,4 +149,5 @@ _Component = Annotated[float, _OR_TEXT]
 Vector = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_vector)]
 Direction = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_direction)]
 Text = Annotated[str, BeforeValidator(_text)]
+InputName = Annotated[str, BeforeValidator(_one_joint)]
 Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]

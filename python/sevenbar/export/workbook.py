@@ -1,4 +1,4 @@
-"""A motion as an Excel workbook: sheets of each circuit, the linkage, its points (openpyxl, extra `excel`)."""
+"""A motion as an Excel workbook: sheets of circuits, the linkage, its points (openpyxl, extra `excel`)."""
 
 from __future__ import annotations
 
