@@ -11,7 +11,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from sevenbar.design.synthesis.function.expression import function_of
 
 import sevenbar as sb
 from sevenbar.arrays import Floats
@@ -21,6 +20,7 @@ from sevenbar.design.synthesis.function.wish import wish_of_function
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
+from sevenbar.text.expression import function_of
 
 SAMPLES = 24
 

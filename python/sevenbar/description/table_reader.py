@@ -67,8 +67,8 @@ class TableDescription:
         except DescriptionError as error:
             found = [Problem(self._place(p.place), p.message) for p in error.problems]
             # of a row with a wrong cell the rest is not known
-            rows = [f"{p.place.partition(',')[0]}," for p in problems]
-            problems += [p for p in found if not any(f"{p.place},".startswith(row) for row in rows)]
+            rows = {p.place.partition(",")[0] for p in problems}
+            problems += [p for p in found if re.split(r"[,:]", p.place)[0] not in rows]
         if problems:
             raise DescriptionError(problems, source)
         return linkage
@@ -80,6 +80,8 @@ class TableDescription:
     def _place(self, place: str) -> str:
         if place in self.places:
             return self.places[place]
+        if place in ("link", "joint", "point"):
+            return ""
         parts = place.split(".")
         above = next((".".join(parts[:n]) for n in range(len(parts), 0, -1)
                       if ".".join(parts[:n]) in self.places), "")  # fmt: skip
@@ -129,6 +131,7 @@ class _Reader:
         self.places: dict[str, str] = {}
         self.columns: dict[str, int] = {}
         self.unread: list[str] = []
+        self._units_refused: set[int] = set()
         labels = [grid.label(column) for column in range(len(grid.names))]
         self.dimensions = has_dimensions(labels)
         for column, label in enumerate(labels):
@@ -191,7 +194,9 @@ class _Reader:
         if not text:
             return None
         column = self.columns[key]
-        unit = self._unit(column, kind)
+        if column in self._units_refused or not self._has_right_unit(column, kind):
+            return None
+        unit = measured_unit(self.grid.unit(column)) if kind != "number" else None
         value = number(text)
         own = {"length": self.length_unit, "angle": self.angle_unit}
         try:
@@ -215,21 +220,18 @@ class _Reader:
             return None
         return value
 
-    def _unit(self, column: int, kind: Kind) -> MeasuredUnit | None:
+    def _has_right_unit(self, column: int, kind: Kind) -> bool:
+        """Whether the unit of a column is one of its kind, or none; else it is reported, once."""
         written = self.grid.unit(column)
-        sort = {"length": "slide", "angle": "turn", "number": ""}[kind]
         unit = measured_unit(written)
-        if not written or (kind == "number" and unit is None):
-            return None
-        if unit is None or (unit.kind, unit.order) != (sort, 0):
-            example = {"length": "mm", "angle": "deg"}.get(kind, "")
-            give = f"give one like {example}" if example else "leave it out"
-            what = "directions" if kind == "number" else f"{kind}s"
-            message = f"{shown(written)} is not a unit of {what}; {give}"
-            if not any(p.message == message for p in self.problems):
-                self._wrong(message, column=column)
-            return None
-        return unit
+        wanted = {"length": ("slide", 0), "angle": ("turn", 0)}.get(kind)
+        if not written or (unit is not None and (unit.kind, unit.order) == wanted):
+            return True
+        what = "directions" if kind == "number" else f"{kind}s"
+        give = {"length": "give one like mm", "angle": "give one like deg"}.get(kind, "leave it out")
+        self._wrong(f"{shown(written)} is not a unit of {what}; {give}", column=column)
+        self._units_refused.add(column)
+        return False
 
     def _scale(self, unit: MeasuredUnit) -> float:
         if unit.kind == "slide":
@@ -255,6 +257,7 @@ class _Reader:
             if mixed:
                 both = " and ".join(shown(self.grid.names[self.columns[key]]) for key in mixed)
                 self._wrong(f"{both}: of Denavit-Hartenberg rows, x, y, z of joints as drawn; leave one out")
+                self.finish()
             # columns of rows say nothing of a joint as drawn, such as the radius r of a part's hole
             for key in ("length", "angle", "joint" if "name" in self.columns else ""):
                 if key in self.columns:

@@ -121,10 +121,10 @@ def _text(value: object) -> str:
 
 def _one_joint(value: object) -> str:
     if isinstance(value, list | tuple) and len(value) > 1:
-        what = "inputs" if len(value) == 2 else f"{len(value)} inputs"
+        count = {2: "two", 3: "three"}.get(len(value), str(len(value)))
         raise refuse(
-            f"{shown(value)} are {'two ' if len(value) == 2 else ''}{what}; give one, as a loop is driven at one "
-            'joint here ("Two inputs" in the page "What is not covered" says what to do instead)'
+            f"{shown(value)} are {count} inputs; give one, as a loop is driven at one joint here "
+            "('Two inputs' on the page 'What is not covered' says what to do instead)"
         )
     return _text(value)
 

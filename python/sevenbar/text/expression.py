@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.text.units import ANGLES, LENGTHS, length_sizes
+from sevenbar.text.units import ANGLES, LENGTHS, length_sizes, unknown_unit
 
 Floats = npt.NDArray[np.float64]
 
@@ -97,6 +97,9 @@ _SIGNS = str.maketrans({"\u00b7": "*", "\u00d7": "*", "\u2212": "-", "\u03c0": "
 _UNIT = "|".join(sorted((*LENGTHS, *ANGLES), key=len, reverse=True))
 _NUMBER_AND_UNIT = re.compile(rf"(?<![\w.])((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)({_UNIT})(?![\w.(])")
 _UNIT_ALONE = re.compile(rf"(?<=[\w.)])\s*(?<![\w.])({_UNIT})(?![\w.(])|(?<=\))({_UNIT})(?![\w.(])")
+
+#: A word after a number, which is none of its units.
+_NUMBER_AND_WORD = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)\s*([A-Za-z\u00b5\u03bc][\w/]*)")
 
 #: How a unit is called within a formula: `in` is a word of Python's grammar.
 _CALLED = {unit: f"unit_{unit}" for unit in (*LENGTHS, *ANGLES)}
@@ -225,9 +228,19 @@ def _parsed(text: str, names: Mapping[str, object]) -> ast.AST:
     try:
         body = ast.parse(plain, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _WrongFormulaError("it is not a formula") from None
+        raise _WrongFormulaError(_why_no_formula(plain)) from None
     _check(body, names)
     return body
+
+
+def _why_no_formula(plain: str) -> str:
+    """What is wrong with a text that cannot be parsed: often a word after a number."""
+    word = _NUMBER_AND_WORD.search(plain)
+    if word is None:
+        return "it is not a formula"
+    if word[1] in (*FUNCTIONS, *CONSTANTS):
+        return f"there is no sign before {shown(word[1])}; write *, as in 2*{word[1]}"
+    return unknown_unit(word[1], (*LENGTHS, *ANGLES))
 
 
 def _check(node: ast.AST, names: Mapping[str, object]) -> None:

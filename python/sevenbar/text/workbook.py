@@ -52,11 +52,11 @@ def sheets_of(content: bytes, source: str) -> list[Sheet]:
     values = _open(content, source, data_only=True)
     sheets, formulas = [], None
     for sheet in values.worksheets:
-        rows = _rows(sheet)
-        if any(cell is None for row in rows for cell in row):
+        rows, has_empty = _rows(sheet)
+        if has_empty:
             formulas = formulas or _open(content, source, data_only=False)
             _refuse_unknown_values(
-                rows, _rows(formulas[sheet.title]), f"{source}: sheet {shown(sheet.title)}"
+                rows, _rows(formulas[sheet.title])[0], f"{source}: sheet {shown(sheet.title)}"
             )
         cells = tuple(tuple(map(_text, row)) for row in rows)
         if any(any(row) for row in cells):
@@ -92,15 +92,16 @@ def _open(content: bytes, source: str, *, data_only: bool) -> Any:
         ) from None
 
 
-def _rows(sheet: Any) -> list[list[Any]]:
-    """The values of all cells, rows without the empty cells at their end."""
+def _rows(sheet: Any) -> tuple[list[list[Any]], bool]:
+    """The values of all cells, rows without the empty cells at their end, and whether a cell is empty."""
     rows = [list(row) for row in sheet.iter_rows(values_only=True)]
+    has_empty = any(cell is None for row in rows for cell in row)
     for row in rows:
         while row and row[-1] is None:
             row.pop()
     while rows and not rows[-1]:
         rows.pop()
-    return rows
+    return rows, has_empty
 
 
 def _refuse_unknown_values(
