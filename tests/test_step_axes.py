@@ -80,7 +80,10 @@ def test_a_linkage_is_made_of_the_table_and_moves_as_the_model_s(models, tmp_pat
     # the ranges of the output are the model's, whatever sense and zero the axes give it
     ours, theirs = (sorted(np.ptp(c.output) for c in m) for m in (motion, model))
     np.testing.assert_allclose(ours, theirs, rtol=1e-6)
-    assert f"{count - 4} rows without a kind left out" in sevenbar("analyze", "axes.csv", "--json", cwd=tmp_path).stderr
+    assert (
+        f"{count - 4} rows without a kind left out"
+        in sevenbar("analyze", "axes.csv", "--json", cwd=tmp_path).stderr
+    )
 
 
 def test_faces_keep_their_names_and_fillets_are_left_out(tmp_path):
