@@ -265,7 +265,7 @@ def _plain(value: Any) -> Any:
 
 
 def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
-    """The linkage that a description tells of, by the tables and keys of a file.
+    """The linkage of a description, by the tables and keys of a file.
 
     It keeps the description, with the number of each formula in its place. Raises `DescriptionError` with
     all that is wrong; `source` is the file it came from.

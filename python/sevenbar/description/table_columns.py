@@ -37,7 +37,7 @@ SPELLINGS: Mapping[str, tuple[str, ...]] = {
 #: The RSSR paper's dimensions, which are letters of their own: D is none of a Denavit-Hartenberg row.
 DIMENSIONS = ("M", "N", "L1", "L3", "D", "L2")
 
-#: What tells one sort of table from the others.
+#: What distinguishes one sort of table from the others.
 ROWS = ("length", "twist", "offset")
 PLACES = ("x", "y")
 

@@ -24,7 +24,7 @@ from sevenbar.errors import DescriptionError, Problem, RequestError, shown
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.expression import Kind, value_of
-from sevenbar.text.grid import Grid, grid_of_frame
+from sevenbar.text.grid import CellTable, grid_of_frame
 from sevenbar.text.table import number
 from sevenbar.text.units import ANGLES, LENGTHS, MeasuredUnit, measured_unit
 
@@ -104,14 +104,14 @@ def described_frame(source: Any) -> TableDescription:
     return described(grid, "table", "linkage")
 
 
-def described(grid: Grid, source: str, name: str) -> TableDescription:
+def described(grid: CellTable, source: str, name: str) -> TableDescription:
     """What a table describes; `source` is what messages call it, `name` the linkage's without a title."""
     found = _Reader(grid, source).description()
     found.raw["name"] = grid.title or name
     return found
 
 
-def add_points(found: TableDescription, grid: Grid, source: str) -> None:
+def add_points(found: TableDescription, grid: CellTable, source: str) -> None:
     """Adds the points of a sheet of their own."""
     reader = _Reader(grid, source)
     reader.length_unit = str(found.raw["length_unit"])
@@ -125,7 +125,7 @@ def add_points(found: TableDescription, grid: Grid, source: str) -> None:
 class _Reader:
     """Reads one table, and collects what is wrong in it."""
 
-    def __init__(self, grid: Grid, source: str) -> None:
+    def __init__(self, grid: CellTable, source: str) -> None:
         self.grid, self.source = grid, source
         self.problems: list[Problem] = []
         self.places: dict[str, str] = {}

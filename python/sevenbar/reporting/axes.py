@@ -75,13 +75,10 @@ def _text(found: PartAxes) -> RenderableType:
         table.add_row(name, axis.shape, _vector(axis.at), direction, radii, f"{axis.extent:.6g}", parts)
     shared = sum(len(axis.parts) > 1 for axis in found.axes)
     count = len(found.axes)
-    told = [Text(f"{found.source}: {count} axes and balls, {shared} of them shared by several parts"), Text()]
-    below = (
-        [Text(), Text(f"and {count - MOST_PRINTED} more, which the table has")]
-        if count > MOST_PRINTED
-        else []
-    )
-    return Group(*told, table, *below)
+    first = Text(f"{found.source}: {count} axes and balls, {shared} of them shared by several parts")
+    more = max(count - MOST_PRINTED, 0)
+    below = [Text(), Text(f"and {more} more, which the table of --out has")] if more else []
+    return Group(first, Text(), table, *below)
 
 
 def _vector(values: Any) -> str:

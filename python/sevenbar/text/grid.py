@@ -16,14 +16,14 @@ from typing import Any
 from sevenbar.errors import shown
 from sevenbar.text.table import COMMA_NUMBER, NAME_AND_UNIT, NO_NUMBER, NUMBER, name_and_unit
 from sevenbar.text.units import is_unit
-from sevenbar.text.workbook import Sheet, cell_name
+from sevenbar.text.workbook import WorkbookSheet, cell_name
 
 #: Whether a line's cells, without their units, may be a header.
 IsHeader = Callable[[Sequence[str]], bool]
 
 
 @dataclass(frozen=True)
-class Grid:
+class CellTable:
     """Cells of text under a header: `names` and `units` of the columns, `rows` with their lines from 1.
 
     `title` is a line of one cell above the header. `word` is what a line is called: a row
@@ -61,7 +61,7 @@ class Grid:
         return text.replace(",", ".") if self.decimal_comma and COMMA_NUMBER.fullmatch(text) else text
 
 
-def grid_of_text(text: str, is_header: IsHeader) -> Grid | None:
+def grid_of_text(text: str, is_header: IsHeader) -> CellTable | None:
     """The table of a text; `None` where no line of it is a header."""
     for delimiter in ("\t", ";", ",", ""):
         cells = list(_cells(text, delimiter))
@@ -71,20 +71,20 @@ def grid_of_text(text: str, is_header: IsHeader) -> Grid | None:
     return None
 
 
-def grid_of_sheet(sheet: Sheet, is_header: IsHeader) -> Grid | None:
+def grid_of_sheet(sheet: WorkbookSheet, is_header: IsHeader) -> CellTable | None:
     """The table of a sheet; `None` where no row of it is a header."""
     rows = [(line, list(row)) for line, row in enumerate(sheet.rows, 1)]
     return _grid(rows, is_header, word="row")
 
 
-def grid_of_frame(frame: Any) -> Grid:
+def grid_of_frame(frame: Any) -> CellTable:
     """The table of a data frame, or of a mapping of names to columns of equal length."""
     names = [str(name) for name in (frame.columns if hasattr(frame, "columns") else frame)]
     keys = list(frame.columns if hasattr(frame, "columns") else frame)
     columns = [[_of_python(value) for value in listed(frame[key])] for key in keys]
     rows = list(zip(*columns, strict=True))
     none = ("",) * len(names)
-    return Grid(tuple(names), none, tuple(range(1, len(rows) + 1)), tuple(rows), word="data row")
+    return CellTable(tuple(names), none, tuple(range(1, len(rows) + 1)), tuple(rows), word="data row")
 
 
 def listed(values: Any) -> Any:
@@ -120,7 +120,7 @@ def _grid(
     *,
     word: str = "line",
     decimal_comma: bool = False,
-) -> Grid | None:
+) -> CellTable | None:
     kept = [(n, cells) for n, cells in lines if any(cells) and not cells[0].startswith(("#", "%"))]
     heads = [[name_and_unit(cell)[0] for cell in cells] for _, cells in kept]
     first = next((i for i, head in enumerate(heads) if is_header(head)), None)
@@ -140,7 +140,7 @@ def _grid(
     rows = [tuple((cells + [""] * width)[: max(width, len(cells))]) for _, cells in body]
     comma = decimal_comma and _has_decimal_commas(rows)
     lines_of = tuple(number for number, _ in body)
-    return Grid(tuple(names), tuple(units), lines_of, tuple(rows), title, word, comma)
+    return CellTable(tuple(names), tuple(units), lines_of, tuple(rows), title, word, comma)
 
 
 def _only_units(cells: Sequence[str]) -> bool:

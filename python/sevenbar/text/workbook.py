@@ -17,7 +17,7 @@ OLD = b"\xd0\xcf\x11\xe0"
 
 
 @dataclass(frozen=True)
-class Sheet:
+class WorkbookSheet:
     """A sheet that is not empty: its title, and its rows, each as long as it has cells."""
 
     title: str
@@ -43,7 +43,7 @@ def refuse_old(content: bytes, source: str) -> None:
         raise TableError(f"{source}: is a workbook of the old kind (.xls); save it as .xlsx or CSV")
 
 
-def sheets_of(content: bytes, source: str) -> list[Sheet]:
+def sheets_of(content: bytes, source: str) -> list[WorkbookSheet]:
     """The sheets of a workbook that are not empty, in its order; `source` is its name in messages.
 
     Raises `TableError` for another file, and for a formula whose value the file does not hold;
@@ -60,7 +60,7 @@ def sheets_of(content: bytes, source: str) -> list[Sheet]:
             )
         cells = tuple(tuple(map(_text, row)) for row in rows)
         if any(any(row) for row in cells):
-            sheets.append(Sheet(sheet.title, cells))
+            sheets.append(WorkbookSheet(sheet.title, cells))
     if not sheets:
         raise TableError(f"{source}: is empty; give a workbook with a table")
     return sheets
