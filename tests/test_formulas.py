@@ -145,6 +145,25 @@ def test_every_number_of_a_file_may_be_a_formula_and_the_kinds_are_the_schema_s(
         assert {key: kind for key, kind in KINDS_OF_NUMBERS.get(head, {}).items() if kind != "number"} == told
 
 
+@pytest.mark.parametrize(
+    ("text", "speed"),
+    [
+        ("2*pi*5 rad/s", 10 * math.pi),
+        ("3000/60 rev/s", 100 * math.pi),
+        ("10 rad/s", 10),
+        ("(1+1)rpm", math.pi / 15),
+    ],
+)
+def test_a_speed_may_be_a_formula_before_its_unit(text, speed):
+    found = sb.loads(RSSR.format(250).replace("speed = 2", f'speed = "{text}"')).drive.speed
+    assert found == pytest.approx(speed, rel=1e-15)
+
+
+def test_a_wrong_formula_of_a_speed_is_refused():
+    with pytest.raises(DescriptionError, match=r"drive.speed: '2\*p': no 'p' is known; give a number"):
+        sb.loads(RSSR.format(250).replace("speed = 2", 'speed = "2*p rad/s"'))
+
+
 def test_a_drawing_takes_formulas_in_places_and_axes():
     drawn = """format = 1
 [[joint]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Annotated, Any
 
@@ -12,7 +13,7 @@ from pydantic_core import PydanticCustomError
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.text.expression import Kind, value_of
-from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
+from sevenbar.text.units import ANGLES, LENGTHS, TURNING_SPEEDS, sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
 LARGEST_DIMENSION = 1e100
@@ -129,9 +130,17 @@ def _one_joint(value: object) -> str:
     return _text(value)
 
 
+#: A formula before a unit of speed: `2*pi*5 rad/s`.
+_SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])
+_FORMULA_OF_SPEED = re.compile(rf"(.+?)\s*({_SPEED_UNITS})")
+
+
 def _speed(value: object, info: ValidationInfo) -> float:
     slides = (info.context or {}).get("slides")
     try:
+        match = _FORMULA_OF_SPEED.fullmatch(value) if isinstance(value, str) else None
+        if match is not None and any(sign in match[1] for sign in "*/(^"):
+            value = f"{value_of(match[1], 'number')!r} {match[2]}"
         return sliding_speed(value, slides) if slides else turning_speed(value)
     except RequestError as error:
         raise refuse(str(error)) from None
