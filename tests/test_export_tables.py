@@ -137,6 +137,7 @@ def test_a_file_is_replaced_by_force_only(motion, tmp_path):
         (("docx", "m.csv", {}), "to: 'docx' is not a format; allowed: csv, xlsx, parquet, npz,"),
         (("jso", "m.csv", {}), "to: 'jso' is not a format; did you mean 'json'? allowed"),
         (("json", "m.csv", {}), "m.csv: its ending '.csv' is not that of json; give .json"),
+        (("exel", "m.csv", {}), "to: 'exel' is not a format; did you mean 'excel'? allowed: csv, xlsx,"),
         ((None, "m.txt", {}), "m.txt: '.txt' tells no format; give one of .csv, .xlsx, .parquet,"),
         (("step", "m", {}), "m: has no ending; give .step or .stp"),
         (("csv", "m.csv", {"circuit": 0}), "circuit: csv holds all rows of all circuits; leave it out"),

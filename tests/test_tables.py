@@ -191,6 +191,7 @@ def test_the_dimensions_of_an_rssr_are_a_row(tmp_path):
           "line 2, columns 'axis x', 'axis y', 'axis z': [0.0, 0.0, 0.0] has no direction; give three numbers, not all 0"]),
         ("kind,x [mm],y [mm],alpha [deg]\nR,0,0,0\n",
          ["'alpha [deg]': of Denavit-Hartenberg rows, x, y, z of joints as drawn; leave one out"]),
+        (" \n", ["is empty; give a table with a header and a row for each joint"]),
         ("what,is,this\n1,2,3\n",
          ["no header of a linkage's table; name the columns as in 'joint, a [mm], alpha [deg], d [mm]' for Denavit-Hartenberg rows, "
           "or 'name, kind, x [mm], y [mm], z [mm], axis x, axis y, axis z' for joints as drawn"]),

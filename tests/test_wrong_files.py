@@ -29,7 +29,7 @@ def test_a_file_of_notepad_is_read(tmp_path, encoding):
          "a MATLAB file; write the table as CSV, as in writetable(T, 'loop.csv')"),
         (b"\x89HDF\r\n\x1a\n" + bytes(100),
          "a file of HDF5 or MATLAB 7.3; write the table as CSV, as in writetable(T, 'loop.csv')"),
-        (b"ISO-10303-21;\nHEADER;",
+        (b"ISO-10303-21;\nHEADER;" + b" " * 200_000,
          "a STEP file; 'sevenbar axes' lists the axes of its cylinders, as a table to begin with"),
         (b"\xd0\xcf\x11\xe0" + bytes(100), "an old Excel or Office file; save it as .xlsx or CSV"),
         (b"%PDF-1.7\n", "a PDF file; give a TOML file of format 1, or a table (.csv, .xlsx)"),

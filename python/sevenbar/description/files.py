@@ -164,6 +164,9 @@ def _is_table(content: bytes, path: Path) -> bool:
 def decoded(content: bytes, place: str) -> str:
     """The TOML text of a file's bytes; `place` is its name in messages. Raises as `load` does."""
     table = _is_table(content, Path(place))
+    kind = next((what for mark, what in _OTHER_KINDS.items() if content.startswith(mark)), "")
+    if kind and not table:
+        raise _unreadable(place, kind)
     largest = LARGEST_TABLE if table else LARGEST_FILE
     if len(content) > largest:
         raise _unreadable(
@@ -173,8 +176,6 @@ def decoded(content: bytes, place: str) -> str:
         found = description_of_bytes(content, place)
         found.linkage(from_description, place)  # its mistakes, with their places in the table
         return found.toml(Path(place).name)
-    if kind := next((what for mark, what in _OTHER_KINDS.items() if content.startswith(mark)), ""):
-        raise _unreadable(place, kind)
     # the mark of UTF-16, as Notepad's "Unicode" writes it
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         try:

@@ -71,6 +71,8 @@ def read_table_description(path: Path) -> TableDescription:
 def description_of_bytes(content: bytes, source: str) -> TableDescription:
     """What a file's bytes describe; `source` is its name in messages."""
     stem = Path(source).stem
+    if not content.strip():
+        raise _refused(source, "is empty; give a table with a header and a row for each joint")
     if not content.startswith(ZIP):
         text = text_of_bytes(content, source).replace("\r\n", "\n").replace("\r", "\n")
         grid = grid_of_text(text, is_header)

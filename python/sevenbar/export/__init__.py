@@ -230,9 +230,8 @@ def _word(to: str) -> str:
     word = ALIASES.get(word, word)
     known = {ending[1:]: name for name, form in FORMATS.items() for ending in form.endings}
     if word not in known:
-        raise RequestError(
-            f"to: {shown(to)} is not a format; {suggestion(word, FORMATS)}allowed: {', '.join(FORMATS)}"
-        )
+        near = suggestion(word, (*FORMATS, *ALIASES))
+        raise RequestError(f"to: {shown(to)} is not a format; {near}allowed: {', '.join(FORMATS)}")
     return known[word]
 
 
