@@ -34,7 +34,10 @@ def folder(tmp_path):
         (["deeep.toml"], f"deeep.toml: no such file; did you mean 'deep.toml'? {LISTED}"),
         (["./empty"], f"empty: no such file; did you mean 'empty.toml'? {LISTED}"),
         (["."], ".: is a folder; give the path of a TOML file in it"),
-        (["junk.toml"], "junk.toml: not text: byte 128 is not UTF-8; give a TOML file of format 1"),
+        (
+            ["junk.toml"],
+            "junk.toml: not text: byte 128 is not UTF-8; give a TOML file of format 1, or a table (.csv, .xlsx)",
+        ),
         (
             ["nested.toml"],
             "nested.toml: larger than 100000 bytes, so it is no linkage file; give a TOML file of format 1",
@@ -94,7 +97,8 @@ def test_a_name_nested_a_thousand_times_is_one_short_message(folder):
             "format = 1\n[rssr]\nM = 700 mm\n",
             [
                 "line 3: 'M = 700 mm' is not valid TOML: expected newline or end of document after a statement; "
-                "write a number without its unit, which length_unit and angle_unit tell for the whole file"
+                "write a number without its unit, which length_unit and angle_unit give for the whole file, "
+                'or both in quotes, as in "25 cm"'
             ],
         ),
         (

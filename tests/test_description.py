@@ -56,11 +56,11 @@ def test_a_linkage_cannot_be_changed():
 
 
 def test_all_errors_of_a_file_are_told_at_once():
-    text = changed(DIMENSIONS, ("M = 700", 'M = "700"'), ("L1 = 250", "L1 = -250"), ('"mm"', '"mmm"'))
+    text = changed(DIMENSIONS, ("M = 700", 'M = "wide"'), ("L1 = 250", "L1 = -250"), ('"mm"', '"mmm"'))
     assert complaints(changed(text, ("10 rad/s", "0 rad/s"))) == [
         "f.toml: length_unit: 'mmm' is not a unit known here; did you mean 'mm'? allowed: um, mm, cm, m, in, ft",
         "f.toml: drive.speed: '0 rad/s' moves nothing; give a finite speed other than 0, as in '10 rad/s'",
-        "f.toml: rssr.M: '700' is text; give a number without quotes",
+        "f.toml: rssr.M: 'wide': no 'wide' is known; give a length, as in 250, '25 cm' or '50*sin(30deg)'",
         "f.toml: rssr.L1: -250 is not a length; give a number > 0",
     ]
 
@@ -201,7 +201,7 @@ def test_a_drawing_may_hold_any_kind_of_joint():
 
 def test_python_calls_get_the_same_messages():
     with pytest.raises(DescriptionError, match=r"^rssr\.L1: -1 is not a length; give a number > 0$"):
-        sb.rssr(M=1, N=1, L1=-1, L3=1)
+        sb.rssr(M=1, N=1, L1=-1, L3=1, D=0)
     with pytest.raises(DescriptionError, match=r"joint\[1\]\.kind: 'X' is not a joint kind"):
         sb.from_axes([{"kind": "X", "at": (0, 0, 0)}])
     with pytest.raises(RequestError, match=r"samples: 2 is not a count; give 4 to 1000000"):
@@ -228,12 +228,12 @@ def test_units_of_speed_mean_what_they_say():
         (3, 3.0),
         (".5e1rad/s", 5.0),
     ):
-        assert sb.rssr(M=1, N=1, L1=1, L3=1, speed=text).drive.speed == pytest.approx(speed, rel=1e-15)
+        assert sb.rssr(M=1, N=1, L1=1, L3=1, D=0, speed=text).drive.speed == pytest.approx(speed, rel=1e-15)
 
 
 def test_a_speed_of_the_wrong_kind_says_which_is_wanted():
     with pytest.raises(DescriptionError) as caught:
-        sb.rssr(M=1, N=1, L1=1, L3=1, speed="10 mm/s")
+        sb.rssr(M=1, N=1, L1=1, L3=1, D=0, speed="10 mm/s")
     assert str(caught.value) == (
         "drive.speed: '10 mm/s' is a sliding speed, and the input turns; "
         "give a number and a unit, as in '10 rad/s' or '60 rpm'"
@@ -292,9 +292,13 @@ def test_what_is_no_sliding_speed_is_refused(text, message):
 
 def test_lengths_of_any_size_give_the_same_angles():
     angles = np.linspace(0, 6, 7)
-    want = sb.rssr(M=0.7, N=0.7, L1=0.25, L3=0.55).output(angles, order=3).jerk
+    want = sb.rssr(M=0.7, N=0.7, L1=0.25, L3=0.55, D=0).output(angles, order=3).jerk
     for size in (1e-90, 2.0**-40, 2.0**70, 1e90):
-        got = sb.rssr(M=0.7 * size, N=0.7 * size, L1=0.25 * size, L3=0.55 * size).output(angles, order=3).jerk
+        got = (
+            sb.rssr(M=0.7 * size, N=0.7 * size, L1=0.25 * size, L3=0.55 * size, D=0)
+            .output(angles, order=3)
+            .jerk
+        )
         np.testing.assert_allclose(got, want, rtol=1e-11)
 
 

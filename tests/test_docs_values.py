@@ -15,6 +15,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import axes_of, split_ranges
 from sevenbar.errors import RequestError
 from sevenbar.sweep.axes import axis_from_text, axis_of
+from sevenbar.text.expression import value_of
 from sevenbar.text.ranges import split_name
 from sevenbar.text.units import turning_speed
 
@@ -79,6 +80,8 @@ READERS: dict[str, Callable[[str], str]] = {
     "values of L1": swept,
     "place": placed,
     "box": boxed,
+    "length in a file": lambda text: f"{value_of(text, 'length'):g} mm",
+    "twist in a file": lambda text: f"{value_of(text, 'angle'):g} deg",
 }
 
 REFUSING: dict[str, Callable[[str], object]] = {
@@ -86,6 +89,7 @@ REFUSING: dict[str, Callable[[str], object]] = {
     "--size": lambda text: lengths("--size", text, "mm"),
     "--at": lambda text: point_of(None, 4, text),
     "--box": lambda text: parsed_box(text, "mm"),
+    "L1": lambda text: value_of(text, "length"),
     "--swing": lambda text: angle("--swing", text),
 }
 

@@ -141,7 +141,7 @@ def test_mujoco_s_velocity_is_late_by_half_a_step(rssr_in_mujoco):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_another_linkage_in_the_engine_shows_as_what_it_is(engine):
-    drawn, built = (sb.rssr(M=700, N=700, L1=250, L3=length, L2=1000) for length in (550, 551))
+    drawn, built = (sb.rssr(M=700, N=700, L1=250, L3=length, D=0, L2=1000) for length in (550, 551))
     way, _ = prepared(drawn, steps=FEW)
     _, other = prepared(built, steps=FEW)
     run = agreement(way, other, ENGINES[engine](other, way.steps, way.step))
@@ -244,7 +244,9 @@ def test_the_constraint_of_a_screw_has_the_slope_of_its_value():
     [("um", 1e-3, 10.0), ("ft", 100.0, 10.0), ("mm", 1.0, 1e4), ("mm", 1.0, -1e-6)],
 )
 def test_exudyn_agrees_as_well_in_any_unit_and_at_any_speed(unit, factor, speed):
-    lengths = {name: factor * length for name, length in {"M": 700, "N": 700, "L1": 250, "L3": 550}.items()}
+    lengths = {
+        name: factor * length for name, length in {"M": 700, "N": 700, "L1": 250, "L3": 550, "D": 0}.items()
+    }
     run = simulate(sb.rssr(**lengths, length_unit=unit, speed=speed), "exudyn", steps=3600)
     angle, velocity, acceleration = (found.greatest for found in run.differences[:3])
     assert angle < 1e-10
@@ -258,4 +260,4 @@ def test_a_linkage_too_small_for_mujoco_is_refused():
     with pytest.raises(
         EngineError, match=r"mujoco cannot move a linkage of 5\.0e-07 m: it reckons in metres"
     ):
-        simulate(sb.rssr(M=0.7, N=0.7, L1=0.25, L3=0.55, length_unit="um"), "mujoco", steps=FEW)
+        simulate(sb.rssr(M=0.7, N=0.7, L1=0.25, L3=0.55, D=0, length_unit="um"), "mujoco", steps=FEW)

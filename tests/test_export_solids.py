@@ -219,7 +219,7 @@ def test_any_length_unit_gives_the_same_shape(unit, tmp_path):
     metres = {"um": 1e-6, "m": 1.0, "ft": 0.3048}[unit]
     text = f'format = 1\nlength_unit = "{unit}"\n[rssr]\nM = 7\nN = 7\nL1 = 2.5\nL3 = 5.5\nD = 0\n'
     export(sb.loads(text), "glb", tmp_path / "a.glb")
-    export(sb.rssr(M=7, N=7, L1=2.5, L3=5.5), "glb", tmp_path / "b.glb")
+    export(sb.rssr(M=7, N=7, L1=2.5, L3=5.5, D=0), "glb", tmp_path / "b.glb")
     _, one = loaded_glb(tmp_path / "a.glb")
     _, two = loaded_glb(tmp_path / "b.glb")
     for part in one:

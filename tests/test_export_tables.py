@@ -134,10 +134,11 @@ def test_a_file_is_replaced_by_force_only(motion, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("xlsx", "m.csv", {}), "to: 'xlsx' is not a format; allowed: csv, parquet, npz,"),
+        (("docx", "m.csv", {}), "to: 'docx' is not a format; allowed: csv, xlsx, parquet, npz,"),
         (("jso", "m.csv", {}), "to: 'jso' is not a format; did you mean 'json'? allowed"),
         (("json", "m.csv", {}), "m.csv: its ending '.csv' is not that of json; give .json"),
-        ((None, "m.txt", {}), "m.txt: '.txt' tells no format; give one of .csv, .parquet,"),
+        (("exel", "m.csv", {}), "to: 'exel' is not a format; did you mean 'excel'? allowed: csv, xlsx,"),
+        ((None, "m.txt", {}), "m.txt: '.txt' tells no format; give one of .csv, .xlsx, .parquet,"),
         (("step", "m", {}), "m: has no ending; give .step or .stp"),
         (("csv", "m.csv", {"circuit": 0}), "circuit: csv holds all rows of all circuits; leave it out"),
         (("csv", "m.csv", {"at": 0.1}), "at: csv holds all rows of all circuits; leave it out"),
@@ -167,7 +168,7 @@ def test_an_input_beyond_one_circuit_may_be_within_another(tmp_path):
 
 
 def test_a_linkage_that_does_not_close_has_nothing_to_export(tmp_path):
-    short = sb.rssr(M=700, N=700, L1=250, L3=550, L2=10)
+    short = sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=10)
     with pytest.raises(RequestError, match="motion: cannot-assemble, so there are no rows to export"):
         export(short, "csv", tmp_path / "m.csv")
     with pytest.raises(RequestError, match="motion: cannot-assemble"):

@@ -46,9 +46,9 @@ def rows(*lines, drive=""):
             ["link[2].joint: 'r' is not a joint kind; did you mean 'R'? allowed: R, P, H"],
         ),
         (
-            rows("", 'lenght = 2\ntwist = "90"'),
+            rows("", 'lenght = 2\ntwist = "steep"'),
             [
-                "link[2].twist: '90' is text; give a number without quotes",
+                "link[2].twist: 'steep': no 'steep' is known; give an angle, as in 30, '30deg' or 'pi/6'",
                 "link[2].lenght: is not known here; did you mean 'length'? "
                 "allowed: joint, name, length, twist, offset, angle, pitch",
             ],

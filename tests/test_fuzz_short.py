@@ -159,10 +159,10 @@ def test_a_message_that_helps_nobody_is_found(text: str, told: str) -> None:
 
 def test_messages_of_one_kind_are_one_family() -> None:
     errors = [
-        RequestError(f"f.toml: rssr.{key}: {value!r} is text; give a number without quotes")
+        RequestError(f"f.toml: rssr.{key}: {value!r} is not a number; give a number")
         for key, value in (("M", "7"), ("L1", "x y"))
     ]
-    assert {messages.family(error, "f.toml") for error in errors} == {"~ is text"}
+    assert {messages.family(error, "f.toml") for error in errors} == {"~ is not a number"}
 
 
 # The watch

@@ -39,7 +39,7 @@ def write(path, heads, columns):
 
 
 def rssr():
-    return sb.rssr(M, N, L1, L3)
+    return sb.rssr(M, N, L1, L3, 0)
 
 
 def driven(linkage, path, **ends):

@@ -31,7 +31,7 @@ def test_columns_tell_units_by_what_the_output_does() -> None:
 
 
 def test_a_linkage_that_cannot_be_assembled_keeps_its_row() -> None:
-    motion = sb.rssr(M=700, N=700, L1=1, L3=1, L2=1).motion()
+    motion = sb.rssr(M=700, N=700, L1=1, L3=1, D=0, L2=1).motion()
     (row,) = rows_of(motion, measures_named(["motion_type", "swing"]))
     assert row == {"circuit": None, "motion_type": "cannot-assemble", "swing": None}
 

@@ -97,7 +97,7 @@ def test_bodies_do_not_collide_and_weigh_what_the_text_says():
 
 
 def test_a_name_with_marks_of_xml_is_written_as_text():
-    linkage = sb.rssr(M=700, N=700, L1=250, L3=550, name='a < b & "c"')
+    linkage = sb.rssr(M=700, N=700, L1=250, L3=550, D=0, name='a < b & "c"')
     _, built = prepared(linkage, steps=360)
     text = mjcf(built)
     assert ElementTree.fromstring(text).get("model") == 'a < b & "c"'

@@ -139,7 +139,7 @@ def test_a_planar_path_is_found_from_scratch_with_the_linkages_of_roberts():
 @pytest.mark.slow
 def test_a_path_of_an_rssr_is_found_from_scratch():
     path = RSSR.linkage.motion(15).circuits[0].point(3, (60.0, 90.0, 40.0)).position
-    start = Draft.of_linkage(sb.rssr(M=500, N=450, L1=150, L3=350, L2=800)).with_point(
+    start = Draft.of_linkage(sb.rssr(M=500, N=450, L1=150, L3=350, D=0, L2=800)).with_point(
         "Q", 3, (0.0, 0.0, 0.0)
     )
     bounds = {"M": (300, 1000), "N": (300, 1000), "L1": (100, 400), "L2": (600, 1400), "L3": (300, 900)}
@@ -242,7 +242,7 @@ def test_points_on_two_circuits_are_refused():
 
 def test_points_with_a_dead_centre_between_are_refused():
     # a long crank rocks between two dead centres and has two passes
-    draft = Draft.of_linkage(sb.rssr(M=700, N=700, L1=550, L3=250)).with_point("Q", 3, (40.0, 60.0, 0.0))
+    draft = Draft.of_linkage(sb.rssr(M=700, N=700, L1=550, L3=250, D=0)).with_point("Q", 3, (40.0, 60.0, 0.0))
     circuit = next(c for c in draft.linkage.motion(48).circuits if c.input_range is not None)
     places = circuit.point(3, (40.0, 60.0, 0.0)).position
     rows = [np.flatnonzero((circuit.branch == b) & (circuit.status == "ok")) for b in (0, 1)]
@@ -361,7 +361,7 @@ def test_a_start_that_cannot_be_assembled_is_told_of():
     with pytest.raises(
         RequestError, match="linkage: cannot-assemble, the loop moves nowhere as it is described"
     ):
-        path_generation(sb.rssr(M=700, N=700, L1=250, L3=550, L2=3000), PATH, (2, (0.0, 0.0, 0.0)))
+        path_generation(sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=3000), PATH, (2, (0.0, 0.0, 0.0)))
 
 
 def test_a_transmission_angle_is_asked_of_an_rssr_only():

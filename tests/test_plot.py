@@ -53,7 +53,7 @@ MOTIONS: dict[str, Callable[[], sb.Motion]] = {
     "parallelogram": lambda: sb.from_axes(
         joints((0, 0, 0), (0, 100, 0), (200, 100, 0), (200, 0, 0), (0, 0, 1))
     ).motion(),
-    "tiny crank": lambda: sb.rssr(M=700, N=700, L1=1, L3=550).motion(),
+    "tiny crank": lambda: sb.rssr(M=700, N=700, L1=1, L3=550, D=0).motion(),
     "backwards": lambda: sb.load("rssr").motion(speed=-10),
     "coarse": lambda: sb.load("rssr").motion(samples=4),
 }
@@ -344,7 +344,7 @@ def test_a_law_is_drawn_as_it_runs(crank_rocker: sb.Motion, tmp_path: Path) -> N
 
 
 def test_without_a_circuit_there_is_nothing_to_draw(tmp_path: Path) -> None:
-    motion = sb.rssr(M=700, N=700, L1=10, L3=10, L2=10).motion()
+    motion = sb.rssr(M=700, N=700, L1=10, L3=10, D=0, L2=10).motion()
     for draw in (plot.configuration, plot.curves, lambda m: animate(m, tmp_path / "a.gif")):
         with pytest.raises(
             RequestError, match="cannot-assemble, the loop closes at no input, so there is nothing"

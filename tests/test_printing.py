@@ -49,7 +49,7 @@ def test_modes_print_how_many_they_are_and_whether_that_is_all():
         "  residual      at most ~\n"
         "  completeness  algebraic: all modes are found"
     )
-    assert printed(sb.rssr(M=700, N=700, L1=250, L3=50).assembly_modes(3.0)).splitlines()[0] == (
+    assert printed(sb.rssr(M=700, N=700, L1=250, L3=50, D=0).assembly_modes(3.0)).splitlines()[0] == (
         "0 assembly modes at input 3"
     )
 
@@ -126,7 +126,7 @@ def test_a_trace_and_the_closed_form_print_their_extent(motion):
         "  speed         2500 to 2500\n"
         "  acceleration  25000 to 25000"
     )
-    rocking = sb.rssr(M=700, N=700, L1=600, L3=550)
+    rocking = sb.rssr(M=700, N=700, L1=600, L3=550, D=0)
     found = rocking.output([0.0, np.pi], order=1)
     assert repr(found).splitlines()[:2] == [
         "Output of both branches at 2 inputs",
@@ -166,7 +166,7 @@ def test_a_notebook_shows_the_lines_and_a_picture(linkage, motion):
 
 
 def test_without_matplotlib_and_without_a_pose_there_is_no_picture_and_no_error(linkage, motion, monkeypatch):
-    apart = sb.rssr(M=700, N=700, L1=10, L2=20, L3=30)
+    apart = sb.rssr(M=700, N=700, L1=10, L2=20, L3=30, D=0)
     assert "<img" not in apart._repr_html_()
     assert "<img" not in apart.motion()._repr_html_()
     for module in ("figure", "paths", "plot"):

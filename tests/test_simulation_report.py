@@ -145,7 +145,7 @@ def test_a_linkage_that_cannot_be_simulated_says_why():
     ):
         simulate(sb.from_axes(joints), "mujoco", input="first", output="crank")
     with pytest.raises(RequestError, match=r"short does not move \(cannot-assemble\), so no engine"):
-        simulate(sb.rssr(M=700, N=700, L1=250, L3=550, L2=2, name="short"), "mujoco")
+        simulate(sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=2, name="short"), "mujoco")
 
 
 @pytest.mark.slow

@@ -70,7 +70,7 @@ def test_the_tour_of_the_manual_is_true(desk, tmp_path):
     open_tab(page, "Show")
     choose(page, "ghosts", told("ghosts", "positions along the motion"))
     choose(page, "ghosts", told("ghosts", "all modes at this input"))
-    assert len(sb.rssr(M=560, N=700, L1=250, L3=550).motion().circuits) == 2
+    assert len(sb.rssr(M=560, N=700, L1=250, L3=550, D=0).motion().circuits) == 2
     # take it home
     open_tab(page, "Files")
     saved = download(page, "Save as TOML", tmp_path)

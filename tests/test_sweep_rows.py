@@ -28,7 +28,7 @@ def analysed(measures: list[str], *, input: str | None = None) -> list[dict[str,
     for index, (L1, L2, speed) in enumerate(itertools.product(*AXES.values())):
         row: dict[str, object] = {"linkage": index, "L1_mm": L1, "L2_mm": L2, "speed_rad_s": speed}
         try:
-            motion = sb.rssr(M=700, N=700, L1=L1, L3=550, L2=L2, speed=speed).motion(90, input=input)
+            motion = sb.rssr(M=700, N=700, L1=L1, L3=550, D=0, L2=L2, speed=speed).motion(90, input=input)
         except sb.errors.SevenbarError:
             rows.append(row | {"circuit": None} | dict.fromkeys(measures))
             continue
@@ -223,7 +223,7 @@ def test_linkages_measured_all_at_once_have_the_rows_of_linkages_one_by_one(
         "L2": [300.0, 600.0, 1e101],
         "D": [0.0, 300.0],
     }
-    draft = Draft.of_linkage(sb.rssr(M=300, N=300, L1=300, L3=300, L2=300, speed=-3.0))
+    draft = Draft.of_linkage(sb.rssr(M=300, N=300, L1=300, L3=300, D=0, L2=300, speed=-3.0))
     for linkage, axes, asked in (
         (sb.load("rssr"), places, {"method": "random", "count": 250, "seed": 1}),
         (draft, even, {}),

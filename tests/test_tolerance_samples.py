@@ -72,7 +72,7 @@ def test_each_sample_is_the_output_of_its_own_linkage():
 
 def near_a_change_point(coupler):
     """The paper's mechanism with a shorter coupler: below 961 mm its crank no longer turns fully."""
-    return sb.rssr(M=700, N=700, L1=250, L3=550, L2=coupler)
+    return sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=coupler)
 
 
 @pytest.mark.slow
@@ -226,7 +226,7 @@ def test_general_tolerances_are_the_standard_s():
 
 
 def test_classes_count_in_millimetres_whatever_the_unit():
-    linkage = sb.rssr(M=28, N=28, L1=10, L3=22, L2=40, length_unit="in")
+    linkage = sb.rssr(M=28, N=28, L1=10, L3=22, D=0, L2=40, length_unit="in")
     found = sensitivities(linkage, samples=8)
     given = tolerances(found.dimensions, {"*": "ISO 2768-m"}, length_unit="in", opening=found.opening)
     assert given.widths[2] == pytest.approx(0.5 / 25.4)

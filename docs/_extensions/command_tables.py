@@ -20,6 +20,7 @@ PAGES = {
     "calibrate": "measured.md",
     "simulate": "simulation.md",
     "export": "export.md",
+    "axes": "tables.md#axes-picked-from-a-cad-model",
     "sweep": "sweep.md",
     "map": "maps.md",
     "tolerance": "tolerance.md",

@@ -43,11 +43,10 @@ def _allowed(key: dict[str, Any]) -> str:
         return "table"
     if key["type"] == "array":
         return _listed(key)
-    if isinstance(key["type"], list):
-        return " or ".join(KINDS[kind] for kind in key["type"])
     limits = {"exclusiveMinimum": " > ", "minimum": " >= "}
     bound = next((f"{sign}{key[limit]:g}" for limit, sign in limits.items() if limit in key), "")
-    return KINDS[key["type"]] + bound
+    first, *others = key["type"] if isinstance(key["type"], list) else [key["type"]]
+    return " or ".join([KINDS[first] + bound, *(KINDS[kind] for kind in others)])
 
 
 def _listed(key: dict[str, Any]) -> str:

@@ -14,9 +14,25 @@ from types import ModuleType
 
 from sevenbar import errors
 from sevenbar._core import __version__
+from sevenbar.description.families import (
+    bennett,
+    bricard_line,
+    bricard_plane,
+    bricard_trihedral,
+    clemens,
+    four_bar,
+    goldberg,
+    myard,
+    sarrus,
+    slider_crank,
+    spherical_four_bar,
+    universal_joint,
+)
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
 from sevenbar.description.law_file import load_law
+from sevenbar.description.step_axes import PartAxis, axes_of_step
+from sevenbar.description.tables import from_table
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
 from sevenbar.kinematics.geometry import Drive, Joint, Point
 from sevenbar.kinematics.linkage import Linkage
@@ -37,17 +53,32 @@ __all__ = [
     "Motion",
     "OpenRange",
     "Output",
+    "PartAxis",
     "Point",
     "Search",
     "Trace",
     "__version__",
+    "axes_of_step",
+    "bennett",
+    "bricard_line",
+    "bricard_plane",
+    "bricard_trihedral",
+    "clemens",
     "errors",
+    "four_bar",
     "from_axes",
     "from_dh",
+    "from_table",
+    "goldberg",
     "load",
     "load_law",
     "loads",
+    "myard",
     "rssr",
+    "sarrus",
+    "slider_crank",
+    "spherical_four_bar",
+    "universal_joint",
 ]
 
 #: What is imported at its first use, since it brings large libraries with it: the name and its module.

@@ -47,6 +47,7 @@ _ELSEWHERE = {
     "calibrate": "sevenbar.commands.compare:calibrate",
     "simulate": "sevenbar.commands.simulate:simulate",
     "export": "sevenbar.commands.export:export",
+    "axes": "sevenbar.commands.axes:axes",
     "sweep": "sevenbar.commands.sweep:sweep",
     "map": "sevenbar.commands.maps:map_",
     "tolerance": "sevenbar.commands.tolerance:tolerance",
@@ -73,9 +74,11 @@ class _Commands(typer.core.TyperGroup):
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         from sevenbar.description.gallery import names
+        from sevenbar.description.tables import ENDINGS
 
         word = args[0]
-        if word not in self.list_commands(ctx) and (word in names() or word.endswith(".toml")):
+        endings = (".toml", *ENDINGS)
+        if word not in self.list_commands(ctx) and (word in names() or word.lower().endswith(endings)):
             raise RequestError(
                 f"{word}: is a linkage, where a command should stand; give: sevenbar analyze {word}"
             )

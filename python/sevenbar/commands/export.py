@@ -19,7 +19,7 @@ def export(
     to: Annotated[
         str | None,
         typer.Option(
-            help="csv, parquet, npz, mat, json, glb, stl, step, urdf, mjcf, cmd; by --out's ending."
+            help="csv, xlsx, parquet, npz, mat, json, glb, stl, step, urdf, mjcf, cmd; by --out's ending."
         ),
     ] = None,
     out: Annotated[

@@ -11,7 +11,24 @@ import typer
 
 from sevenbar.errors import RequestError, shown
 
-Source = Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")]
+
+def _noted(source: str) -> str:
+    """States on the error stream how a table was read, since its columns leave room for a misreading."""
+    from sevenbar.description.files import note_of
+
+    if note := note_of(source):
+        typer.echo(f"{source}: {note}", err=True)
+    return source
+
+
+Source = Annotated[
+    str,
+    typer.Argument(
+        metavar="FILE|NAME",
+        help="A TOML file, a table (.csv, .xlsx), or a name of the gallery.",
+        callback=_noted,
+    ),
+]
 Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
 Figures = Annotated[
     list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")

@@ -100,7 +100,7 @@ class Draft:
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
         """Every number that can be changed, in the order of the file."""
-        return dimensions_of(self.raw, self.linkage)
+        return dimensions_of(description_of(self.linkage), self.linkage)
 
     def written(self, dimension: Dimension, value: float) -> object:
         """What stands in the file for a value of a dimension: a speed with its unit, else the number."""

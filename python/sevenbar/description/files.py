@@ -1,4 +1,4 @@
-"""Linkage files in TOML, format 1: read whole, checked whole, every mistake named."""
+"""Linkage files, TOML of format 1 or tables: read whole, checked whole, every mistake named."""
 
 from __future__ import annotations
 
@@ -9,34 +9,64 @@ from pathlib import Path
 
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.description.tables import ENDINGS, description_of_bytes, is_table
+from sevenbar.errors import DescriptionError, Problem, SevenbarError, shown
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.workbook import ZIP
 
 #: A linkage has some dozen numbers; a larger file [bytes] or a longer line [characters] is something else,
 #: and could keep the TOML reader busy for hours.
 LARGEST_FILE = 100_000
 LONGEST_LINE = 2_000
 
+#: A workbook of a linkage [bytes] may hold more: formats, drawings, other sheets.
+LARGEST_TABLE = 20_000_000
+
 
 def load(source: str | os.PathLike[str]) -> Linkage:
-    """The linkage of a TOML file, or of the gallery by its name.
+    """The linkage of a TOML file, of a table (CSV or Excel), or of the gallery by its name.
 
     Raises `DescriptionError` with every problem of the file, each with its place, the value and what is
-    allowed.
+    allowed; `TableError` for a table that cannot be read.
 
         >>> import sevenbar as sb
         >>> sb.load("rssr").kind
         'RSSR'
     """
-    return loads(text_of(source), str(source))
+    path = Path(source)
+    if isinstance(source, str) and source in names() and not path.exists():
+        return loads(text(source), source)
+    content = _read(path)
+    if _is_table(content, path) and len(content) <= LARGEST_TABLE:
+        return description_of_bytes(content, str(source)).linkage(from_description, str(source))
+    return loads(decoded(content, str(path)), str(source))
 
 
 def text_of(source: str | os.PathLike[str]) -> str:
-    """The TOML text of a file, or of a linkage of the gallery by its name; raises as `load` does."""
+    """The TOML text of a file, or of a linkage of the gallery by its name; raises as `load` does.
+
+    Of a table it is the description that the table has become.
+    """
     path = Path(source)
     if isinstance(source, str) and source in names() and not path.exists():
         return text(source)
-    return _read(path)
+    return decoded(_read(path), str(path))
+
+
+def note_of(source: str | os.PathLike[str]) -> str:
+    """How a table was read, in a sentence; empty for other files, and for one that is wrong."""
+    path = Path(source)
+    if not path.is_file() or (isinstance(source, str) and source in names() and not path.exists()):
+        return ""
+    content = _read(path)
+    if not _is_table(content, path):
+        return ""
+    try:
+        found = description_of_bytes(content, str(path))
+        found.linkage(from_description, str(path))
+    except SevenbarError:  # which the command reports
+        return ""
+    return found.note
 
 
 def loads(content: str, source: str = "text") -> Linkage:
@@ -61,6 +91,15 @@ def loads(content: str, source: str = "text") -> Linkage:
     return from_description(raw, source)
 
 
+#: How files of other programs begin, and what to do with them.
+_OTHER_KINDS = {
+    b"MATLAB 5.0 MAT-file": "a MATLAB file; write the table as CSV, as in writetable(T, 'loop.csv')",
+    b"\x89HDF": "a file of HDF5 or MATLAB 7.3; write the table as CSV, as in writetable(T, 'loop.csv')",
+    b"ISO-10303-21": "a STEP file; 'sevenbar axes' lists the axes of its cylinders, as a table to begin with",
+    b"\xd0\xcf\x11\xe0": "an old Excel or Office file; save it as .xlsx or CSV",
+    b"%PDF": "a PDF file; give a TOML file of format 1, or a table (.csv, .xlsx)",
+}
+
 #: What TOML's reader says of a place.
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)")
 
@@ -68,8 +107,13 @@ _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)")
 #: a sign of another language.
 _SLIPS = (
     (
+        re.compile("[^#]*[\u201c\u201d\u201e\u2018\u2019\u00ab\u00bb].*"),
+        'write straight quotes, as in name = "RSSR"',
+    ),
+    (
         re.compile(r"[^=]+=\s*[-+\d.]+\s*[A-Za-z\u00b0/]+.*"),
-        "write a number without its unit, which length_unit and angle_unit tell for the whole file",
+        "write a number without its unit, which length_unit and angle_unit give for the whole file, "
+        'or both in quotes, as in "25 cm"',
     ),
     (re.compile(r"[^=]+=\s*[-+]?\d+,\d+\s*(#.*)?"), "write a decimal point, as in 0.5"),
     (re.compile(r"\s*[A-Za-z_]\w*\s*=\s*[A-Za-z_][^\"']*"), 'write a text in quotes, as in kind = "R"'),
@@ -94,11 +138,11 @@ def _told(error: ValueError, lines: list[str]) -> str:
     return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 
 
-def _read(path: Path) -> str:
+def _read(path: Path) -> bytes:
     place = str(path)
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
+            return file.read(LARGEST_TABLE + 1)
     except FileNotFoundError:
         raise _unreadable(
             place,
@@ -110,27 +154,54 @@ def _read(path: Path) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise _unreadable(place, f"cannot be read: {reason.lower()}; give the path of a TOML file") from None
-    return decoded(content, place)
+
+
+def _is_table(content: bytes, path: Path) -> bool:
+    """Whether a file is a table: by its ending, a workbook by its content."""
+    return is_table(path) or content.startswith(ZIP)
 
 
 def decoded(content: bytes, place: str) -> str:
     """The TOML text of a file's bytes; `place` is its name in messages. Raises as `load` does."""
-    if len(content) > LARGEST_FILE:
+    table = _is_table(content, Path(place))
+    kind = next((what for mark, what in _OTHER_KINDS.items() if content.startswith(mark)), "")
+    if kind and not table:
+        raise _unreadable(place, kind)
+    largest = LARGEST_TABLE if table else LARGEST_FILE
+    if len(content) > largest:
         raise _unreadable(
-            place, f"larger than {LARGEST_FILE} bytes, so it is no linkage file; give a TOML file of format 1"
+            place, f"larger than {largest} bytes, so it is no linkage file; give a TOML file of format 1"
         )
+    if table:
+        found = description_of_bytes(content, place)
+        found.linkage(from_description, place)  # its mistakes, with their places in the table
+        return found.toml(Path(place).name)
+    # the mark of UTF-16, as Notepad's "Unicode" writes it
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        try:
+            return content.decode("utf-16").replace("\r\n", "\n")
+        except UnicodeDecodeError:
+            raise _unreadable(place, "damaged UTF-16 text; save the file as UTF-8") from None
     try:
         return content.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
-        raise _unreadable(
-            place, f"not text: byte {error.start} is not UTF-8; give a TOML file of format 1"
-        ) from None
+        raise _unreadable(place, _not_utf8(content, error.start)) from None
+
+
+def _not_utf8(content: bytes, start: int) -> str:
+    """What is wrong with bytes that are no UTF-8 from `start` on: the line of a text, or no text at all."""
+    if b"\0" in content:
+        return f"not text: byte {start} is not UTF-8; give a TOML file of format 1, or a table (.csv, .xlsx)"
+    number = content.count(b"\n", 0, start) + 1
+    line = content.split(b"\n")[number - 1].decode("cp1252", errors="replace").strip()
+    return f"line {number}: {shown(line)} is not UTF-8; save the file as UTF-8"
 
 
 def _offer(path: Path) -> str:
     """`did you mean 'rssr' or 'rsur'? `: files of the folder and names of the gallery, or nothing."""
     try:
-        files = sorted(file.name for file in path.parent.glob("*.toml"))
+        known = (".toml", *ENDINGS)
+        files = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in known)
     except (OSError, ValueError):  # a folder that may not be read; a path that cannot be
         files = []
     near = [f"'{path.with_name(name) if name in files else name}'" for name in nearest(path.name, files)]

@@ -11,27 +11,34 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.proportions import disproportions
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.description.table_reader import described_frame
+from sevenbar.errors import DescriptionError, Problem, RequestError, bare, shown, suggestion
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import unit
 from sevenbar.kinematics.word import Place, Values, between, word_of
+from sevenbar.text.grid import listed
+from sevenbar.text.table import name_and_unit
+from sevenbar.text.units import LENGTHS, measured_unit
 
 if TYPE_CHECKING:
     from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
+
+#: One number for each joint: a list, an array, a column of a data frame; a text has a unit of its own.
+Numbers = Sequence[float | str | None] | npt.NDArray[np.float64] | Any
 
 #: Below this share of the size of a drawn pose a link has no length.
 NO_LENGTH = 1e-12
 
 
 def rssr(
-    M: float,
-    N: float,
-    L1: float,
-    L3: float,
-    D: float = 0.0,
-    L2: float | None = None,
+    M: float | str,
+    N: float | str,
+    L1: float | str,
+    L3: float | str,
+    D: float | str | None = None,
+    L2: float | str | None = None,
     *,
     name: str = "RSSR",
     length_unit: str = "mm",
@@ -40,7 +47,8 @@ def rssr(
     """The RSSR in the layout of Sun and Zhou: crank about z at height N, rocker about x at (M, D, 0).
 
     `A = (L1 cos alpha, L1 sin alpha, N)`, `B = (M, D + L3 cos beta, L3 sin beta)`, `|A - B| = L2`; lengths
-    in `length_unit`. L2 left out is `|A1 B1|`, `L2^2 = (L1 - M)^2 + L3^2 + N^2`. Raises `DescriptionError`
+    in `length_unit`, texts with a unit of their own, as "25 cm". D is required, as in files. L2 left out is
+    `|A1 B1|`, `L2^2 = (L1 - M)^2 + L3^2 + N^2`. Raises `DescriptionError`
     with all that is wrong.
 
         >>> import sevenbar as sb
@@ -49,9 +57,8 @@ def rssr(
 
     Source: docs/rssr.md, (1) and (2); Sun and Zhou, Figure 2, eq. (5) to (7).
     """
-    dimensions = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D}
-    if L2 is not None:
-        dimensions["L2"] = L2
+    given = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D, "L2": L2}
+    dimensions = {key: value for key, value in given.items() if value is not None}
     raw = {
         "format": 1,
         "name": name,
@@ -98,39 +105,49 @@ def from_axes(
 
 
 def from_dh(
-    joints: str,
+    joints: Any,
     *,
-    length: Sequence[float],
-    twist: Sequence[float],
-    offset: Sequence[float | None],
-    angle: Sequence[float | None] | None = None,
-    pitch: Sequence[float | None] | None = None,
+    length: Numbers | None = None,
+    twist: Numbers | None = None,
+    offset: Numbers | None = None,
+    angle: Numbers | None = None,
+    pitch: Numbers | None = None,
     names: Sequence[str] | None = None,
     name: str = "linkage",
     length_unit: str = "mm",
     speed: float | str = 1.0,
     points: Sequence[Mapping[str, Any]] = (),
+    **others: object,
 ) -> Linkage:
     """A linkage from classic Denavit-Hartenberg numbers, one of each for a link, the ground last.
 
     `A_i = Rz(theta_i) Tz(offset_i) Tx(length_i) Rx(twist_i)`, joint i stands before link i, and the product
     of all is the identity. `joints` has a letter R, P or H for each joint. Lengths and offsets are in
-    `length_unit` and may be negative, angles in radians. The variable of R and H is theta, that of P the
-    offset, its theta being the fixed `angle`; `pitch` is the length per turn of H, whose offset is its value
-    at theta = 0. What a joint has not (the offset of P, the angle of R and H, the pitch of R and P) is `None`
-    or 0. A point is `{"name": .., "link": .., "at": (u, v, w)}`: from where the link before meets the joint's
-    axis, u along that axis, v along the link, w = u x v. Raises `DescriptionError` with all that is wrong.
+    `length_unit` and may be negative, angles in radians; a text has a unit of its own, as in "30 deg". What
+    is left out is 0. Lists, arrays and columns of a data frame are taken; a column whose name has a unit,
+    `alpha [deg]`, is in that. The variable of R and H is theta,
+    that of P the offset, its theta being the fixed `angle`; `pitch` is the length per turn of H, whose offset
+    is its value at theta = 0. What a joint has not (the offset of P, the angle of R and H, the pitch of R and
+    P) is `None` or 0. A point is `{"name": .., "link": .., "at": (u, v, w)}`: from where the link before
+    meets the joint's axis, u along that axis, v along the link, w = u x v. `joints` may be a data frame of
+    all columns instead, as `from_table` takes it. Raises `DescriptionError` with all that is wrong.
 
         >>> import sevenbar as sb
         >>> twists = [0.3, 0.6320397, 0.3, 0.6320397]
-        >>> bennett = sb.from_dh("RRRR", length=[1, 2, 1, 2], twist=twists, offset=[0, 0, 0, 0])
+        >>> bennett = sb.from_dh("RRRR", length=[1, 2, 1, 2], twist=twists)
         >>> bennett.columns
         ('theta_1', 'theta_2', 'theta_3', 'theta_4')
 
     Source: docs/conventions.md, (1); the 7R paper's loop and its u, v, w.
     """
+    _refuse_others(others)
     columns = {"length": length, "twist": twist, "offset": offset, "angle": angle, "pitch": pitch}
-    rows = _rows(joints, {key: _plain(values) for key, values in columns.items()}, _plain(names))
+    if hasattr(joints, "columns"):
+        if given := [key for key, values in columns.items() if values is not None]:
+            raise RequestError(f"{given[0]}: is given in addition to a data frame; leave one out")
+        return _of_frame(joints, name=name, speed=speed, points=points)
+    numbers = {key: _in_unit(key, values, length_unit) for key, values in columns.items()}
+    rows = _rows(joints, numbers, _plain(names))
     raw = {
         "format": 1,
         "name": name,
@@ -141,6 +158,68 @@ def from_dh(
         "point": _plain(points),
     }
     return from_description(raw)
+
+
+#: The columns of `from_dh`.
+_COLUMNS = ("length", "twist", "offset", "angle", "pitch")
+
+#: What other books call the arguments of `from_dh`.
+_OTHER_NAMES = {
+    "a": "length", "r": "length", "alpha": "twist", "d": "offset", "s": "offset", "theta": "angle",
+    "lengths": "length", "twists": "twist", "offsets": "offset", "angles": "angle", "kinds": "joints",
+    "h": "pitch", "lead": "pitch",
+}  # fmt: skip
+
+
+def _refuse_others(others: Mapping[str, object]) -> None:
+    """`RequestError` for an argument of another name."""
+    for word in others:
+        if word in _OTHER_NAMES:
+            ours = "a is length, alpha twist, d offset, theta angle"
+            raise RequestError(
+                f"{word}: is called {_OTHER_NAMES[word]} here ({ours}); give {_OTHER_NAMES[word]}="
+            )
+        known = (
+            "length",
+            "twist",
+            "offset",
+            "angle",
+            "pitch",
+            "names",
+            "name",
+            "length_unit",
+            "speed",
+            "points",
+        )
+        raise RequestError(
+            f"{bare(word)}: is no argument; {suggestion(word, known)}allowed: {', '.join(known)}"
+        )
+
+
+def _of_frame(frame: Any, *, name: str, speed: float | str, points: Sequence[Mapping[str, Any]]) -> Linkage:
+    """The linkage of a data frame of Denavit-Hartenberg rows."""
+    found = described_frame(frame)
+    if "link" not in found.raw:
+        raise RequestError("joints: the table has no Denavit-Hartenberg rows; give it to sevenbar.from_table")
+    found.raw |= {"name": name, "point": [*found.raw.get("point", []), *_plain(points)]}
+    found.raw["drive"] = {"speed": _plain(speed), **found.raw.get("drive", {})}
+    return found.linkage(from_description, "table")
+
+
+def _in_unit(key: str, values: Any, length_unit: str) -> Any:
+    """A column as a list; one of a data frame is in the unit that its name has."""
+    plain = _plain(values)
+    name = getattr(values, "name", None)
+    written = name_and_unit(name)[1] if isinstance(name, str) else ""
+    if not written or not isinstance(plain, list):
+        return plain
+    unit = measured_unit(written)
+    sort = "turn" if key in ("twist", "angle") else "slide"
+    if unit is None or (unit.kind, unit.order) != (sort, 0):
+        what = {"turn": "angles", "slide": "lengths"}[sort]
+        raise RequestError(f"{key}: the unit of column {shown(name)} is not one of {what}; rename the column")
+    size = unit.size_in(length_unit) if length_unit in LENGTHS else 1.0
+    return [value * size if isinstance(value, int | float) and size != 1.0 else value for value in plain]
 
 
 def _rows(joints: object, columns: Mapping[str, Any], names: Any) -> list[dict[str, Any]]:
@@ -176,8 +255,8 @@ def _miscounted(values: object, count: int) -> str:
 
 def _plain(value: Any) -> Any:
     """Arrays and NumPy numbers as the lists and numbers that a file would hold."""
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
+    if not isinstance(value, str | Mapping):
+        value = listed(value)
     if isinstance(value, Mapping):
         return {key: _plain(v) for key, v in value.items()}
     if isinstance(value, list | tuple):
@@ -186,12 +265,14 @@ def _plain(value: Any) -> Any:
 
 
 def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
-    """The linkage that a description tells of, by the tables and keys of a file; it keeps them.
+    """The linkage of a description, by the tables and keys of a file.
 
-    Raises `DescriptionError` with all that is wrong; `source` is the file it came from.
+    It keeps the description, with the number of each formula in its place. Raises `DescriptionError` with
+    all that is wrong; `source` is the file it came from.
     """
-    from sevenbar.description import schema
+    from sevenbar.description import formulas, schema
 
+    raw = formulas.with_numbers(raw)
     form = schema.check(raw, source=source)
     if problems := disproportions(form):
         raise DescriptionError(problems, source)

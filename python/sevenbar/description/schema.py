@@ -25,6 +25,7 @@ from sevenbar.description.values import (
     EXAMPLE_OF_AXES,
     Angle,
     Direction,
+    InputName,
     Length,
     Number,
     Speed,
@@ -160,7 +161,7 @@ class DriveForm(_Form):
         Speed,
         _key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
     ] = 1.0
-    joint: Annotated[Text | None, _key("the input; left out, the first joint that is no ball")] = None
+    joint: Annotated[InputName | None, _key("the input; left out, the first joint that is no ball")] = None
     output: Annotated[
         Text | None, _key("the output; left out, the last joint that is neither a ball nor the input")
     ] = None
@@ -241,7 +242,7 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
     """The checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
     ground_places = grounds(raw) if isinstance(raw, Mapping) else {}
     try:
-        form = LinkageForm.model_validate(raw, context=_context(raw) if isinstance(raw, Mapping) else None)
+        form = LinkageForm.model_validate(raw, context=context_of(raw) if isinstance(raw, Mapping) else None)
         problems = []
     except ValidationError as error:
         details = [(tuple(detail["loc"]), detail) for detail in error.errors(include_url=False)]
@@ -258,15 +259,16 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
     return form
 
 
-def _context(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """What a number of the file needs to know of the rest: the unit of angles, and how the input moves."""
+def context_of(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """What a number of the file needs to know of the rest: the units, and how the input moves."""
     angle_unit, length_unit = raw.get("angle_unit"), raw.get("length_unit")
     joints = joints_of(raw)
     column, _, _ = driven(joints, drive_of(raw))
     slides = any(joint.columns.get(column) == "slide" for joint in joints)
     unit = length_unit if isinstance(length_unit, str) and length_unit in LENGTHS else "mm"
     return {
-        "angle": ANGLES.get(angle_unit if isinstance(angle_unit, str) else "deg", ANGLES["deg"]),
+        "length_unit": unit,
+        "angle_unit": angle_unit if isinstance(angle_unit, str) and angle_unit in ANGLES else "deg",
         "slides": unit if slides else None,
     }
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.text.units import sliding_speed, turning_speed, unknown_unit
+from sevenbar.text.expression import Kind, value_of
+from sevenbar.text.units import ANGLES, LENGTHS, TURNING_SPEEDS, sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
 LARGEST_DIMENSION = 1e100
@@ -28,9 +30,18 @@ def refuse(message: str) -> PydanticCustomError:
     return PydanticCustomError("sevenbar", "{message}", {"message": message})
 
 
-def _number(value: object) -> float:
+def number_of(text: str, kind: Kind, context: Mapping[str, Any]) -> float:
+    """The number of a formula in the units of its file: `length_unit` and `angle_unit` of the context."""
+    units = {key: str(context[key]) for key in ("length_unit", "angle_unit") if key in context}
+    return value_of(text, kind, **units)
+
+
+def _number(value: object, info: ValidationInfo, kind: Kind = "number") -> float:
     if isinstance(value, str):
-        raise refuse(f"{shown(value)} is text; give a number without quotes")
+        try:
+            value = number_of(value, kind, info.context or {})
+        except RequestError as error:
+            raise refuse(str(error)) from None
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise refuse(f"{shown(value)} is not a number; give a number")
     if isinstance(value, float) and not math.isfinite(value):
@@ -40,8 +51,12 @@ def _number(value: object) -> float:
     return float(value)
 
 
-def _length(value: object) -> float:
-    number = _number(value)
+def _signed_length(value: object, info: ValidationInfo) -> float:
+    return _number(value, info, "length")
+
+
+def _length(value: object, info: ValidationInfo) -> float:
+    number = _signed_length(value, info)
     if number <= 0:
         raise refuse(f"{shown(value)} is not a length; give a number > 0")
     if number < 1 / LARGEST_DIMENSION:
@@ -49,15 +64,19 @@ def _length(value: object) -> float:
     return number
 
 
-def _vector(value: object) -> tuple[float, float, float]:
+def _three(value: object, info: ValidationInfo, kind: Kind) -> tuple[float, float, float]:
     if not isinstance(value, (list, tuple)) or len(value) != 3:
         raise refuse(f"{shown(value)} is not a point or direction; give three numbers, as in [0, 0, 1]")
-    x, y, z = (_number(v) for v in value)
+    x, y, z = (_number(v, info, kind) for v in value)
     return x, y, z
 
 
-def _direction(value: object) -> tuple[float, float, float]:
-    vector = _vector(value)
+def _vector(value: object, info: ValidationInfo) -> tuple[float, float, float]:
+    return _three(value, info, "length")
+
+
+def _direction(value: object, info: ValidationInfo) -> tuple[float, float, float]:
+    vector = _three(value, info, "number")
     if math.hypot(*vector) < 1 / LARGEST_DIMENSION:
         raise refuse(f"{shown(value)} has no direction; give three numbers, not all 0")
     return vector
@@ -65,7 +84,8 @@ def _direction(value: object) -> tuple[float, float, float]:
 
 def _angle(value: object, info: ValidationInfo) -> float:
     """An angle [rad], written in the file's unit."""
-    return _number(value) * float((info.context or {}).get("angle", 1.0))
+    context = info.context or {}
+    return _number(value, info, "angle") * ANGLES[context.get("angle_unit", "rad")]
 
 
 def crossing(axes: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
@@ -100,18 +120,43 @@ def _text(value: object) -> str:
     return value.strip()
 
 
+def _one_joint(value: object) -> str:
+    if isinstance(value, list | tuple) and len(value) > 1:
+        count = {2: "two", 3: "three"}.get(len(value), str(len(value)))
+        raise refuse(
+            f"{shown(value)} are {count} inputs; give one, as a loop is driven at one joint here "
+            "('Two inputs' on the page 'What is not covered' says what to do instead)"
+        )
+    return _text(value)
+
+
+#: A formula before a unit of speed: `2*pi*5 rad/s`.
+_SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])
+_FORMULA_OF_SPEED = re.compile(rf"(.+?)\s*({_SPEED_UNITS})")
+
+
 def _speed(value: object, info: ValidationInfo) -> float:
     slides = (info.context or {}).get("slides")
     try:
+        match = _FORMULA_OF_SPEED.fullmatch(value) if isinstance(value, str) else None
+        if match is not None and any(sign in match[1] for sign in "*/(^"):
+            value = f"{value_of(match[1], 'number')!r} {match[2]}"
         return sliding_speed(value, slides) if slides else turning_speed(value)
     except RequestError as error:
         raise refuse(str(error)) from None
 
 
-Number = Annotated[float, BeforeValidator(_number)]
-Angle = Annotated[float, BeforeValidator(_angle)]
-Length = Annotated[float, BeforeValidator(_length), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})]
-Vector = Annotated[tuple[float, float, float], BeforeValidator(_vector)]
-Direction = Annotated[tuple[float, float, float], BeforeValidator(_direction)]
+#: In a file a number may be a formula in quotes.
+_FORMULA = {"type": ["number", "string"], "pattern": "[0-9]|pi|\u03c0"}
+_OR_TEXT = WithJsonSchema(_FORMULA)
+_POSITIVE = WithJsonSchema({**_FORMULA, "exclusiveMinimum": 0})
+
+Number = Annotated[float, BeforeValidator(_signed_length), _OR_TEXT]
+Angle = Annotated[float, BeforeValidator(_angle), _OR_TEXT]
+Length = Annotated[float, BeforeValidator(_length), _POSITIVE]
+_Component = Annotated[float, _OR_TEXT]
+Vector = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_vector)]
+Direction = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_direction)]
 Text = Annotated[str, BeforeValidator(_text)]
+InputName = Annotated[str, BeforeValidator(_one_joint)]
 Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]

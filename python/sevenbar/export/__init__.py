@@ -56,6 +56,12 @@ def _csv(motion: Motion, path: Path, units: Units) -> None:
     tables.write_csv(motion, path, units)
 
 
+def _xlsx(motion: Motion, path: Path, units: Units) -> None:
+    from sevenbar.export import workbook
+
+    workbook.write_xlsx(motion, path, units)
+
+
 def _parquet(motion: Motion, path: Path, units: Units) -> None:
     from sevenbar.export import tables
 
@@ -119,6 +125,7 @@ def _cmd(assembly: Assembly, path: Path) -> None:
 #: All kinds of file, by the word that asks for them.
 FORMATS: dict[str, Format] = {
     "csv": Table((".csv",), _csv),
+    "xlsx": Table((".xlsx",), _xlsx),
     "parquet": Table((".parquet",), _parquet),
     "npz": Table((".npz",), _npz),
     "mat": Table((".mat",), _mat),
@@ -130,6 +137,10 @@ FORMATS: dict[str, Format] = {
     "mjcf": Bodies((".xml", ".mjcf"), _mjcf),
     "cmd": Bodies((".cmd",), _cmd),
 }
+
+
+#: Other words for them: the programs that read them.
+ALIASES = {"excel": "xlsx"}
 
 
 def export(
@@ -206,7 +217,8 @@ def format_of(path: Path, to: str | None) -> str:
 
 def ending_of(to: str) -> str:
     """The ending that a file of a kind has where none is given; raises `RequestError` for another word."""
-    ending = "." + to.lower().removeprefix(".")
+    word = to.lower().removeprefix(".")
+    ending = f".{ALIASES.get(word, word)}"
     own = FORMATS[_word(to)].endings
     # "stp" is asked for by its ending, "mjcf" by its name: MuJoCo's files end in .xml
     return ending if ending in own and ending[1:] not in FORMATS else own[0]
@@ -215,11 +227,11 @@ def ending_of(to: str) -> str:
 def _word(to: str) -> str:
     """The word of `FORMATS` for a kind of file, asked for by it or by an ending."""
     word = to.lower().removeprefix(".")
+    word = ALIASES.get(word, word)
     known = {ending[1:]: name for name, form in FORMATS.items() for ending in form.endings}
     if word not in known:
-        raise RequestError(
-            f"to: {shown(to)} is not a format; {suggestion(word, FORMATS)}allowed: {', '.join(FORMATS)}"
-        )
+        near = suggestion(word, (*FORMATS, *ALIASES))
+        raise RequestError(f"to: {shown(to)} is not a format; {near}allowed: {', '.join(FORMATS)}")
     return known[word]
 
 

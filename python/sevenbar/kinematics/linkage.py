@@ -96,7 +96,7 @@ class Linkage(Solvable):
         Raises `RequestError` for values that are not finite, lengths that differ, an order out of range.
 
             >>> import sevenbar as sb
-            >>> linkage = sb.rssr(M=700, N=700, L1=250, L3=550)
+            >>> linkage = sb.rssr(M=700, N=700, L1=250, L3=550, D=0)
             >>> round(float(linkage.output([0.3]).position[0, 0]), 6)
             -0.084963
 

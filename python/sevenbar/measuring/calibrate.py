@@ -151,7 +151,7 @@ def calibrate(
     scipy.
 
         >>> import sevenbar as sb
-        >>> real = sb.rssr(M=700, N=700, L1=251, L3=550, L2=998)
+        >>> real = sb.rssr(M=700, N=700, L1=251, L3=550, D=0, L2=998)
         >>> inputs = np.linspace(0.0, 6.0, 50)
         >>> measured = Measured(
         ...     "by hand", np.arange(50), {"input": inputs, "angle": real.output(inputs).position[0]}

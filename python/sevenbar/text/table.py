@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from sevenbar.errors import TableError, shown
 from sevenbar.text.units import MeasuredUnit, is_unit, measured_unit
+from sevenbar.text.workbook import ZIP, first_sheet_text, refuse_old
 
 #: A table of a million rows has some 50 MB; a larger file [bytes] is a mistake of the name.
 LARGEST_FILE = 200_000_000
@@ -38,9 +39,9 @@ NO_NUMBER = frozenset(
 #: A line of these alone is an empty one, as spreadsheets leave them; \x1a ends files of DOS.
 NOTHING = " \t\r\f\x1a,;"
 
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
-_COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
-_NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")
+COMMA_NUMBER = re.compile(r"[-+]?\d+,\d+(?:[eEdD][-+]?\d+)?")
+NAME_AND_UNIT = re.compile(r'"[^"]*"|\S+(?:[ \t]?(?:\[[^\]]*\]|\([^)]*\)))?')
 
 
 @dataclass(frozen=True)
@@ -124,7 +125,7 @@ class TextTable:
         value = number(cell, decimal_comma=self.decimal_comma)
         if value is not None:
             return value
-        match = _NUMBER.match(cell)
+        match = NUMBER.match(cell)
         if match is not None and is_unit(cell[match.end() :]):
             what = "carries a unit of its own; write plain numbers, all in the one unit that the header names"
         else:
@@ -208,13 +209,21 @@ def number(cell: str, *, decimal_comma: bool = False) -> float | None:
     if cell.lower() in NO_NUMBER:
         return float("nan")
     text = cell.replace(",", ".") if decimal_comma else cell
-    if _NUMBER.fullmatch(text) is None:
+    if NUMBER.fullmatch(text) is None:
         return None
     return float(text.replace("d", "e").replace("D", "e"))
 
 
 def read_text(path: Path, of: str) -> str:
-    """The text of a file in UTF-8, UTF-16 with its mark, or Windows-1252: a table `of` what messages say."""
+    """The text of a file in UTF-8, UTF-16 with its mark, or Windows-1252: a table `of` what messages say.
+
+    Of an Excel workbook it is the first sheet that is not empty, with tabs between the cells.
+    """
+    return text_of_bytes(read_bytes(path, of), str(path))
+
+
+def read_bytes(path: Path, of: str) -> bytes:
+    """The content of a file that may be a table `of` what messages say."""
     try:
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
@@ -231,6 +240,14 @@ def read_text(path: Path, of: str) -> str:
         )
     if not content.strip():
         raise TableError(f"{path}: is empty; give a table with a header and rows of numbers")
+    return content
+
+
+def text_of_bytes(content: bytes, path: str) -> str:
+    """The text of a file's bytes, as `read_text` gives it."""
+    refuse_old(content, path)
+    if content.startswith(ZIP):
+        return first_sheet_text(content, path)
     wide = content.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "cp1252"):
         try:
@@ -288,15 +305,13 @@ def _is_remark(line: str) -> bool:
 
 def _begins_with_number(line: str) -> bool:
     cells = re.split(r"[\t;, ]+", line.strip().strip('"'), maxsplit=1)
-    return bool(cells[0]) and (
-        _NUMBER.fullmatch(cells[0].strip('"')) is not None or cells[0].lower() == "nan"
-    )
+    return bool(cells[0]) and (NUMBER.fullmatch(cells[0].strip('"')) is not None or cells[0].lower() == "nan")
 
 
 def _has_gap(line: str) -> bool:
     """Whether a line is a row whose first cells hold no number: no other text, and a number somewhere."""
     words = [cell.strip(' "') for cell in re.split(r"[\t;,]", line)]
-    numbers = [word for word in words if _NUMBER.fullmatch(word)]
+    numbers = [word for word in words if NUMBER.fullmatch(word)]
     return bool(numbers) and all(word in numbers or word.lower() in NO_NUMBER for word in words)
 
 
@@ -306,7 +321,7 @@ def _delimiter(line: str) -> str:
         if delimiter in line:
             return delimiter
     blank = line.split()
-    if len(blank) > 1 and all(_COMMA_NUMBER.fullmatch(cell) for cell in blank):
+    if len(blank) > 1 and all(COMMA_NUMBER.fullmatch(cell) for cell in blank):
         return ""
     return "," if "," in line else ""
 
@@ -314,8 +329,8 @@ def _delimiter(line: str) -> str:
 def _decimal_comma(rows: Sequence[Sequence[str]]) -> bool:
     """Whether decimals have commas, by the first row that has decimals: 0;0 may precede 0,1;0,5."""
     for row in rows:
-        point = any("." in cell and _NUMBER.fullmatch(cell) for cell in row)
-        comma = any(_COMMA_NUMBER.fullmatch(cell) for cell in row)
+        point = any("." in cell and NUMBER.fullmatch(cell) for cell in row)
+        comma = any(COMMA_NUMBER.fullmatch(cell) for cell in row)
         if point or comma:
             return comma and not point
     return False
@@ -350,7 +365,7 @@ def _header(
 def _header_cells(line: str, delimiter: str, width: int) -> list[str] | None:
     if not line:
         return None
-    ways = [[cell.strip('" ') for cell in _NAME_AND_UNIT.findall(line)], re.split(r"\s{2,}|\t", line)]
+    ways = [[cell.strip('" ') for cell in NAME_AND_UNIT.findall(line)], re.split(r"\s{2,}|\t", line)]
     if delimiter:
         cells = _cells(line, delimiter)
         # some programs end each row with a delimiter, but not the header

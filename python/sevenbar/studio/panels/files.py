@@ -29,7 +29,10 @@ class FilesPanel:
         with gui.add_folder("Open"):
             self._gallery = gui.add_dropdown("gallery", (CHOOSE, *self._names))
             self._open = gui.add_upload_button(
-                "Open a TOML file", color="gray", icon=viser.Icon.FOLDER_OPEN, mime_type=".toml,text/plain"
+                "Open a TOML file",
+                color="gray",
+                icon=viser.Icon.FOLDER_OPEN,
+                mime_type=".toml,.csv,.tsv,.xlsx,text/plain",
             )
             self._alert = Alert(gui)
         with gui.add_folder("Save"):

@@ -26,12 +26,12 @@ from sevenbar.design.synthesis.candidates import (
     tally,
 )
 from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
-from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.precision import designs_of, reflected, system, through
 from sevenbar.design.synthesis.function.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
 from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed
 
 #: What a design must keep to where nothing else is given.

@@ -16,6 +16,7 @@ from sevenbar.design.synthesis.path.search import SAMPLES
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.circuits import Law
+from sevenbar.kinematics.dimensions import description_of
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import rotation_vector
 
@@ -151,7 +152,8 @@ def moved(draft: Draft, placing: Placing) -> Draft:
                 own[key] = (np.array(value, dtype=np.float64) @ placing.rotation.T).tolist()
         return own
 
-    draft = draft.with_value(("joint",), [put(joint) for joint in draft.raw["joint"]])
-    if "point" in draft.raw:
-        draft = draft.with_value(("point",), [put(point) for point in draft.raw["point"]])
+    described = description_of(draft.linkage)  # with numbers where the file has formulas
+    draft = draft.with_value(("joint",), [put(joint) for joint in described["joint"]])
+    if "point" in described:
+        draft = draft.with_value(("point",), [put(point) for point in described["point"]])
     return draft

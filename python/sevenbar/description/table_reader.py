@@ -1,0 +1,517 @@
+"""Reads the rows of a table into the description that a TOML file would hold, each number with its place."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from sevenbar.description.table_columns import (
+    DIMENSIONS,
+    PLACES,
+    ROWS,
+    has_dimensions,
+    is_modified,
+    key_of,
+    slip_of,
+)
+from sevenbar.description.toml_text import toml_text
+from sevenbar.description.written import meant_kind, names_ground
+from sevenbar.errors import DescriptionError, Problem, RequestError, shown
+from sevenbar.kinematics.joints import KINDS
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.expression import Kind, value_of
+from sevenbar.text.grid import CellTable, grid_of_frame
+from sevenbar.text.table import number
+from sevenbar.text.units import ANGLES, LENGTHS, MeasuredUnit, measured_unit
+
+#: What marks a row as the input or the output.
+MARKS = frozenset({"x", "yes", "y", "true", "1", "1.0", "input", "in", "output", "out", "drive", "driven"})
+NO_MARKS = frozenset({"", "0", "0.0", "no", "n", "false", "-"})
+
+#: Kinds of a row that is a point carried by a link.
+POINT_WORDS = ("point", "tracer", "coupler point", "marker")
+
+EXAMPLES = (
+    "'joint, a [mm], alpha [deg], d [mm]' for Denavit-Hartenberg rows, or "
+    "'name, kind, x [mm], y [mm], z [mm], axis x, axis y, axis z' for joints as drawn"
+)
+
+_LENGTHS_OF_ROWS = ("length", "offset", "pitch")
+_ANGLES_OF_ROWS = ("twist", "angle")
+
+#: Makes a linkage of a description; the second argument is what messages call it.
+Make = Callable[[Mapping[str, Any], str], Linkage]
+
+
+@dataclass
+class TableDescription:
+    """What a table describes: `raw` as a TOML file would hold it, `note`, a sentence on how it was read.
+
+    `places` are the places in the table of what a message may name, `problems` what is wrong in its cells.
+    """
+
+    raw: dict[str, Any]
+    note: str
+    places: dict[str, str] = field(default_factory=dict)
+    problems: list[Problem] = field(default_factory=list)
+
+    def linkage(self, make: Make, source: str) -> Linkage:
+        """The linkage that `make` makes; `DescriptionError` with each mistake at its place in the table."""
+        problems = list(self.problems)
+        try:
+            linkage = make(self.raw, source)
+        except DescriptionError as error:
+            found = [Problem(self._place(p.place), p.message) for p in error.problems]
+            # of a row with a wrong cell the rest is not known
+            rows = {p.place.partition(",")[0] for p in problems}
+            problems += [p for p in found if re.split(r"[,:]", p.place)[0] not in rows]
+        if problems:
+            raise DescriptionError(problems, source)
+        return linkage
+
+    def toml(self, source: str) -> str:
+        """The description as TOML text."""
+        return toml_text(self.raw, [f"{self.note[:1].upper()}{self.note[1:]}, from {source}"])
+
+    def _place(self, place: str) -> str:
+        if place in self.places:
+            return self.places[place]
+        if place in ("link", "joint", "point"):
+            return ""
+        parts = place.split(".")
+        above = next((".".join(parts[:n]) for n in range(len(parts), 0, -1)
+                      if ".".join(parts[:n]) in self.places), "")  # fmt: skip
+        if not above:
+            return place
+        rest = place[len(above) :].lstrip(".[").rstrip("]")
+        return ": ".join(filter(None, [self.places[above], rest]))
+
+
+def described_frame(source: Any) -> TableDescription:
+    """What a data frame describes, or a mapping of names to columns."""
+    if not (hasattr(source, "columns") or isinstance(source, Mapping)):
+        raise RequestError(
+            f"table: {shown(source)} is not a table; give the path of a CSV or Excel file, or a data frame"
+        )
+    try:
+        grid = grid_of_frame(source)
+    except (TypeError, ValueError):
+        raise RequestError("table: its columns are no lists of one length; give a data frame") from None
+    return described(grid, "table", "linkage")
+
+
+def described(grid: CellTable, source: str, name: str) -> TableDescription:
+    """What a table describes; `source` is what messages call it, `name` the linkage's without a title."""
+    found = _Reader(grid, source).description()
+    found.raw["name"] = grid.title or name
+    return found
+
+
+def add_points(found: TableDescription, grid: CellTable, source: str) -> None:
+    """Adds the points of a sheet of their own."""
+    reader = _Reader(grid, source)
+    reader.length_unit = str(found.raw["length_unit"])
+    reader.places, reader.problems = found.places, [*reader.problems, *found.problems]
+    points = [reader.point(row, len(found.raw.get("point", [])) + k) for k, row in enumerate(reader.filled)]
+    found.problems = reader.problems
+    if points:
+        found.raw["point"] = [*found.raw.get("point", []), *points]
+
+
+class _Reader:
+    """Reads one table, and collects what is wrong in it."""
+
+    def __init__(self, grid: CellTable, source: str) -> None:
+        self.grid, self.source = grid, source
+        self.problems: list[Problem] = []
+        self.places: dict[str, str] = {}
+        self.columns: dict[str, int] = {}
+        self.unread: list[str] = []
+        self._units_refused: set[int] = set()
+        labels = [grid.label(column) for column in range(len(grid.names))]
+        self.dimensions = has_dimensions(labels)
+        for column, label in enumerate(labels):
+            self._take(column, label)
+        self.filled = [row for row in range(len(grid.rows)) if any(self.grid.cell(row, c) for c in self._own)]
+        self.length_unit = self._unit_of("slide", LENGTHS) or "mm"
+        self.angle_unit = self._unit_of("turn", ANGLES) or "deg"
+
+    def _take(self, column: int, label: str) -> None:
+        if not label and not any(row[column] for row in self.grid.rows):
+            return
+        if is_modified(label):
+            self._wrong(
+                "is of modified (Craig's) Denavit-Hartenberg rows; give classic ones, "
+                "A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha): length and twist of the link after joint i",
+                column=column,
+            )
+            return
+        key = label if self.dimensions and label in DIMENSIONS else key_of(label)
+        if key in self.columns:
+            self._wrong(
+                f"is {key}, as is {shown(self.grid.names[self.columns[key]])}; leave one out", column=column
+            )
+        elif key:
+            self.columns[key] = column
+        elif near := slip_of(label):
+            self._wrong(f"is not known here; did you mean {shown(near)}?", column=column)
+        else:
+            self.unread.append(self.grid.names[column])
+
+    @property
+    def _own(self) -> list[int]:
+        """The columns that make a row one of the table."""
+        marks = ("joint", "order", "input", "output", "speed")
+        return [column for key, column in self.columns.items() if key not in marks] or list(
+            self.columns.values()
+        )
+
+    def _wrong(self, message: str, row: int | None = None, column: int | None = None) -> None:
+        self.problems.append(Problem(self.grid.place(row, column), message))
+
+    def finish(self) -> None:
+        """Raises `DescriptionError` if something is wrong."""
+        if self.problems:
+            raise DescriptionError(self.problems, self.source)
+
+    def _unit_of(self, kind: str, known: Mapping[str, float]) -> str:
+        """The first unit of lengths or angles that the columns have."""
+        units = [measured_unit(self.grid.unit(column)) for column in self.columns.values()]
+        sizes = [u.size for u in units if u is not None and (u.kind, u.order) == (kind, 0)]
+        return next((name for size in sizes[:1] for name, own in known.items() if own == size), "")
+
+    def text(self, row: int, key: str) -> str:
+        """The cell of a row in a column; empty where there is no such column."""
+        return self.grid.cell(row, self.columns[key]) if key in self.columns else ""
+
+    def amount(self, row: int, key: str, kind: Kind) -> float | None:
+        """The number of a cell in the units of the table; `None` for an empty one, and one that is wrong."""
+        text = self.text(row, key)
+        if not text:
+            return None
+        column = self.columns[key]
+        if column in self._units_refused or not self._has_right_unit(column, kind):
+            return None
+        unit = measured_unit(self.grid.unit(column)) if kind != "number" else None
+        value = number(text)
+        own = {"length": self.length_unit, "angle": self.angle_unit}
+        try:
+            if value is None:
+                value = (
+                    value_of(text, kind, length_unit=own["length"], angle_unit=own["angle"])
+                    if unit is None
+                    else value_of(text, kind, **_in(kind, self.grid.unit(column), unit)) * self._scale(unit)
+                )
+            elif not math.isfinite(value):
+                raise RequestError(f"{shown(text)} is not a finite number; give a finite number")
+            elif unit is not None:
+                value *= self._scale(unit)
+            elif kind == "angle" and value != 0:
+                name = self.grid.label(column)
+                raise RequestError(
+                    f"{text} has no unit; write it in the header, as in '{name} [deg]' or '{name} [rad]'"
+                )
+        except RequestError as error:
+            self._wrong(str(error), row, column)
+            return None
+        return value
+
+    def _has_right_unit(self, column: int, kind: Kind) -> bool:
+        """Whether the unit of a column is one of its kind, or none; else it is reported, once."""
+        written = self.grid.unit(column)
+        unit = measured_unit(written)
+        wanted = {"length": ("slide", 0), "angle": ("turn", 0)}.get(kind)
+        if not written or (unit is not None and (unit.kind, unit.order) == wanted):
+            return True
+        what = "directions" if kind == "number" else f"{kind}s"
+        give = {"length": "give one like mm", "angle": "give one like deg"}.get(kind, "leave it out")
+        self._wrong(f"{shown(written)} is not a unit of {what}; {give}", column=column)
+        self._units_refused.add(column)
+        return False
+
+    def _scale(self, unit: MeasuredUnit) -> float:
+        if unit.kind == "slide":
+            return unit.size_in(self.length_unit)
+        own = ANGLES[self.angle_unit]
+        return 1.0 if unit.size == own else unit.size / own
+
+    def description(self) -> TableDescription:
+        """The description of the table."""
+        if not self.filled and not self.problems:
+            self._wrong("has a header but no rows; give one for each joint")
+        self.finish()
+        described = {
+            "format": 1,
+            "name": "linkage",
+            "length_unit": self.length_unit,
+            "angle_unit": self.angle_unit,
+        }
+        if self.dimensions:
+            found = self._of_dimensions()
+        elif all(key in self.columns for key in PLACES):
+            mixed = [key for key in ("twist", "offset") if key in self.columns]
+            if mixed:
+                both = " and ".join(shown(self.grid.names[self.columns[key]]) for key in mixed)
+                self._wrong(f"{both}: of Denavit-Hartenberg rows, x, y, z of joints as drawn; leave one out")
+                self.finish()
+            # columns of rows say nothing of a joint as drawn, such as the radius r of a part's hole
+            for key in ("length", "angle", "joint" if "name" in self.columns else ""):
+                if key in self.columns:
+                    self.unread.append(self.grid.names[self.columns.pop(key)])
+            found = self._of_joints("joint")
+        elif any(key in self.columns for key in ROWS):
+            found = self._of_joints("link")
+        else:
+            self._wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
+            found = {}, ""
+        if not found[0]:
+            self.finish()
+        raw, what = found
+        unread = f"; not read: {', '.join(self.unread)}" if self.unread else ""
+        return TableDescription({**described, **raw}, what + unread, self.places, self.problems)
+
+    def _of_dimensions(self) -> tuple[dict[str, Any], str]:
+        if len(self.filled) != 1:
+            self._wrong(f"{len(self.filled)} rows; an RSSR has one row of dimensions")
+        row = self.filled[0]
+        numbers = {key: self.amount(row, key, "length") for key in DIMENSIONS if key in self.columns}
+        self.places |= {f"rssr.{key}": self.grid.place(row, self.columns[key]) for key in numbers}
+        self.places["rssr"] = self.grid.place(row)
+        raw: dict[str, Any] = {}
+        # the joints of an RSSR have no rows of their own: the input is named
+        named = self.text(row, "input") in ("crank", "rocker")
+        drive = {"joint": self.text(row, "input")} if named else {}
+        inputs = {key: column for key, column in self.columns.items() if key == "input" and named}
+        self.columns = {key: column for key, column in self.columns.items() if key not in inputs}
+        drive = {**self._drive({row: "crank"}), **drive}
+        if drive:
+            raw["drive"] = drive
+        raw["rssr"] = {key: value for key, value in numbers.items() if value is not None}
+        return raw, f"read as the dimensions of an RSSR, lengths in {self.length_unit}"
+
+    def _of_joints(self, form: str) -> tuple[dict[str, Any], str]:
+        """The rows of a table: joints, and points carried by links."""
+        rows = [row for row in self.filled if not self._is_left_out(row)]
+        points = [row for row in rows if self.text(row, "kind").lower() in POINT_WORDS]
+        joints = self._ordered([row for row in rows if row not in points])
+        names = self._names(joints)
+        tables = []
+        for i, row in enumerate(joints):
+            table = self._row(row, i, names[row]) if form == "link" else self._drawn(row, i, names[row])
+            tables.append(table)
+        labels = {row: names[row] or f"theta_{i}" for i, row in enumerate(joints, 1)}
+        raw: dict[str, Any] = {"drive": self._drive(labels)}
+        if not raw["drive"]:
+            del raw["drive"]
+        raw[form] = tables
+        if points:
+            raw["point"] = [self.point(row, k) for k, row in enumerate(points)]
+        count = f"{len(tables)} "
+        if form == "link":
+            what = f"{count}classic Denavit-Hartenberg rows (Rz Tz Tx Rx, the last link is the ground)"
+            return raw, f"read as {what}, lengths in {self.length_unit}, angles in {self.angle_unit}"
+        left = len(self.filled) - len(rows)
+        more = f"; {left} row{'s' * (left > 1)} without a kind left out" if left else ""
+        return raw, f"read as {count}joints as drawn, in loop order, lengths in {self.length_unit}{more}"
+
+    def _is_left_out(self, row: int) -> bool:
+        """A row without kind and order, where the others have an order: axes of a part that are no joints."""
+        if "order" not in self.columns or not any(self.text(other, "order") for other in self.filled):
+            return False
+        return not self.text(row, "order") and self.text(row, "kind").lower() not in POINT_WORDS
+
+    def _ordered(self, rows: Sequence[int]) -> list[int]:
+        if not any(self.text(row, "order") for row in rows):
+            return list(rows)
+        places: dict[int, float] = {}
+        for row in rows:
+            value = number(self.text(row, "order"))
+            if value is None or not math.isfinite(value) or value in places.values():
+                given = shown(self.text(row, "order"))
+                self._wrong(
+                    f"{given} is no place in the loop; give 1, 2, 3 .., each once", row, self.columns["order"]
+                )
+            else:
+                places[row] = value
+        return sorted(places, key=lambda row: places[row])
+
+    def _names(self, rows: Sequence[int]) -> dict[int, str]:
+        """The joints' names: of their column, or of `joint` where that holds neither numbers nor kinds."""
+        if "name" in self.columns:
+            return {row: self.text(row, "name") for row in rows}
+        words = [self.text(row, "joint") for row in rows]
+        counts = [number(word) for word in words]
+        if words and None not in counts and not math.isnan(sum(count or 0.0 for count in counts)):
+            first = counts[0] or 0.0
+            if counts != [first + i for i in range(len(rows))]:
+                self._wrong(
+                    "its numbers are not in order; give the rows in loop order", None, self.columns["joint"]
+                )
+            return dict.fromkeys(rows, "")
+        return dict.fromkeys(rows, "") if self._holds_kinds else dict(zip(rows, words, strict=True))
+
+    @cached_property
+    def _holds_kinds(self) -> bool:
+        """Whether a column `joint` holds kinds: letters, or words for a kind alone."""
+        words = [self.text(row, "joint") for row in self.filled]
+        return "kind" not in self.columns and all(len(word) <= 1 or _kind(word) for word in words)
+
+    def _kind_of(self, row: int) -> tuple[str, str]:
+        """The kind of a row's joint as written, as a letter where it is known, and the column's key."""
+        for key in ("kind", "joint"):
+            word = self.text(row, key)
+            if key == "kind" and key in self.columns and word:
+                return _kind(word) or word, key
+            if key == "joint" and self._holds_kinds and word and number(word) is None:
+                return _kind(word) or word, key
+        return "", "kind"
+
+    def _row(self, row: int, i: int, name: str) -> dict[str, Any]:
+        """A Denavit-Hartenberg row."""
+        kind, key = self._kind_of(row)
+        place = f"link[{i + 1}]"
+        table: dict[str, Any] = self._head(row, place, name, "joint", kind, key)
+        moving = (
+            KINDS[kind or "R"].moving_key if (kind or "R") in KINDS and KINDS[kind or "R"].row_keys else ""
+        )
+        for column in (*_LENGTHS_OF_ROWS, *_ANGLES_OF_ROWS):
+            if column not in self.columns:
+                continue
+            self.places[f"{place}.{column}"] = self.grid.place(row, self.columns[column])
+            what: Kind = "angle" if column in _ANGLES_OF_ROWS else "length"
+            # the variable of a row has a word, such as theta_1
+            if column == moving and number(self.text(row, column)) is None:
+                continue
+            value = self.amount(row, column, what)
+            idle = column not in KINDS[kind or "R"].row_keys if (kind or "R") in KINDS else False
+            if value is not None and not (idle and value == 0):
+                table[column] = value
+        return table
+
+    def _drawn(self, row: int, i: int, name: str) -> dict[str, Any]:
+        """A joint as drawn."""
+        kind, key = self._kind_of(row)
+        place = f"joint[{i + 1}]"
+        if not kind:
+            column = self.columns.get("kind")
+            letters = ", ".join(KINDS)
+            self._wrong(f"no kind of joint; give one of {letters}", row, column)
+        table: dict[str, Any] = self._head(row, place, name, "kind", kind, key)
+        table["at"] = self._vector(row, "", "length")
+        for key, wanted in (("axis", "axis "), ("axis 2", "axis 2 ")):
+            if any(self.text(row, f"{wanted}{letter}") for letter in "xyz"):
+                table[key] = self._vector(row, wanted, "number")
+                self.places[f"{place}.{key}"] = self._span(row, wanted)
+        if "axis 2" in table:
+            table["axes"] = [table.pop("axis", [0.0, 0.0, 0.0]), table.pop("axis 2")]
+            self.places[f"{place}.axes"] = self._span(row, "axis ")
+        if "pitch" in self.columns and (pitch := self.amount(row, "pitch", "length")) is not None:
+            table["pitch"] = pitch
+            self.places[f"{place}.pitch"] = self.grid.place(row, self.columns["pitch"])
+        # a ball has no axis, whatever a list of axes holds
+        if kind in KINDS and not KINDS[kind].drawn_keys:
+            table.pop("axis", None)
+        self.places[f"{place}.at"] = self._span(row, "")
+        return table
+
+    def _head(self, row: int, place: str, name: str, kind_key: str, kind: str, key: str) -> dict[str, Any]:
+        self.places[place] = self.grid.place(row)
+        table: dict[str, Any] = {"name": name} if name else {}
+        if "name" in self.columns or "joint" in self.columns:
+            self.places[f"{place}.name"] = self.grid.place(
+                row, self.columns.get("name", self.columns.get("joint"))
+            )
+        if kind:
+            table[kind_key] = kind
+            self.places[f"{place}.{kind_key}"] = self.grid.place(row, self.columns[key])
+        return table
+
+    def _vector(self, row: int, head: str, kind: Kind, letters: str = "xyz") -> list[float]:
+        found = []
+        for letter in letters:
+            value = self.amount(row, f"{head}{letter}", kind)
+            if value is None and f"{head}{letter}" in self.columns and not self.text(row, f"{head}{letter}"):
+                self._wrong(
+                    "is empty; give a number, 0 where it is none", row, self.columns[f"{head}{letter}"]
+                )
+            found.append(0.0 if value is None else value)
+        return found
+
+    def _span(self, row: int, head: str) -> str:
+        """The place of a vector's cells."""
+        columns = [self.columns[f"{head}{letter}"] for letter in "xyz" if f"{head}{letter}" in self.columns]
+        names = ", ".join(shown(self.grid.names[column]) for column in columns)
+        return f"{self.grid.place(row)}, columns {names}" if columns else self.grid.place(row)
+
+    def point(self, row: int, k: int) -> dict[str, Any]:
+        """A named point carried by a link."""
+        place = f"point[{k + 1}]"
+        letters = "uvw" if all(letter in self.columns for letter in "uvw") else "xyz"
+        self.places[place] = self.grid.place(row)
+        for key in ("name", "link"):
+            if key in self.columns:
+                self.places[f"{place}.{key}"] = self.grid.place(row, self.columns[key])
+        link = number(self.text(row, "link"))
+        whole = link is not None and math.isfinite(link) and link.is_integer()
+        if not whole:
+            given = shown(self.text(row, "link"))
+            self._wrong(
+                f"{given} is not a link; give its number, counted from 1", row, self.columns.get("link")
+            )
+        name = self.text(row, "name") or self.text(row, "joint") or f"P{k + 1}"
+        at = self._vector(row, "", "length", letters)
+        return {"name": name, "link": int(link or 1) if whole else 1, "at": at}
+
+    def _drive(self, names: Mapping[int, str]) -> dict[str, Any]:
+        """Input, output and speed as marked."""
+        drive: dict[str, Any] = {}
+        for key, target in (("input", "joint"), ("output", "output")):
+            if key not in self.columns:
+                continue
+            marked = [row for row in names if self.text(row, key).lower() not in NO_MARKS]
+            for row in marked[1:]:
+                self._wrong(f"is a second {key}; mark one row", row, self.columns[key])
+            if not marked:
+                continue
+            word = self.text(marked[0], key)
+            # a freedom of a joint that has several, as `cross.2`
+            owned = re.fullmatch(rf"{re.escape(names[marked[0]])}\.\d", word) is not None
+            if key == "input" and word.lower() in ("output", "out"):
+                drive["output"] = names[marked[0]]
+                continue
+            drive[target] = word if owned else names[marked[0]]
+            self.places[f"drive.{target}"] = self.grid.place(marked[0], self.columns[key])
+            if word.lower() in MARKS or owned:
+                continue
+            if key == "input" and re.match(r"[-+]?[\d.]", word):
+                drive["speed"] = word
+                self.places["drive.speed"] = self.places[f"drive.{target}"]
+            else:
+                self._wrong(f"{shown(word)} marks nothing; write x, or a speed as in '60 rpm'", marked[0],
+                            self.columns[key])  # fmt: skip
+        spoken = [row for row in names if self.text(row, "speed")]
+        for row in spoken[:1]:
+            column = self.columns["speed"]
+            drive["speed"] = f"{self.text(row, 'speed')} {self.grid.unit(column)}".strip()
+            self.places["drive.speed"] = self.grid.place(row, column)
+        for row in spoken[1:]:
+            self._wrong("is a second speed; give one, in the row of the input", row, self.columns["speed"])
+        return drive
+
+
+def _in(kind: Kind, written: str, unit: MeasuredUnit) -> dict[str, str]:
+    """The unit in which a formula of a column is read."""
+    known = LENGTHS if kind == "length" else ANGLES
+    name = next((name for name, size in known.items() if size == unit.size), written)
+    return {f"{kind}_unit": name} if kind != "number" and name in known else {}
+
+
+def _kind(word: str) -> str:
+    """The letter of a kind of joint; the ground's word as it is; empty for other words."""
+    if word.upper() in KINDS:
+        return word.upper()
+    return word if names_ground(word) and len(word) > 1 else meant_kind(word)

@@ -1,0 +1,89 @@
+"""A linkage as the table that `tables` reads: its rows, its joints as drawn, or its dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sevenbar.description.table_columns import DIMENSIONS
+from sevenbar.kinematics.dimensions import description_of
+from sevenbar.kinematics.geometry import Loop
+
+#: A cell: `None` is empty.
+Cell = str | float | int | None
+
+
+def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
+    """The head and the rows of a linkage's table, each number with its unit in the head.
+
+    >>> import sevenbar as sb
+    >>> linkage_table(sb.load("rssr"))
+    (['M [mm]', 'N [mm]', 'L1 [mm]', 'L3 [mm]', 'D [mm]', 'input', 'speed'], \
+[[700, 700, 250, 550, 0, 'crank', '10.0 rad/s']])
+    """
+    raw = description_of(linkage)
+    length, angle = linkage.length_unit, str(raw.get("angle_unit", "deg"))
+    if linkage.form == "rssr":
+        dimensions = raw["rssr"]
+        keys = [key for key in DIMENSIONS if key in dimensions]
+        head = [f"{key} [{length}]" for key in keys]
+        rows = [[dimensions[key] for key in keys]]
+        return [*head, "input", "speed"], [[*rows[0], linkage.drive.joint, _speed(linkage)]]
+    drive = ["input", "output", "speed"]
+    marks = [_marks(linkage, i) for i in range(len(linkage.joints))]
+    names = [joint.name for joint in linkage.joints]
+    if linkage.form == "rows":
+        units = {"length": length, "twist": angle, "offset": length, "angle": angle, "pitch": length}
+        tables = raw["link"]
+        used = [key for key in units if key in ("length", "twist") or any(key in row for row in tables)]
+        head = ["name", "kind", *(f"{key} [{units[key]}]" for key in used), *drive]
+        rows = [
+            [name, row.get("joint", "R"), *(_of_row(row, key) for key in used), *mark]
+            for name, row, mark in zip(names, tables, marks, strict=True)
+        ]
+        return head, rows
+    tables = raw["joint"]
+    crossed = any("axes" in table for table in tables)
+    pitched = any("pitch" in table for table in tables)
+    axes = ["axis x", "axis y", "axis z"] + (["axis 2 x", "axis 2 y", "axis 2 z"] if crossed else [])
+    head = ["name", "kind", *(f"{letter} [{length}]" for letter in "xyz"), *axes]
+    head += [f"pitch [{length}]"] if pitched else []
+    drawn: list[list[Cell]] = []
+    for name, table, mark in zip(names, tables, marks, strict=True):
+        first, second = table.get("axes", (table.get("axis", (None,) * 3), (None,) * 3))
+        row: list[Cell] = [name, table["kind"], *table["at"], *first, *(second if crossed else ())]
+        drawn.append([*row, *([table.get("pitch")] if pitched else []), *mark])
+    return [*head, *drive], drawn
+
+
+def points_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
+    """The head and the rows of the points that a person has added; no rows where there are none."""
+    letters = "uvw" if linkage.form == "rows" else "xyz"
+    head = ["name", "link", *(f"{letter} [{linkage.length_unit}]" for letter in letters)]
+    return head, [[point.name, point.link, *point.at] for point in linkage.added_points]
+
+
+def _of_row(row: Mapping[str, Any], key: str) -> Cell:
+    value: Cell = row.get(key)
+    return 0 if value is None and key in ("length", "twist") else value
+
+
+def _marks(linkage: Loop, index: int) -> Sequence[Cell]:
+    """Marks of input and output, and the speed at the input."""
+    columns = linkage.joints[index].columns
+    is_input = linkage.drive.joint in columns
+    marked = [_mark(columns, linkage.drive.joint), _mark(columns, linkage.drive.output)]
+    return [*marked, _speed(linkage) if is_input else None]
+
+
+def _mark(columns: Sequence[str], chosen: str) -> Cell:
+    """`x`, or the place of the freedom of a joint that has several."""
+    if chosen not in columns:
+        return None
+    return "x" if len(columns) == 1 else chosen
+
+
+def _speed(linkage: Loop) -> str:
+    column = linkage.columns.index(linkage.drive.joint)
+    unit = "rad/s" if linkage.column_kinds[column] == "turn" else f"{linkage.length_unit}/s"
+    return f"{linkage.drive.speed!r} {unit}"

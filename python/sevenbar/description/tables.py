@@ -1,0 +1,106 @@
+"""A linkage in a table: Denavit-Hartenberg rows, joints as drawn, or the RSSR paper's dimensions.
+
+The table becomes the description that a TOML file would hold, and is checked as such; each mistake has its
+line and its column.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from sevenbar.description.forms import from_description
+from sevenbar.description.table_columns import is_header
+from sevenbar.description.table_reader import (
+    EXAMPLES,
+    TableDescription,
+    add_points,
+    described,
+    described_frame,
+)
+from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.grid import grid_of_sheet, grid_of_text
+from sevenbar.text.table import read_bytes, text_of_bytes
+from sevenbar.text.workbook import ZIP, sheets_of
+
+#: Endings of files that are tables; any other file is a workbook by its content, or TOML.
+ENDINGS = (".csv", ".tsv", ".tab", ".xlsx", ".xlsm", ".xls")
+
+#: Sheets of this title are taken before others: Sevenbar's own workbooks have it.
+SHEET = "linkage"
+
+
+def is_table(path: Path) -> bool:
+    """Whether a file is a table by its ending."""
+    return path.suffix.lower() in ENDINGS
+
+
+def from_table(
+    source: str | os.PathLike[str] | Any, *, name: str | None = None, speed: float | str | None = None
+) -> Linkage:
+    """The linkage of a table: a CSV or Excel file, or a data frame with the same columns.
+
+    Denavit-Hartenberg rows (classic: `A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha)`, the ground last) have the
+    columns length or a, twist or alpha, offset or d, perhaps kind, name, theta, pitch; joints as drawn have
+    name, kind, x, y, z, axis x, axis y, axis z. Units are written as in `a [mm]`, `alpha [deg]`. A column
+    `input` marks the input, or holds its speed. Raises `DescriptionError` with each mistake at its line and
+    column.
+
+        >>> import sevenbar as sb
+        >>> columns = {"a [mm]": [60, 90.16282937626413] * 2, "alpha [deg]": [40, 75] * 2}
+        >>> sb.from_table(columns).motion().motion_type
+        'double-crank'
+    """
+    if isinstance(source, str | os.PathLike):
+        found, place = read_table_description(Path(source)), str(source)
+    else:
+        found, place = described_frame(source), "table"
+    found.raw["name"] = name or found.raw["name"]
+    if speed is not None:
+        found.raw["drive"] = {**found.raw.get("drive", {}), "speed": speed}
+    return found.linkage(from_description, place)
+
+
+def read_table_description(path: Path) -> TableDescription:
+    """What a table describes; raises `DescriptionError`, `TableError` for a file that is none."""
+    return description_of_bytes(read_bytes(path, "a linkage"), str(path))
+
+
+def description_of_bytes(content: bytes, source: str) -> TableDescription:
+    """What a file's bytes describe; `source` is its name in messages."""
+    stem = Path(source).stem
+    if not content.strip():
+        raise _refused(source, "is empty; give a table with a header and a row for each joint")
+    if not content.startswith(ZIP):
+        text = text_of_bytes(content, source).replace("\r\n", "\n").replace("\r", "\n")
+        grid = grid_of_text(text, is_header)
+        if grid is None:
+            raise _refused(source, f"no header of a linkage's table; name the columns as in {EXAMPLES}")
+        return described(grid, source, stem or "linkage")
+    sheets = sheets_of(content, source)
+    grids = {sheet.title: grid_of_sheet(sheet, is_header) for sheet in sheets}
+    first = next((title for title in grids if title.lower() == SHEET and grids[title]), None)
+    first = first or next((title for title, grid in grids.items() if grid is not None), None)
+    if first is None:
+        known = ", ".join(map(shown, grids))
+        raise _refused(
+            source,
+            f"no sheet has the header of a linkage's table ({known}); name the columns as in {EXAMPLES}",
+        )
+    grid = grids[first]
+    assert grid is not None
+    found = described(grid, source, stem or "linkage")
+    if len(sheets) > 1:
+        found.note += f", sheet {shown(first)}"
+    points = next(
+        (grid for title, grid in grids.items() if title.lower() == "points" and title != first), None
+    )
+    if points is not None:
+        add_points(found, points, source)
+    return found
+
+
+def _refused(source: str, message: str) -> DescriptionError:
+    return DescriptionError([Problem("", message)], source)

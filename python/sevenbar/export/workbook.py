@@ -1,0 +1,92 @@
+"""A motion as an Excel workbook: sheets of circuits, the linkage, its points (openpyxl, extra `excel`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from sevenbar.description.table_writer import linkage_table, points_table
+from sevenbar.description.tables import SHEET
+from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.kinematics.motion import Motion
+
+#: Rows that a sheet of Excel holds, the head not counted.
+MOST_ROWS = 1_048_575
+
+#: Width of a column [characters], and the most that a head makes it.
+WIDTH, WIDEST = 11, 32
+
+
+def write_xlsx(motion: Motion, path: Path, units: Literal["file", "si"]) -> None:
+    """Writes a workbook: sheets `circuit 0`, `circuit 1` .., `linkage` as tables are read, `points`.
+
+    A value that does not exist is an empty cell. The sheet `linkage` is in the file's units whatever `units`
+    of the motion are. Raises `RequestError` for more rows than a sheet holds.
+    """
+    try:
+        from openpyxl import Workbook
+    except ImportError:
+        raise MissingExtraError(
+            "xlsx needs openpyxl; install it with: pip install 'sevenbar[excel]'"
+        ) from None
+    for circuit in motion.circuits:
+        if len(circuit.time) > MOST_ROWS:
+            raise RequestError(
+                f"samples: circuit {circuit.index} has {len(circuit.time):,} rows and a sheet of Excel holds "
+                f"{MOST_ROWS:,}; give fewer samples, or csv"
+            )
+    book = Workbook(write_only=True)
+    columns = motion.columns(si=units == "si")
+    for circuit in motion.circuits:
+        own = columns["circuit"] == circuit.index
+        lines = zip(*(np.asarray(values)[own].tolist() for values in columns.values()), strict=True)
+        _add_sheet(book, f"circuit {circuit.index}", list(columns), lines)
+    head, rows = linkage_table(motion.linkage)
+    _add_sheet(book, SHEET, head, rows, title=motion.linkage.name)
+    head, rows = points_table(motion.linkage)
+    if rows:
+        _add_sheet(book, "points", head, rows)
+    book.save(path)
+
+
+def _add_sheet(
+    book: Any, name: str, head: Sequence[str], rows: Iterable[Sequence[Any]], *, title: str = ""
+) -> None:
+    """Adds a sheet with its head in bold and in view; a title goes above it."""
+    from openpyxl.cell import WriteOnlyCell
+    from openpyxl.styles import Font
+    from openpyxl.utils import get_column_letter
+
+    sheet = book.create_sheet(name)
+    for place, label in enumerate(head, 1):
+        sheet.column_dimensions[get_column_letter(place)].width = min(max(WIDTH, len(label) + 2), WIDEST)
+    sheet.freeze_panes = f"A{2 + bool(title)}"
+
+    def bold(text: str) -> Any:
+        cell = WriteOnlyCell(sheet, value=text)
+        cell.font = Font(bold=True)
+        # a name that begins with '=' is no formula
+        cell.data_type = "s"
+        return cell
+
+    if title:
+        sheet.append([bold(title)])
+    sheet.append([bold(label) for label in head])
+    for row in rows:
+        sheet.append([_cell(sheet, value) for value in row])
+
+
+def _cell(sheet: Any, value: Any) -> Any:
+    """A value as a sheet takes it: nothing for NaN, text as text."""
+    if value is None or value != value:
+        return None
+    if isinstance(value, str) and value.startswith("="):
+        from openpyxl.cell import WriteOnlyCell
+
+        cell = WriteOnlyCell(sheet, value=value)
+        cell.data_type = "s"
+        return cell
+    return value
