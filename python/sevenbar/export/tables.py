@@ -15,7 +15,7 @@ import numpy as np
 from sevenbar.errors import MissingExtraError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.folder import write_columns
+from sevenbar.reporting.folder import write_parts
 from sevenbar.text.units import LENGTHS
 
 #: "file": lengths in the linkage's own unit, and angles of flat tables in degrees; "si": metres and radians.
@@ -24,7 +24,7 @@ Units = Literal["file", "si"]
 
 def write_csv(motion: Motion, path: Path, units: Units) -> None:
     """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
-    write_columns(path, motion.columns(si=units == "si"))
+    write_parts(path, motion.column_parts(si=units == "si"))
 
 
 def write_parquet(motion: Motion, path: Path, units: Units) -> None:

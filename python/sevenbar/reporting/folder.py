@@ -6,7 +6,7 @@ import csv
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import OutputError
+
+#: Rows of a table that are text at once.
+ROWS_AT_ONCE = 5_000
 
 
 def check_targets(files: Iterable[Path], *, force: bool) -> None:
@@ -80,7 +83,41 @@ def _undo(made: Sequence[Path], staging: Path | None) -> None:
 
 def write_columns(path: Path, columns: Mapping[str, npt.ArrayLike]) -> None:
     """Writes columns of one length (n,) as CSV, their names as its head; as `write_csv` for the rest."""
-    write_csv(path, list(columns), zip(*(np.asarray(c).tolist() for c in columns.values()), strict=True))
+    write_parts(path, [columns])
+
+
+def write_parts(
+    path: Path,
+    parts: Iterable[Mapping[str, npt.ArrayLike]],
+    wrote: Callable[[int], object] = lambda rows: None,  # noqa: ARG005
+) -> None:
+    """Writes columns (n,) that come in parts with the same names, one under the other, as CSV.
+
+    One part is held at a time, and a piece of it as text; `wrote(rows)` is called after each piece with the
+    number of rows that there are by then.
+    """
+
+    def lines(columns: Mapping[str, npt.ArrayLike]) -> Iterator[Iterable[Any]]:
+        nonlocal done
+        arrays = [np.asarray(column) for column in columns.values()]
+        for first in range(0, len(arrays[0]) if arrays else 0, ROWS_AT_ONCE):
+            pieces = [array[first : first + ROWS_AT_ONCE].tolist() for array in arrays]
+            yield from zip(*pieces, strict=True)
+            done += len(pieces[0])
+            wrote(done)
+
+    done, head = 0, False
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        for part in parts:
+            if not head:
+                writer.writerow(list(part))
+                head = True
+            writer.writerows(map(_cells, lines(part)))
+            # or it would live until the next one is made
+            del part
+        if not head:
+            writer.writerow([])
 
 
 def write_csv(path: Path, head: Sequence[str], lines: Iterable[Iterable[Any]]) -> None:
@@ -88,4 +125,8 @@ def write_csv(path: Path, head: Sequence[str], lines: Iterable[Iterable[Any]]) -
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(head)
-        writer.writerows(["" if cell is None or cell != cell else cell for cell in line] for line in lines)
+        writer.writerows(map(_cells, lines))
+
+
+def _cells(line: Iterable[Any]) -> list[Any]:
+    return ["" if cell is None or cell != cell else cell for cell in line]

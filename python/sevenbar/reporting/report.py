@@ -120,11 +120,8 @@ def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
         "motion_type": circuit.motion_type,
         "closed": circuit.closed,
         "turns": circuit.turns,
-        "rows": len(circuit.time),
-        "statuses": {
-            str(word): int(count)
-            for word, count in zip(*np.unique(circuit.status, return_counts=True), strict=True)
-        },
+        "rows": circuit.tally.rows,
+        "statuses": dict(circuit.tally.statuses),
         "input_range": circuit.input_range,
         "output_range": circuit.output_range,
         "dead_centres": [vars(d) for d in circuit.dead_centres],

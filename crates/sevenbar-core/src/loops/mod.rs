@@ -63,7 +63,7 @@ mod tests;
 mod turnings;
 
 pub use assembly::{Modes, modes};
-pub use circuit::Circuit;
+pub use circuit::{Circuit, Course};
 pub use counting::{Count, Open, Uncounted};
 pub use description::Loop;
 pub use found::{Found, Search};
@@ -75,4 +75,4 @@ pub use motion::{ChangePoint, Motion, Through, circuit_through, mobility, motion
 pub use number_slopes::slopes;
 pub use numbers::{Advance, Design, Move, NumberedLoop, NumberedPoint};
 pub use polish::AGREE;
-pub use rows::{ROW_NUMBERS, Rows, joint_table, point};
+pub use rows::{ROW_NUMBERS, Rows, Tally, joint_table, point};
