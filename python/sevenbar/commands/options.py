@@ -7,19 +7,37 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.commands.command import count_of
 from sevenbar.errors import RequestError, shown
 
-Source = Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")]
-Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
+
+def _known(incomplete: str) -> list[str]:
+    """Names of the gallery that begin so; none leaves the shell to its files."""
+    from sevenbar.description.gallery import names
+
+    return [name for name in names() if name.startswith(incomplete)]
+
+
+Source = Annotated[
+    str,
+    typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.", autocompletion=_known),
+]
+Samples = Annotated[
+    int,
+    typer.Option(
+        parser=count_of("--samples"), metavar="COUNT", help="Inputs in a full turn, as in 720 or 1e5."
+    ),
+]
 Figures = Annotated[
     list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Go on without asking where it is much or long.")]
 InputJoint = Annotated[
     str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
 ]
 OutputJoint = Annotated[
-    str | None, typer.Option("--output", help="The joint whose motion is told; the file's by default.")
+    str | None, typer.Option("--output", help="The joint whose motion is reported; the file's by default.")
 ]
 InputValue = Annotated[
     str,

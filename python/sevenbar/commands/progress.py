@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from sevenbar.reporting.folder import Stopped
+
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
@@ -34,8 +36,8 @@ class Shown:
         self._bar: Progress | None = None
         self._task: TaskID | None = None
 
-    def __call__(self, done: int, total: int, best: str = "") -> None:
-        """Reports `done` of `total` steps (0: not known), and what the best so far is."""
+    def __call__(self, done: float, total: int, best: str = "") -> None:
+        """Reports `done` of `total` steps (0: not known), and what the best so far is, or what is at work."""
         if not self._begun:
             self._begin(done, total)
         if self._bar is not None and self._task is not None:
@@ -47,7 +49,7 @@ class Shown:
             self._bar.live.transient = erase
             self._bar.stop()
 
-    def _begin(self, done: int, total: int) -> None:
+    def _begin(self, done: float, total: int) -> None:
         self._begun = True
         if not sys.stderr.isatty():
             # of a bar in a log file only its frames would be left
@@ -68,9 +70,9 @@ def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is writ
     shown = Shown(title, rate=rate)
     try:
         yield shown
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         shown.end(erase=False)
-        typer.echo(f"sevenbar: stopped; {kept}", err=True)
+        typer.echo(f"sevenbar: stopped; {stop.kept if isinstance(stop, Stopped) else kept}", err=True)
         raise typer.Exit(STOPPED) from None
     except BaseException:
         # a message is alone

@@ -271,10 +271,10 @@ class GeneralLoop:
         course = raw.course
 
         def made() -> Circuit:
-            *arrays, rows = self._core.rows(course)
-            return known(point=partial(self._trace, rows), rows=tuple(arrays))
+            joints, status, branch, residual, condition, rows = self._core.rows(course)
+            return known(point=partial(self._trace, rows), rows=(joints, status, branch, residual, condition))
 
-        return LongCircuit.of(known(point=self._trace), tally_from(course, self.size), made)
+        return LongCircuit.of(known(point=partial(self._trace, None)), tally_from(course, self.size), made)
 
     def _trace(self, rows: _core.Rows | None, order: Integers, status: Words, link: int, at: Floats) -> Trace:
         """A point, `at` in its link's own frame, along rows in an order and of a status."""

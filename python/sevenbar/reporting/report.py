@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
@@ -22,8 +21,8 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
-from sevenbar.reporting.figures import draw_for_report, posed_circuit, write_figures
-from sevenbar.reporting.files import Report, columns_file, json_file, json_text, without_nan
+from sevenbar.reporting.figures import posed_circuit, report_figures, write_figures
+from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.summary import (
@@ -223,14 +222,29 @@ def _table(sheet: Sheet) -> Table:
     return table
 
 
-def motion_report(figures: Sequence[str] = ("png",)) -> Report[Motion]:
-    """How a motion is reported, with the figures in these formats."""
-    files = {
+def motion_report(
+    figures: Sequence[str] = ("png",), drawn: Callable[[Motion], Motion] = lambda motion: motion
+) -> Report[Motion]:
+    """How a motion is reported, with the figures in these formats.
+
+    `drawn` gives the motion that the figures show, where it is another, such as one of fewer rows.
+    """
+    files: Files[Motion] = {
         "report.json": json_file(as_dict),
-        "motion.csv": columns_file(Motion.columns),
-        "report.md": _write_markdown,
+        "motion.csv": LongTable(Motion.column_parts, row_count),
     }
-    return Report(text, as_dict, files, partial(draw_for_report, formats=figures))
+    return Report(
+        text,
+        as_dict,
+        files,
+        lambda motion: report_figures(drawn(motion), figures),
+        {"report.md": _write_markdown},
+    )
+
+
+def row_count(motion: Motion) -> int:
+    """The rows of all circuits."""
+    return sum(circuit.tally.rows for circuit in motion)
 
 
 def _write_markdown(motion: Motion, path: Path) -> None:

@@ -1,0 +1,48 @@
+"""Motions of many samples: how large their table would be, and a line while they are computed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from io import StringIO
+
+import sevenbar as sb
+from sevenbar.commands.consent import Ahead
+from sevenbar.commands.progress import progress_bar
+from sevenbar.kinematics.linkage import sample_count
+from sevenbar.kinematics.long_circuit import LONG
+from sevenbar.reporting.folder import write_csv
+
+#: Samples of the motion whose rows are taken for those of the one that is asked for.
+TRIAL = 36
+
+#: Numbers that are computed and written as text in a second.
+WRITTEN = 1.0e6
+
+
+def table_ahead(moved: Callable[[int], sb.Motion], samples: int, what: str) -> Ahead:
+    """How large the CSV of a motion with so many samples would be, by one with few."""
+    if sample_count("samples", samples) < LONG:
+        return Ahead("--samples", what)
+    trial = moved(TRIAL)
+    columns = trial.columns()
+    rows = sum(circuit.tally.rows for circuit in trial)
+    if not rows:
+        return Ahead("--samples", what)
+    times = samples / TRIAL
+    text = StringIO()
+    write_csv(text, list(columns), zip(*(column.tolist() for column in columns.values()), strict=True))
+    return Ahead(
+        "--samples",
+        f"{what} of {round(rows * times, -3):,.0f} rows",
+        len(text.getvalue()) * times,
+        rows * len(columns) * times / WRITTEN,
+    )
+
+
+def long_motion(moved: Callable[[int], sb.Motion], samples: int) -> sb.Motion:
+    """The motion; a line says so where it takes its time."""
+    if samples < LONG:
+        return moved(samples)
+    with progress_bar(f"computing {samples:,} samples a turn") as progress:
+        progress(0, 0)
+        return moved(samples)
