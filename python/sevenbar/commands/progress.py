@@ -58,7 +58,7 @@ class Shown:
         self._bar = _bar(rate=self._rate)
         self._bar.start()
         # what was there already is no rate
-        self._task = self._bar.add_task(self._title, total=total or None, completed=done, best="")
+        self._task = self._bar.add_task(self._title, total=total or None, completed=int(done), best="")
 
 
 @contextmanager

@@ -46,6 +46,10 @@ class LongTable(Generic[T]):
         write_parts(path, self.parts(found), lambda done: progress(done / total))
 
 
+#: Called with what is done, of how much, and what is at work.
+Progress = Callable[[float, int, str], object]
+
+
 def no_progress(done: float, total: int, what: str) -> None:
     """Reports nothing."""
 
@@ -84,7 +88,7 @@ class Report(Generic[T]):
         folder: str | os.PathLike[str],
         *,
         force: bool = False,
-        progress: Callable[[float, int, str], object] = no_progress,
+        progress: Progress = no_progress,
     ) -> list[Path]:
         """Writes the files of a result into a folder, all or none; returns their paths.
 
@@ -109,9 +113,7 @@ class Report(Generic[T]):
         return fill_folder(Path(folder), fill, force=force)
 
 
-def _further(
-    progress: Callable[[float, int, str], object], done: int, total: int, name: str, share: float
-) -> None:
+def _further(progress: Progress, done: int, total: int, name: str, share: float) -> None:
     progress(done + share, total, name)
 
 
