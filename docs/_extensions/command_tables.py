@@ -63,9 +63,15 @@ def _section(words: str, command: Any) -> str:
     return (
         f"## sevenbar {words}\n\n{command.help}\n\n"
         f"    sevenbar {words} {usage}\n\n"
+        f"{_examples(command)}"
         f"How to use it: []({PAGES[words]}).\n\n"
         f"{table(('', 'value', 'meaning'), [_row(param, kinds[param.name]) for param in shown])}"
     )
+
+
+def _examples(command: Any) -> str:
+    calls = (command.epilog or "").split("\n\n")
+    return "For example\n\n" + "".join(f"    {call}\n" for call in calls) + "\n" if calls[0] else ""
 
 
 def _metavar(argument: Any) -> str:

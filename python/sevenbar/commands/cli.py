@@ -137,10 +137,7 @@ def analyze(
     yes: Yes = False,
     json: Json = False,
 ) -> None:
-    """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them.
-
-    Examples: sevenbar analyze rssr | sevenbar analyze mine.toml --speed '60 rpm' -o report
-    """
+    """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar.reporting.report import motion_report
 
     formats = figure_formats(figures, out)

@@ -23,13 +23,20 @@ if TYPE_CHECKING:
     from sevenbar.export import Bodies, Table
 
 
+def _formats(incomplete: str) -> list[str]:
+    from sevenbar.export import ALIASES, FORMATS
+
+    return [word for word in (*FORMATS, *ALIASES) if word.startswith(incomplete)]
+
+
 def export(
     linkage: Source,
     to: Annotated[
         str | None,
         typer.Option(
+            autocompletion=_formats,
             help="Tables: csv, parquet, npz, mat (or matlab), json. Bodies: glb, stl, step. Models: urdf, "
-            "mjcf (or mujoco), cmd (or adams). By the ending of --out where left out."
+            "mjcf (or mujoco), cmd (or adams). By the ending of --out where left out.",
         ),
     ] = None,
     out: Annotated[
@@ -95,13 +102,11 @@ def export(
 
 def _notes(out: Path, form: Table | Bodies) -> list[str]:
     """What to know of a file besides its name."""
+    from sevenbar.export import Bodies
+
     notes = []
     if out.suffix.lower() == ".urdf":
         notes.append("URDF holds trees only: the joint that closes the loop is in the .loop.json file")
     if isinstance(form, Bodies) and form.masses:
-        from sevenbar.export.mass import DENSITY
-
-        notes.append(
-            f"masses are assumed: those of the drawn bodies in steel, {DENSITY:g} kg/m^3; put in your own"
-        )
+        notes.append(f"masses are assumed: {form.masses}; put in your own where forces matter")
     return notes

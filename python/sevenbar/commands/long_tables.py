@@ -12,7 +12,7 @@ from sevenbar.kinematics.linkage import sample_count
 from sevenbar.kinematics.long_circuit import LONG
 from sevenbar.reporting.folder import write_csv
 
-#: Samples of the motion whose rows are taken for those of the one that is asked for.
+#: Samples of the motion whose rows are taken for those of the longer one.
 TRIAL = 36
 
 #: Numbers that are computed and written as text in a second.

@@ -43,8 +43,8 @@ class Bodies:
 
     endings: tuple[str, ...]
     write: Callable[[Assembly, Path, Progress], None]
-    #: Whether it holds masses, which are those of steel bodies.
-    masses: bool = False
+    #: Whose masses it holds, for nothing states what links are made of.
+    masses: str = ""
 
 
 Format = Table | Bodies
@@ -119,6 +119,9 @@ def _cmd(assembly: Assembly, path: Path, _: Progress) -> None:
     adams.write_cmd(assembly, path)
 
 
+#: Masses of bodies as they are drawn (`mass.DENSITY`).
+OF_STEEL = "those of the drawn bodies in steel, 7850 kg/m^3"
+
 #: All kinds of file, by the word that asks for them.
 FORMATS: dict[str, Format] = {
     "csv": Table((".csv",), _csv),
@@ -129,9 +132,9 @@ FORMATS: dict[str, Format] = {
     "glb": Bodies((".glb",), _glb),
     "stl": Bodies((".stl",), _stl),
     "step": Bodies((".step", ".stp"), _step),
-    "urdf": Bodies((".urdf",), _urdf, masses=True),
-    "mjcf": Bodies((".xml", ".mjcf"), _mjcf),
-    "cmd": Bodies((".cmd",), _cmd, masses=True),
+    "urdf": Bodies((".urdf",), _urdf, OF_STEEL),
+    "mjcf": Bodies((".xml", ".mjcf"), _mjcf, "1 kg for every body"),
+    "cmd": Bodies((".cmd",), _cmd, OF_STEEL),
 }
 
 #: What people call a kind of file by the program that reads it.
@@ -150,8 +153,8 @@ ALIASES = {
 
 #: What to give in place of a kind of file that is not written, and that people ask for.
 INSTEAD = {
-    "dxf": "flat drawings are not; give step for CAD, or draw with: sevenbar plot --figures svg",
-    "dwg": "flat drawings are not; give step for CAD, or draw with: sevenbar plot --figures svg",
+    "dxf": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
+    "dwg": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
     "svg": "pictures are drawn with: sevenbar plot --figures svg",
     "png": "pictures are drawn with: sevenbar plot --figures png",
     "gif": "films are made with: sevenbar analyze --animate move.gif",

@@ -1,4 +1,4 @@
-"""A circuit of so many rows that they are computed when they are asked for."""
+"""A circuit of so many rows that they are computed when somebody looks at them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class LongCircuit(Circuit):
         return circuit
 
     def __getattr__(self, name: str) -> Any:
-        # asked for what it has not (yet)
+        # only of what it has not (yet)
         if name not in BY_ROW or "_made" not in self.__dict__:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
         made = self._made()

@@ -6,7 +6,6 @@ A report only writes down what the motion holds; it solves nothing.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -35,7 +34,7 @@ from sevenbar.reporting.summary import (
     side_lengths,
     summary,
 )
-from sevenbar.text.markdown import table
+from sevenbar.text.markdown import plain, table
 
 __all__ = [
     "as_dict",
@@ -191,21 +190,16 @@ def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
     '# RSSR of Sun and Zhou'
     """
     told = summary(motion)
-    parts = [f"# {_plain(told.title)}"]
+    parts = [f"# {plain(told.title)}"]
     parts.append(
-        "\n".join(f"- {name}: {_plain(fact)}" if name else f"  {_plain(fact)}" for name, fact in told.facts)
+        "\n".join(f"- {name}: {plain(fact)}" if name else f"  {plain(fact)}" for name, fact in told.facts)
     )
     for sheet in told.sheets:
-        heads, *rows = ([_plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
+        heads, *rows = ([plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
         parts.append(table(heads, rows, right=sheet.right))
         parts += [sheet.note] if sheet.note else []
     parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
     return "\n\n".join(parts) + "\n"
-
-
-def _plain(words: str) -> str:
-    """Words of which Markdown leaves every character as it is, a line break apart."""
-    return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", words).replace("\n", "<br>")
 
 
 def _table(sheet: Sheet) -> Table:
