@@ -41,8 +41,10 @@ def table_ahead(moved: Callable[[int], sb.Motion], samples: int, what: str) -> A
 
 def long_motion(moved: Callable[[int], sb.Motion], samples: int) -> sb.Motion:
     """The motion; a line says so where it takes its time."""
-    if samples < LONG:
+    if sample_count("samples", samples) < LONG:
         return moved(samples)
+    # a refusal is alone
+    moved(TRIAL)
     with progress_bar(f"computing {samples:,} samples a turn") as progress:
         progress(0, 0)
         return moved(samples)
