@@ -225,12 +225,12 @@ def plot_(
     linkage: Source,
     out: Annotated[Path, typer.Option(help="Folder for the figures.")],
     kind: Annotated[
-        list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all; may be repeated.")
+        list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all (the default); may be repeated.")
     ] = None,
     point: PointName = None,
     link: PointLink = None,
     at: PointPlace = None,
-    circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space.")] = 0,
+    circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space, counted from 0.")] = 0,
     samples: Samples = 360,
     input_joint: InputJoint = None,
     output: OutputJoint = None,

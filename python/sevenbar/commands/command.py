@@ -70,7 +70,7 @@ class Command(typer.core.TyperCommand):
     def __init__(self, name: str | None, *args: Any, **options: Any) -> None:
         if not options.get("epilog") and name in EXAMPLES:
             # lines of a paragraph would flow into each other
-            options["epilog"] = "\n\n".join(EXAMPLES[name])
+            options["epilog"] = "\n\n".join(("Examples:", *EXAMPLES[name]))
         super().__init__(name, *args, **options)
         for parameter in self.params:
             if "--out" in parameter.opts and "-o" not in parameter.opts:

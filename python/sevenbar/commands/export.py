@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from sevenbar.export import Bodies, Table
 
 
+#: Tables that hold numbers as text.
+TEXT = (".csv", ".json", ".xlsx")
+
+
 def _formats(incomplete: str) -> list[str]:
     from sevenbar.export import ALIASES, FORMATS
 
@@ -79,7 +83,8 @@ def export(
     value = None if at is None else input_value("--at", at, loaded, input_joint)
     moved = partial(loaded.motion, input=input_joint, output=output, speed=speed)
     if isinstance(form, Table):
-        agree(table_ahead(moved, samples, out.name), yes=yes)
+        text = out.suffix.lower() in TEXT
+        agree(table_ahead(moved, samples, out.name, text=text), yes=yes)
     motion = long_motion(moved, samples)
     with progress_bar(f"writing {out}") as progress:
         if isinstance(form, Bodies) or samples >= LONG:

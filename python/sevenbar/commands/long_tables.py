@@ -15,12 +15,13 @@ from sevenbar.reporting.folder import write_csv
 #: Samples of the motion whose rows are taken for those of the longer one.
 TRIAL = 36
 
-#: Numbers that are computed and written as text in a second.
-WRITTEN = 1.0e6
+#: Numbers that are computed and written in a second, as text and as they are; bytes of one as it is.
+WRITTEN, PACKED = 1.0e6, 5.0e6
+BYTES = 8
 
 
-def table_ahead(moved: Callable[[int], sb.Motion], samples: int, what: str) -> Ahead:
-    """How large the CSV of a motion with so many samples would be, by one with few."""
+def table_ahead(moved: Callable[[int], sb.Motion], samples: int, what: str, *, text: bool = True) -> Ahead:
+    """How large the table of a motion with so many samples would be, by one with few; as text, or numbers."""
     if sample_count("samples", samples) < LONG:
         return Ahead("--samples", what)
     trial = moved(TRIAL)
@@ -29,14 +30,14 @@ def table_ahead(moved: Callable[[int], sb.Motion], samples: int, what: str) -> A
     if not rows:
         return Ahead("--samples", what)
     times = samples / TRIAL
-    text = StringIO()
-    write_csv(text, list(columns), zip(*(column.tolist() for column in columns.values()), strict=True))
-    return Ahead(
-        "--samples",
-        f"{what} of {round(rows * times, -3):,.0f} rows",
-        len(text.getvalue()) * times,
-        rows * len(columns) * times / WRITTEN,
-    )
+    numbers = rows * len(columns) * times
+    size = BYTES * numbers
+    if text:
+        lines = StringIO()
+        write_csv(lines, list(columns), zip(*(column.tolist() for column in columns.values()), strict=True))
+        size = len(lines.getvalue()) * times
+    rate = WRITTEN if text else PACKED
+    return Ahead("--samples", f"{what} of {round(rows * times, -3):,.0f} rows", size, numbers / rate)
 
 
 def long_motion(moved: Callable[[int], sb.Motion], samples: int) -> sb.Motion:

@@ -29,7 +29,8 @@ Samples = Annotated[
     ),
 ]
 Figures = Annotated[
-    list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+    list[str] | None,
+    typer.Option(help="Format of the figures: png (the default), svg, pdf; may be repeated."),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Go on without asking where it is much or long.")]
@@ -47,12 +48,22 @@ InputValue = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object and nothing else.")]
 Law = Annotated[
-    Path | None, typer.Option(help="CSV file of an input law: time, value of the input, perhaps its rates.")
+    Path | None,
+    typer.Option(
+        help="CSV file of an input law: time, value of the input, perhaps its rates; in place of --speed."
+    ),
 ]
 PointName = Annotated[str | None, typer.Option("--point", help="A named point of the linkage.")]
-PointLink = Annotated[int | None, typer.Option("--link", help="The link of a point given by --at.")]
-PointPlace = Annotated[str | None, typer.Option("--at", help="Where on the link, as in '-100,-90,-80'.")]
-Speed = Annotated[str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")]
+PointLink = Annotated[
+    int | None, typer.Option("--link", help="The link of a point given by --at, counted from 1.")
+]
+PointPlace = Annotated[
+    str | None,
+    typer.Option("--at", help="Where on the link, in the file's length unit, as in '-100,-90,-80'."),
+]
+Speed = Annotated[
+    str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'; the file's by default.")
+]
 
 
 def words(given: list[str]) -> list[str]:

@@ -37,7 +37,7 @@ def simulate(
             parser=count_of("--steps"), metavar="COUNT", help="Steps in a full turn of the input, as in 1e4."
         ),
     ] = 3600,
-    circuit: Annotated[int, typer.Option(help="The circuit that is followed.")] = 0,
+    circuit: Annotated[int, typer.Option(help="The circuit that is followed, counted from 0.")] = 0,
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
