@@ -48,7 +48,7 @@ from sevenbar.text.ranges import Place
 #: Samples a turn of a motion that is drawn: two for each dot of a wide figure.
 MOST_DRAWN = 3600
 
-#: Commands that live with what they do, imported when one of them is asked for: a report should not wait for
+#: Commands that live with what they do, imported when one of them is called: a report should not wait for
 #: the studio.
 _ELSEWHERE = {
     "studio": "sevenbar.commands.studio:studio",

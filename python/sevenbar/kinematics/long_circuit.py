@@ -1,4 +1,4 @@
-"""A circuit of so many rows that they are computed when somebody looks at them."""
+"""A circuit of so many rows that they are computed when they are wanted."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def figures_report(
 
 
 def report_figures(motion: Motion, formats: Sequence[str]) -> Files[Motion]:
-    """Configuration and motion; but for an RSSR, whose curves show all, also joints and points."""
+    """Configuration and motion; unless of an RSSR, whose curves show all, also joints and points."""
     if not motion.circuits:
         return {}
     general = motion.linkage.kind != "RSSR"
