@@ -5,6 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
+from jupyter_client.connect import ConnectionFileMixin
+
 import sevenbar
 
 project = "Sevenbar"
@@ -39,6 +41,9 @@ nb_execution_mode = "force"
 nb_execution_timeout = 90
 nb_execution_raise_on_error = True
 nb_merge_streams = True
+
+# by sockets of this machine's files: over TCP each kernel would warn that others can listen
+ConnectionFileMixin.transport.default_value = "tcp" if sys.platform == "win32" else "ipc"
 
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"

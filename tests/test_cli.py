@@ -199,7 +199,11 @@ def test_an_animation_that_fails_leaves_no_report_in_its_folder(tmp_path):
         "a._pictures = fails"
     )
     asked = ["analyze", "rssr", "--samples", 36, "--out", "new/report", "--animate", "new/report/move.gif"]
-    assert mistake(*asked, cwd=tmp_path, before=broken) == "no picture"
+    run = sevenbar(*asked, cwd=tmp_path, before=broken)
+    assert run.returncode == 2
+    assert run.stderr.splitlines()[-1] == "sevenbar: no picture"
+    # the report comes first
+    assert run.stdout.startswith("RSSR of Sun and Zhou")
     assert list(tmp_path.iterdir()) == []
 
 

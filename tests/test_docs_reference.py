@@ -91,7 +91,7 @@ def test_every_command_has_a_page_that_shows_it():
         assert re.search(rf"sevenbar {words}\b", text), f"{page} does not show sevenbar {words}"
     made = all_commands(DOCS, "")
     assert made.count("\n| `--") > 100
-    assert "| `--samples` | `COUNT` | Inputs in a full turn. Left out: `360`. |" in made
+    assert "| `--samples` | `COUNT` | Inputs in a full turn, as in 720 or 1e5. Left out: `360`. |" in made
 
 
 def test_every_key_of_a_file_has_its_meaning_on_the_page():

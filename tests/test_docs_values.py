@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 import sevenbar as sb
+from sevenbar.commands.command import count_of
 from sevenbar.commands.given import angle, angles, input_value, lengths, point_of
 from sevenbar.commands.path import parsed_bounds
 from sevenbar.commands.points import parsed_box
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import axes_of, split_ranges
-from sevenbar.errors import RequestError
+from sevenbar.errors import SevenbarError
 from sevenbar.sweep.axes import axis_from_text, axis_of
 from sevenbar.text.expression import value_of
 from sevenbar.text.ranges import split_name
@@ -82,6 +83,7 @@ READERS: dict[str, Callable[[str], str]] = {
     "box": boxed,
     "length in a file": lambda text: f"{value_of(text, 'length'):g} mm",
     "twist in a file": lambda text: f"{value_of(text, 'angle'):g} deg",
+    "count": lambda text: f"{count_of('--samples')(text)}",
 }
 
 REFUSING: dict[str, Callable[[str], object]] = {
@@ -90,6 +92,7 @@ REFUSING: dict[str, Callable[[str], object]] = {
     "--at": lambda text: point_of(None, 4, text),
     "--box": lambda text: parsed_box(text, "mm"),
     "L1": lambda text: value_of(text, "length"),
+    "--samples": count_of("--samples"),
     "--swing": lambda text: angle("--swing", text),
 }
 
@@ -113,6 +116,6 @@ def test_names_and_values_are_parted_as_the_page_says():
 
 def test_every_refusal_has_the_message_of_the_page():
     for option, text, message in tables()["option"]:
-        with pytest.raises(RequestError) as caught:
+        with pytest.raises(SevenbarError) as caught:
             REFUSING[option](text)
         assert str(caught.value) == message

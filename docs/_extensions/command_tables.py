@@ -8,6 +8,7 @@ import typer
 
 from page_tables import code, table
 from sevenbar.commands.cli import app
+from sevenbar.commands.command import EXAMPLES
 
 #: The page that shows how to use each command.
 PAGES = {
@@ -64,9 +65,14 @@ def _section(words: str, command: Any) -> str:
     return (
         f"## sevenbar {words}\n\n{command.help}\n\n"
         f"    sevenbar {words} {usage}\n\n"
+        f"{_examples(words)}"
         f"How to use it: []({PAGES[words]}).\n\n"
         f"{table(('', 'value', 'meaning'), [_row(param, kinds[param.name]) for param in shown])}"
     )
+
+
+def _examples(words: str) -> str:
+    return "For example\n\n" + "".join(f"    {call}\n" for call in EXAMPLES[words.split()[-1]]) + "\n"
 
 
 def _metavar(argument: Any) -> str:

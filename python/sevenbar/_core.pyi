@@ -9,6 +9,7 @@ import numpy.typing as npt
 __all__ = [
     "AGREE",
     "CoreError",
+    "Course",
     "Loop",
     "LoopBatch",
     "Numbers",
@@ -84,8 +85,15 @@ class Loop:
     ) -> tuple[_Floats, _Floats, Literal["algebraic", "searched"], list[float]]: ...
     def mobility(self, column: int) -> RawFound | None: ...
     def motion(
-        self, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
+        self,
+        input: int,
+        output: int,
+        samples: int,
+        speed: float,
+        law: _Floats | None = None,
+        keep: bool = True,
     ) -> RawMotion: ...
+    def rows(self, course: Course) -> tuple[_Floats, _Integers, _Integers, _Floats, _Floats, Rows]: ...
     def circuit_through(
         self, pose: _Floats, input: int, output: int, samples: int, speed: float, law: _Floats | None = None
     ) -> RawCircuit | float | list[int] | None: ...
@@ -125,6 +133,15 @@ class Rows:
 
     def __new__(cls, numbers: _Floats, offsets: _Floats, speed: float) -> Rows: ...
     def __reduce__(self) -> tuple[type[Rows], tuple[_Floats, _Floats, float]]: ...
+
+@final
+class Course:
+    """What makes the rows of a long circuit whenever they are wanted: its loop does."""
+
+    @property
+    def statuses(self) -> list[int]: ...
+    @property
+    def residual(self) -> float | None: ...
 
 @final
 class RawCircuit:
@@ -170,6 +187,8 @@ class RawCircuit:
     def time_ratio(self) -> float | None: ...
     @property
     def rows(self) -> Rows | None: ...
+    @property
+    def course(self) -> Course | None: ...
 
 @final
 class RawMotion:

@@ -19,6 +19,9 @@ pub enum RowStatus {
 }
 
 impl RowStatus {
+    /// How many there are.
+    pub const COUNT: usize = 5;
+
     /// The status of a number.
     pub fn numbered(number: f64) -> Option<Self> {
         [

@@ -68,7 +68,7 @@ mod _core {
     #[pymodule_export]
     use super::numbers::Numbers;
     #[pymodule_export]
-    use super::rows::Rows;
+    use super::rows::{Course, Rows};
     #[pymodule_export]
     use super::rssr::Rssr;
     #[pymodule_export]

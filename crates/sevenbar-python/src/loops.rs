@@ -1,6 +1,6 @@
 //! Any single loop, for Python.
 
-use crate::rows::Rows;
+use crate::rows::{Course, Rows};
 use crate::values::{RawCircuit, RawFound, RawMotion, RawSearch, RowArrays, change_point};
 use crate::{CoreError, flat, law_rows};
 use numpy::ndarray::{ArrayView2, Axis};
@@ -42,6 +42,16 @@ type Modes<'py> = (
     Bound<'py, PyArray1<f64>>,
     &'static str,
     Vec<f64>,
+);
+
+/// Joint values with three derivatives (4, n, columns), status, pass, residual and condition (n,), and the rows of a loop.
+type RawRows = (
+    Py<PyArray3<f64>>,
+    Py<PyArray1<i64>>,
+    Py<PyArray1<i64>>,
+    Py<PyArray1<f64>>,
+    Py<PyArray1<f64>>,
+    Py<Rows>,
 );
 
 fn no_input(column: usize) -> PyErr {
@@ -138,8 +148,9 @@ impl Loop {
             .transpose()
     }
 
-    /// The whole motion over the inputs of a column.
-    #[pyo3(signature = (input, output, samples, speed, law=None))]
+    /// The whole motion over the inputs of a column; without `keep` circuits on a grid have no rows but a course.
+    #[pyo3(signature = (input, output, samples, speed, law=None, keep=true))]
+    #[expect(clippy::too_many_arguments)]
     fn motion<'py>(
         &self,
         py: Python<'py>,
@@ -148,10 +159,11 @@ impl Loop {
         samples: usize,
         speed: f64,
         law: Option<PyReadonlyArray2<'py, f64>>,
+        keep: bool,
     ) -> PyResult<RawMotion> {
         let law = law_rows(law);
         let motion = py
-            .detach(|| loops::motion(&self.0, input, output, samples, speed, law.as_deref()))
+            .detach(|| loops::motion(&self.0, input, output, samples, speed, law.as_deref(), keep))
             .ok_or_else(|| no_input(input))?;
         let circuits = motion.circuits.into_iter();
         Ok(RawMotion {
@@ -164,6 +176,20 @@ impl Loop {
             search: Some(Py::new(py, RawSearch::new(py, motion.search)?)?),
             moving: motion.moving,
         })
+    }
+
+    /// The rows of a course: arrays as those of a circuit, and the rows as the loop has them.
+    fn rows(&self, py: Python<'_>, course: &Course) -> PyResult<RawRows> {
+        let rows = py.detach(|| course.0.rows(&self.0));
+        let RowArrays { joints, status, branch, residual, condition, .. } = self.arrays(py, &rows)?;
+        Ok((
+            joints,
+            status,
+            branch,
+            residual,
+            condition,
+            Py::new(py, Rows(rows))?,
+        ))
     }
 
     /// The one circuit through a pose (columns,); else how far the loop is from closing, the columns that move with the input at rest,
@@ -221,9 +247,16 @@ enum RawThrough {
 
 impl Loop {
     fn circuit(&self, py: Python<'_>, circuit: Circuit) -> PyResult<RawCircuit> {
-        let Circuit { rows, measures } = circuit;
-        let table = py.detach(|| loops::joint_table(&self.0, &rows));
-        let arrays = RowArrays {
+        let Circuit { rows, course, measures } = circuit;
+        let arrays = self.arrays(py, &rows)?;
+        let course = course.map(|course| Py::new(py, Course(course))).transpose()?;
+        let rows = Some(Py::new(py, Rows(rows))?);
+        Ok(RawCircuit::new(arrays, &measures, rows, course))
+    }
+
+    fn arrays(&self, py: Python<'_>, rows: &loops::Rows) -> PyResult<RowArrays> {
+        let table = py.detach(|| loops::joint_table(&self.0, rows));
+        Ok(RowArrays {
             joints: PyArray1::from_vec(py, table)
                 .reshape([4, rows.len(), self.0.columns()])?
                 .unbind(),
@@ -232,7 +265,6 @@ impl Loop {
             mode: None,
             residual: rows.residuals().into_pyarray(py).unbind(),
             condition: rows.conditions().into_pyarray(py).unbind(),
-        };
-        Ok(RawCircuit::new(arrays, &measures, Some(Py::new(py, Rows(rows))?)))
+        })
     }
 }

@@ -6,6 +6,25 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 use sevenbar_core::loops;
 
+/// What makes the rows of a long circuit whenever they are wanted: its loop does.
+#[pyclass(frozen, module = "sevenbar._core")]
+pub(crate) struct Course(pub loops::Course);
+
+#[pymethods]
+impl Course {
+    /// How many rows of each status there are, by its number.
+    #[getter]
+    fn statuses(&self) -> Vec<usize> {
+        self.0.tally.statuses.to_vec()
+    }
+
+    /// The greatest closure error, relative to the size or radians; none where no row has one.
+    #[getter]
+    fn residual(&self) -> Option<f64> {
+        self.0.tally.residual
+    }
+}
+
 /// Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers.
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct Rows(pub loops::Rows);

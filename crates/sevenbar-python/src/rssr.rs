@@ -106,18 +106,11 @@ impl Rssr {
     ) -> PyResult<RawMotion> {
         let input = input_named(input)?;
         let law = law_rows(law);
-        let (motion, rows) = py.detach(|| {
-            let motion = self.0.motion(input);
-            let rows: Vec<Vec<Row>> = motion
-                .circuits
-                .iter()
-                .map(|circuit| match &law {
-                    None => self.0.rows(&motion, circuit, samples, speed),
-                    Some(law) => self.0.law_rows(&motion, circuit, law).concat(),
-                })
-                .collect();
-            (motion, rows)
-        });
+        let motion = py.detach(|| self.0.motion(input));
+        let rows = |circuit: &rssr::Circuit| match &law {
+            None => self.0.rows(&motion, circuit, samples, speed),
+            Some(law) => self.0.law_rows(&motion, circuit, law).concat(),
+        };
         let change_points = motion
             .change_points
             .iter()
@@ -130,14 +123,15 @@ impl Rssr {
             .collect();
         let circuits = motion
             .circuits
-            .into_iter()
-            .zip(&rows)
-            .map(|(circuit, rows)| {
-                let mut measures = rssr::measures_with_rows(circuit, rows, input);
+            .iter()
+            .map(|circuit| {
+                // the rows of one circuit at a time, for a million take room
+                let rows = py.detach(|| rows(circuit));
+                let mut measures = rssr::measures_with_rows(circuit.clone(), &rows, input);
                 if law.is_none() {
                     measures = measures.at_speed(speed);
                 }
-                Py::new(py, RawCircuit::new(arrays(py, rows)?, &measures, None))
+                Py::new(py, RawCircuit::new(arrays(py, &rows)?, &measures, None, None))
             })
             .collect::<PyResult<_>>()?;
         Ok(RawMotion {

@@ -3,7 +3,7 @@
 //! Columns are by their number, angles in radians, lengths in the unit of the description; extremes are the lowest value, the input
 //! there, the highest value and the input there.
 
-use crate::rows::Rows;
+use crate::rows::{Course, Rows};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use sevenbar_core::loops::{ChangePoint, Completeness, Count, Found, Search};
@@ -29,7 +29,8 @@ pub(crate) struct RowArrays {
     pub condition: Py<PyArray1<f64>>,
 }
 
-/// A circuit: its rows, what it is measured by at their speed, and of a general loop the rows as it has them.
+/// A circuit: its rows, what it is measured by at their speed, and of a general loop the rows as it has them; a long one has no rows and
+/// a course instead.
 #[pyclass(frozen, get_all, module = "sevenbar._core")]
 pub(crate) struct RawCircuit {
     joints: Py<PyArray3<f64>>,
@@ -52,10 +53,16 @@ pub(crate) struct RawCircuit {
     swing: Option<f64>,
     time_ratio: Option<f64>,
     rows: Option<Py<Rows>>,
+    course: Option<Py<Course>>,
 }
 
 impl RawCircuit {
-    pub fn new(arrays: RowArrays, measures: &CircuitMeasures, rows: Option<Py<Rows>>) -> Self {
+    pub fn new(
+        arrays: RowArrays,
+        measures: &CircuitMeasures,
+        rows: Option<Py<Rows>>,
+        course: Option<Py<Course>>,
+    ) -> Self {
         let RowArrays { joints, status, branch, mode, residual, condition } = arrays;
         let [velocity, acceleration, jerk] = measures.rates.map(extremes);
         Self {
@@ -79,6 +86,7 @@ impl RawCircuit {
             swing: measures.swing(),
             time_ratio: measures.time_ratio(),
             rows,
+            course,
         }
     }
 }

@@ -7,6 +7,7 @@ import sys
 import traceback
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -14,8 +15,11 @@ import typer
 import typer.core
 
 import sevenbar as sb
-from sevenbar.commands.deliver import check_out, deliver, tell_written
+from sevenbar.commands.command import Command
+from sevenbar.commands.consent import agree
+from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import check_law, input_column, input_value, law_of, point_of
+from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.options import (
     Figures,
     Force,
@@ -30,16 +34,21 @@ from sevenbar.commands.options import (
     Samples,
     Source,
     Speed,
+    Yes,
     figure_formats,
-    progress_bar,
     words,
 )
+from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.errors import RequestError, SevenbarError, shown
-from sevenbar.reporting.figures import KINDS, Places, write_figures
+from sevenbar.kinematics.linkage import sample_count
+from sevenbar.reporting.figures import KINDS, Places, figures_report
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
 
-#: Commands that live with what they do, imported when one of them is asked for: a report should not wait for
+#: Samples a turn of a motion that is drawn: two for each dot of a wide figure.
+MOST_DRAWN = 3600
+
+#: Commands that live with what they do, imported when one of them is called: a report should not wait for
 #: the studio.
 _ELSEWHERE = {
     "studio": "sevenbar.commands.studio:studio",
@@ -69,8 +78,16 @@ class _Commands(typer.core.TyperGroup):
         if isinstance(found, typer.Typer):
             return typer.main.get_command(found)
         alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-        alone.command(cmd_name)(found)
+        alone.command(cmd_name, cls=Command)(found)
         return typer.main.get_command(alone)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Runs the command; Ctrl+C outside of what has a bar of its own has written nothing."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            typer.echo("sevenbar: stopped; nothing is written", err=True)
+            raise typer.Exit(STOPPED) from None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         from sevenbar.description.gallery import names
@@ -89,7 +106,7 @@ app = typer.Typer(
     name="sevenbar",
     cls=_Commands,
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     help="Kinematics of closed spatial linkages: every assembly mode, whole circuits, exact rates.",
 )
@@ -104,7 +121,7 @@ def _root(
         raise typer.Exit
 
 
-@app.command()
+@app.command(cls=Command)
 def analyze(
     linkage: Source,
     samples: Samples = 360,
@@ -120,32 +137,37 @@ def analyze(
         Path | None, typer.Option(help="Write the moving linkage to this .gif or .mp4.")
     ] = None,
     force: Force = False,
+    yes: Yes = False,
     json: Json = False,
 ) -> None:
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar.reporting.report import motion_report
 
-    report = motion_report(figure_formats(figures, out))
+    formats = figure_formats(figures, out)
     check_law(law, speed)
     loaded = sb.load(linkage)
+    report = motion_report(formats)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint)
-    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
-    elsewhere = []
+    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, law=read)
+    if out is not None and read is None:
+        agree(table_ahead(moved, samples, "motion.csv"), yes=yes)
+    motion = long_motion(moved, samples)
+    # more rows than that are no better to look at
+    seen = motion if motion.samples <= MOST_DRAWN or read is not None else moved(MOST_DRAWN)
+    report = motion_report(formats, lambda _: seen)
+    elsewhere: dict[Path, Callable[[Path], object]] = {}
     if animate is not None:
-        film = _film(motion, animate, out, force=force)
+        film = _film(seen, animate, out, force=force)
         if out is not None and _same_folder(animate.parent, out):
             # of the files that appear together
-            report = replace(report, files={**report.files, animate.name: film})
+            report = replace(report, pages={**report.pages, animate.name: lambda _, path: film(path)})
         else:
-            film(motion, animate)
-            elsewhere = [animate]
+            elsewhere[animate] = film
     deliver(motion, report, out, json=json, force=force, also=elsewhere)
 
 
-def _film(
-    motion: sb.Motion, file: Path, out: Path | None, *, force: bool
-) -> Callable[[sb.Motion, Path], object]:
+def _film(motion: sb.Motion, file: Path, out: Path | None, *, force: bool) -> Callable[[Path], object]:
     """What draws the animation; raises where it cannot be, before anything is written."""
     from sevenbar.drawing.animate import animate, check_ending, check_target
     from sevenbar.kinematics.motion import chosen_circuit
@@ -159,7 +181,7 @@ def _film(
     check_targets([file], force=force)
     drawn = chosen_circuit(motion, posed_circuit(motion) or 0).index
 
-    def draw(motion: sb.Motion, path: Path) -> None:
+    def draw(path: Path) -> None:
         with progress_bar(f"drawing {path.name}") as progress:
             animate(motion, path, circuit=drawn, progress=progress)
 
@@ -171,7 +193,7 @@ def _same_folder(folder: Path, other: Path) -> bool:
     return folder.resolve() == other.resolve()
 
 
-@app.command()
+@app.command(cls=Command)
 def modes(
     linkage: Source,
     at: InputValue = "0",
@@ -189,24 +211,29 @@ def modes(
     column = input_column(loaded, input_joint)
     check_targets([] if out is None else [out], force=force)
     found = loaded.assembly_modes(input_value("--at", at, loaded, input_joint), input=loaded.columns[column])
+    elsewhere: dict[Path, Callable[[Path], object]] = {}
     if out is not None:
-        from sevenbar.drawing import plot
-
-        plot.save(plot.modes_overview(loaded, found, input=loaded.columns[column]), out)
-    deliver(found, modes_report(loaded, column), json=json, also=[] if out is None else [out])
+        elsewhere[out] = partial(_draw_modes, loaded, found, loaded.columns[column])
+    deliver(found, modes_report(loaded, column), json=json, also=elsewhere)
 
 
-@app.command("plot")
+def _draw_modes(linkage: sb.Linkage, found: sb.Modes, held: str, path: Path) -> None:
+    from sevenbar.drawing import plot
+
+    plot.save(plot.modes_overview(linkage, found, input=held), path)
+
+
+@app.command("plot", cls=Command)
 def plot_(
     linkage: Source,
     out: Annotated[Path, typer.Option(help="Folder for the figures.")],
     kind: Annotated[
-        list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all; may be repeated.")
+        list[str] | None, typer.Option(help=f"{', '.join(KINDS)} or all (the default); may be repeated.")
     ] = None,
     point: PointName = None,
     link: PointLink = None,
     at: PointPlace = None,
-    circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space.")] = 0,
+    circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space, counted from 0.")] = 0,
     samples: Samples = 360,
     input_joint: InputJoint = None,
     output: OutputJoint = None,
@@ -223,9 +250,12 @@ def plot_(
         if kind is not None and "point" in kind:
             raise RequestError("--kind: point needs a point; give --link and --at, as the linkage names none")
         kinds.remove("point")
-    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
-    written = write_figures(motion, out, kinds, points, circuit=circuit, figures=formats, force=force)
-    tell_written(written, below=False)
+    # more rows than that are no better to look at
+    motion = loaded.motion(
+        min(sample_count("samples", samples), MOST_DRAWN), input=input_joint, output=output, speed=speed
+    )
+    report = figures_report(kinds, points, circuit, formats)
+    tell_written(write_files(report, motion, out, force=force), below=False)
 
 
 def _kinds(given: list[str] | None) -> list[str]:
@@ -255,7 +285,7 @@ def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Place
     return {f"link {link} ({u:g}, {v:g}, {w:g})": (link, (u, v, w))}
 
 
-@app.command()
+@app.command(cls=Command)
 def gallery(
     name: Annotated[
         str | None, typer.Argument(metavar="[NAME]", help="The one whose file is printed.")

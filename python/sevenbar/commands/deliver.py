@@ -1,15 +1,17 @@
-"""How every command ends: files are written, what was found is printed, and the files are named."""
+"""How every command ends: what was found is printed, files are written, and they are named."""
 
 from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TypeVar
 
 import typer
 
+from sevenbar.commands.progress import progress_bar
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.folder import check_targets
 
@@ -29,18 +31,34 @@ def deliver(
     *,
     json: bool,
     force: bool = False,
-    also: Sequence[Path] = (),
+    also: Mapping[Path, Callable[[Path], object]] = MappingProxyType({}),
 ) -> None:
-    """Writes the files of a result into `out`, then prints it: for people with the files, or as JSON alone.
+    """Prints a result for people, writes its files into `out` and names them; JSON is printed at the end.
 
-    `also` are files that the command wrote elsewhere.
+    `also` are files elsewhere, each with what writes it.
     """
-    written = [*([] if out is None else report.write(found, out, force=force)), *also]
+    if out is not None:
+        # nothing is printed before it is certain that files can go there
+        check_targets([out / name for name in report.files_of(found)], force=force)
+    if not json:
+        report.print(found)
+        sys.stdout.flush()
+    written: list[Path] = []
+    if out is not None:
+        written += write_files(report, found, out, force=force)
+    for path, write in also.items():
+        write(path)
+        written.append(path)
     if json:
         typer.echo(report.json(found))
         return
-    report.print(found)
     tell_written(written)
+
+
+def write_files(report: Report[T], found: T, out: Path, *, force: bool) -> list[Path]:
+    """Writes the files of a result with a bar that names the one at work."""
+    with progress_bar(f"writing {out}") as progress:
+        return report.write(found, out, force=force, progress=progress)
 
 
 def command_line() -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typer
 
+from sevenbar.commands.command import Command
 from sevenbar.commands.function import function, swing
 from sevenbar.commands.path import path
 from sevenbar.commands.points import inertia, point
@@ -16,4 +17,4 @@ design = typer.Typer(
 )
 
 for _command in (function, swing, path, point, inertia):
-    design.command()(_command)
+    design.command(cls=Command)(_command)

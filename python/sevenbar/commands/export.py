@@ -2,16 +2,35 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.consent import agree
 from sevenbar.commands.deliver import tell_written
 from sevenbar.commands.given import input_value
-from sevenbar.commands.options import Force, InputJoint, OutputJoint, Samples, Source, Speed
+from sevenbar.commands.long_tables import long_motion, table_ahead
+from sevenbar.commands.options import Force, InputJoint, OutputJoint, Samples, Source, Speed, Yes
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.long_circuit import LONG
+from sevenbar.reporting.folder import check_targets
+
+if TYPE_CHECKING:
+    from sevenbar.export import Bodies, Table
+
+
+#: Tables that hold numbers as text.
+TEXT = (".csv", ".json", ".xlsx")
+
+
+def _formats(incomplete: str) -> list[str]:
+    from sevenbar.export import ALIASES, FORMATS
+
+    return [word for word in (*FORMATS, *ALIASES) if word.startswith(incomplete)]
 
 
 def export(
@@ -19,7 +38,9 @@ def export(
     to: Annotated[
         str | None,
         typer.Option(
-            help="csv, xlsx, parquet, npz, mat, json, glb, stl, step, urdf, mjcf, cmd; by --out's ending."
+            autocompletion=_formats,
+            help="Tables: csv, xlsx (or excel), parquet, npz, mat (or matlab), json. Bodies: glb, stl, step. Models: urdf, "
+            "mjcf (or mujoco), cmd (or adams). By the ending of --out where left out.",
         ),
     ] = None,
     out: Annotated[
@@ -45,28 +66,52 @@ def export(
         str | None, typer.Option(help="Of tables: file (the default), or si for metres and radians.")
     ] = None,
     force: Force = False,
+    yes: Yes = False,
 ) -> None:
     """Write files for other programs: motion, bodies in a pose, models (some: extras 'export', 'cad')."""
-    from sevenbar.export import FORMATS, ending_of, format_of
+    from sevenbar.export import FORMATS, Bodies, Table, ending_of, format_of
     from sevenbar.export import export as write_export
 
     if out is None:
         if to is None:
             raise RequestError(f"--to: missing; give a format, {', '.join(FORMATS)}, or --out")
         out = Path(f"{Path(linkage).stem}{ending_of(to)}")
-    format_of(out, to)
+    form = FORMATS[format_of(out, to)]
+    # a folder of many parts has no ending
+    check_targets([out] if out.suffix else [], force=force)
     loaded = sb.load(linkage)
     value = None if at is None else input_value("--at", at, loaded, input_joint)
-    written = write_export(
-        loaded.motion(samples, input=input_joint, output=output, speed=speed),
-        to,
-        out,
-        circuit=circuit,
-        at=value,
-        branch=branch,
-        units=units,  # type: ignore[arg-type]
-        force=force,
-    )
+    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed)
+    if isinstance(form, Table):
+        text = out.suffix.lower() in TEXT
+        agree(table_ahead(moved, samples, out.name, text=text), yes=yes)
+    motion = long_motion(moved, samples)
+    with progress_bar(f"writing {out}") as progress:
+        if isinstance(form, Bodies) or samples >= LONG:
+            progress(0, 0)
+        written = write_export(
+            motion,
+            to,
+            out,
+            circuit=circuit,
+            at=value,
+            branch=branch,
+            units=units,  # type: ignore[arg-type]
+            force=force,
+            progress=progress,
+        )
     tell_written(written, below=False)
+    for line in _notes(out, form):
+        typer.echo(line)
+
+
+def _notes(out: Path, form: Table | Bodies) -> list[str]:
+    """What to know of a file besides its name."""
+    from sevenbar.export import Bodies
+
+    notes = []
     if out.suffix.lower() == ".urdf":
-        typer.echo("URDF holds trees only: the joint that closes the loop is in the .loop.json file")
+        notes.append("URDF holds trees only: the joint that closes the loop is in the .loop.json file")
+    if isinstance(form, Bodies) and form.masses:
+        notes.append(f"masses are assumed: {form.masses}; put in your own where forces matter")
+    return notes

@@ -1,14 +1,13 @@
-"""What the commands share: arguments and options, and how progress is shown."""
+"""What the commands share: arguments and options."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from sevenbar.commands.command import count_of
 from sevenbar.errors import RequestError, shown
 
 
@@ -21,24 +20,39 @@ def _noted(source: str) -> str:
     return source
 
 
+def _known(incomplete: str) -> list[str]:
+    """Names of the gallery that begin so; none leaves the shell to its files."""
+    from sevenbar.description.gallery import names
+
+    return [name for name in names() if name.startswith(incomplete)]
+
+
 Source = Annotated[
     str,
     typer.Argument(
         metavar="FILE|NAME",
         help="A TOML file, a table (.csv, .xlsx), or a name of the gallery.",
         callback=_noted,
+        autocompletion=_known,
     ),
 ]
-Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
+Samples = Annotated[
+    int,
+    typer.Option(
+        parser=count_of("--samples"), metavar="COUNT", help="Inputs in a full turn, as in 720 or 1e5."
+    ),
+]
 Figures = Annotated[
-    list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+    list[str] | None,
+    typer.Option(help="Format of the figures: png (the default), svg, pdf; may be repeated."),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Go on without asking where it is much or long.")]
 InputJoint = Annotated[
     str | None, typer.Option("--input", help="The joint that drives; the file's by default.")
 ]
 OutputJoint = Annotated[
-    str | None, typer.Option("--output", help="The joint whose motion is told; the file's by default.")
+    str | None, typer.Option("--output", help="The joint whose motion is reported; the file's by default.")
 ]
 InputValue = Annotated[
     str,
@@ -48,12 +62,22 @@ InputValue = Annotated[
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object and nothing else.")]
 Law = Annotated[
-    Path | None, typer.Option(help="CSV file of an input law: time, value of the input, perhaps its rates.")
+    Path | None,
+    typer.Option(
+        help="CSV file of an input law: time, value of the input, perhaps its rates; in place of --speed."
+    ),
 ]
 PointName = Annotated[str | None, typer.Option("--point", help="A named point of the linkage.")]
-PointLink = Annotated[int | None, typer.Option("--link", help="The link of a point given by --at.")]
-PointPlace = Annotated[str | None, typer.Option("--at", help="Where on the link, as in '-100,-90,-80'.")]
-Speed = Annotated[str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'.")]
+PointLink = Annotated[
+    int | None, typer.Option("--link", help="The link of a point given by --at, counted from 1.")
+]
+PointPlace = Annotated[
+    str | None,
+    typer.Option("--at", help="Where on the link, in the file's length unit, as in '-100,-90,-80'."),
+]
+Speed = Annotated[
+    str | None, typer.Option(help="Speed of the input, as in '10 rad/s' or '60 rpm'; the file's by default.")
+]
 
 
 def words(given: list[str]) -> list[str]:
@@ -79,48 +103,3 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     if out is None:
         raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
     return endings
-
-
-@contextmanager
-def progress_bar(title: str, *, rate: bool = False) -> Iterator[Callable[[int, int], None]]:
-    """A bar on the error stream, so that what is printed can be piped on; with `rate` how many a second.
-
-    It is shown when the first progress is told, so that a refusal stands alone and short work has none.
-    """
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        ProgressColumn,
-        Task,
-        TaskID,
-        TextColumn,
-        TimeRemainingColumn,
-    )
-    from rich.text import Text
-
-    class Rate(ProgressColumn):
-        """Steps a second."""
-
-        def render(self, task: Task) -> Text:
-            speed = task.finished_speed or task.speed
-            return Text("" if speed is None else f"{speed:,.0f}/s")
-
-    columns = [TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()]
-    bar = Progress(*columns, *([Rate()] if rate else []), TimeRemainingColumn(), console=Console(stderr=True))
-    task: TaskID | None = None
-
-    def progress(done: int, total: int) -> None:
-        nonlocal task
-        if task is None:
-            bar.start()
-            # what was there already is no rate
-            task = bar.add_task(title, total=total, completed=done)
-        bar.update(task, completed=done, total=total)
-
-    try:
-        yield progress
-    finally:
-        if task is not None:
-            bar.stop()

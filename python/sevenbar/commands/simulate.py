@@ -8,6 +8,8 @@ from typing import Annotated
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.command import count_of
+from sevenbar.commands.consent import Ahead, agree
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
@@ -17,22 +19,32 @@ from sevenbar.commands.options import (
     OutputJoint,
     Source,
     Speed,
+    Yes,
     figure_formats,
-    progress_bar,
 )
+from sevenbar.commands.progress import progress_bar
+
+#: Steps that an engine makes in a second, for an RSSR or a 7R on a machine of today.
+STEPS = {"exudyn": 1000.0, "mujoco": 10000.0}
 
 
 def simulate(
     linkage: Source,
     engine: Annotated[str, typer.Option(help="exudyn (hard constraints) or mujoco (soft ones).")] = "exudyn",
-    steps: Annotated[int, typer.Option(help="Steps in a full turn of the input.")] = 3600,
-    circuit: Annotated[int, typer.Option(help="The circuit that is followed.")] = 0,
+    steps: Annotated[
+        int,
+        typer.Option(
+            parser=count_of("--steps"), metavar="COUNT", help="Steps in a full turn of the input, as in 1e4."
+        ),
+    ] = 3600,
+    circuit: Annotated[int, typer.Option(help="The circuit that is followed, counted from 0.")] = 0,
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the JSON, the CSV and the figures.")] = None,
     figures: Figures = None,
     force: Force = False,
+    yes: Yes = False,
     json: Json = False,
 ) -> None:
     """Build the linkage in another program, drive it, and compare (extra 'simulate')."""
@@ -44,7 +56,10 @@ def simulate(
     loaded = sb.load(linkage)
     report = simulation_report(engine, formats)
     check_out(report, out, force=force)
+    ahead = Ahead("--steps", f"{steps} steps in {engine}", seconds=steps / STEPS[engine])
+    agree(ahead, yes=yes)
     way, model = prepared(loaded, steps=steps, circuit=circuit, input=input_joint, output=output, speed=speed)
     with progress_bar(f"{engine}: {loaded.name}") as progress:
+        progress(0, 0)
         run = moved(way, model, engine, progress)
     deliver(run, report, out, json=json, force=force)

@@ -19,6 +19,7 @@ from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.export.pose import take
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
+from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.reporting.folder import check_targets, fill_folder
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class Table:
     """A kind of file that holds all rows of every circuit: its endings, and what writes it."""
 
     endings: tuple[str, ...]
-    write: Callable[[Motion, Path, Units], None]
+    write: Callable[[Motion, Path, Units, Progress], None]
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,9 @@ class Bodies:
     """A kind of file that holds the linkage's bodies in one pose: its endings, and what writes it."""
 
     endings: tuple[str, ...]
-    write: Callable[[Assembly, Path], None]
+    write: Callable[[Assembly, Path, Progress], None]
+    #: Whose masses it holds, for nothing states what links are made of.
+    masses: str = ""
 
 
 Format = Table | Bodies
@@ -50,77 +53,80 @@ Format = Table | Bodies
 # each writer is imported when it is used: behind them stand large libraries
 
 
-def _csv(motion: Motion, path: Path, units: Units) -> None:
+def _csv(motion: Motion, path: Path, units: Units, progress: Progress) -> None:
     from sevenbar.export import tables
 
-    tables.write_csv(motion, path, units)
+    tables.write_csv(motion, path, units, progress)
 
 
-def _xlsx(motion: Motion, path: Path, units: Units) -> None:
+def _xlsx(motion: Motion, path: Path, units: Units, _: Progress) -> None:
     from sevenbar.export import workbook
 
     workbook.write_xlsx(motion, path, units)
 
 
-def _parquet(motion: Motion, path: Path, units: Units) -> None:
+def _parquet(motion: Motion, path: Path, units: Units, _: Progress) -> None:
     from sevenbar.export import tables
 
     tables.write_parquet(motion, path, units)
 
 
-def _npz(motion: Motion, path: Path, units: Units) -> None:
+def _npz(motion: Motion, path: Path, units: Units, _: Progress) -> None:
     from sevenbar.export import tables
 
     tables.write_npz(motion, path, units)
 
 
-def _mat(motion: Motion, path: Path, units: Units) -> None:
+def _mat(motion: Motion, path: Path, units: Units, _: Progress) -> None:
     from sevenbar.export import tables
 
     tables.write_mat(motion, path, units)
 
 
-def _json(motion: Motion, path: Path, units: Units) -> None:
+def _json(motion: Motion, path: Path, units: Units, _: Progress) -> None:
     from sevenbar.export import tables
 
     tables.write_json(motion, path, units)
 
 
-def _glb(assembly: Assembly, path: Path) -> None:
+def _glb(assembly: Assembly, path: Path, progress: Progress) -> None:
     from sevenbar.export import meshes
 
-    meshes.write_glb(assembly, path)
+    meshes.write_glb(assembly, path, progress)
 
 
-def _stl(assembly: Assembly, path: Path) -> None:
+def _stl(assembly: Assembly, path: Path, progress: Progress) -> None:
     from sevenbar.export import meshes
 
-    meshes.write_stl(assembly, path)
+    meshes.write_stl(assembly, path, progress)
 
 
-def _step(assembly: Assembly, path: Path) -> None:
+def _step(assembly: Assembly, path: Path, progress: Progress) -> None:
     from sevenbar.export import cad
 
-    cad.write_step(assembly, path)
+    cad.write_step(assembly, path, progress)
 
 
-def _urdf(assembly: Assembly, path: Path) -> None:
+def _urdf(assembly: Assembly, path: Path, _: Progress) -> None:
     from sevenbar.export import urdf
 
     urdf.write_urdf(assembly, path)
 
 
-def _mjcf(assembly: Assembly, path: Path) -> None:
+def _mjcf(assembly: Assembly, path: Path, _: Progress) -> None:
     from sevenbar.export import model
 
     model.write_mjcf(assembly, path)
 
 
-def _cmd(assembly: Assembly, path: Path) -> None:
+def _cmd(assembly: Assembly, path: Path, _: Progress) -> None:
     from sevenbar.export import adams
 
     adams.write_cmd(assembly, path)
 
+
+#: Masses of bodies as they are drawn (`mass.DENSITY`).
+OF_STEEL = "those of the drawn bodies in steel, 7850 kg/m^3"
 
 #: All kinds of file, by the word that asks for them.
 FORMATS: dict[str, Format] = {
@@ -133,14 +139,44 @@ FORMATS: dict[str, Format] = {
     "glb": Bodies((".glb",), _glb),
     "stl": Bodies((".stl",), _stl),
     "step": Bodies((".step", ".stp"), _step),
-    "urdf": Bodies((".urdf",), _urdf),
-    "mjcf": Bodies((".xml", ".mjcf"), _mjcf),
-    "cmd": Bodies((".cmd",), _cmd),
+    "urdf": Bodies((".urdf",), _urdf, OF_STEEL),
+    "mjcf": Bodies((".xml", ".mjcf"), _mjcf, "1 kg for every body"),
+    "cmd": Bodies((".cmd",), _cmd, OF_STEEL),
 }
 
+#: What people call a kind of file by the program that reads it.
+ALIASES = {
+    "adams": "cmd",
+    "excel": "xlsx",
+    "gltf": "glb",
+    "matlab": "mat",
+    "mujoco": "mjcf",
+    "numpy": "npz",
+    "octave": "mat",
+    "pandas": "parquet",
+    "ros": "urdf",
+    "spreadsheet": "xlsx",
+}
 
-#: Other words for them: the programs that read them.
-ALIASES = {"excel": "xlsx"}
+#: What to give in place of a kind of file that is not written, and that people ask for.
+INSTEAD = {
+    "dxf": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
+    "dwg": "no flat drawings are written; give step for CAD, or use: sevenbar plot --figures svg",
+    "svg": "pictures are drawn with: sevenbar plot --figures svg",
+    "png": "pictures are drawn with: sevenbar plot --figures png",
+    "gif": "films are made with: sevenbar analyze --animate move.gif",
+    "mp4": "films are made with: sevenbar analyze --animate move.mp4",
+    "obj": "give glb or stl for meshes",
+    "3mf": "give stl for printing",
+    "iges": "give step, which every CAD program reads",
+    "igs": "give step, which every CAD program reads",
+    "parasolid": "give step, which every CAD program reads",
+    "solidworks": "give step, which every CAD program reads",
+    "inventor": "give step, which every CAD program reads",
+    "simscape": "give urdf, which smimport reads, and close the loop by the .loop.json file",
+    "simulink": "give urdf, which smimport reads, and close the loop by the .loop.json file",
+    "xls": "give xlsx",
+}
 
 
 def export(
@@ -154,15 +190,18 @@ def export(
     samples: int = 360,
     units: Units | None = None,
     force: bool = False,
+    progress: Progress = no_progress,
 ) -> list[Path]:
     """Writes a linkage or its motion for another program; returns the files written.
 
-    `to` is a word of `FORMATS`; `None` tells it from the path's ending. Tables hold every circuit; `units`
-    "file" (the default) keeps the linkage's length unit, "si" takes metres and radians. The others hold one
-    pose: of `circuit` (0), at the input `at` [rad, or length], on its pass `branch` (0). `stl` with a path
-    without an ending is a folder with one file for each part. `samples` are inputs in a turn, for a linkage.
+    `to` is a word of `FORMATS` or of `ALIASES`; `None` takes it from the path's ending. Tables hold every
+    circuit; `units` "file" (the default) keeps the linkage's length unit, "si" takes metres and radians. The
+    others hold one pose: of `circuit` (0), at the input `at` [rad, or length], on its pass `branch` (0).
+    `stl` with a path without an ending is a folder with one file for each part. `samples` are inputs in a
+    turn, for a linkage.
 
-    Files appear whole or not at all, and take the place of others only with `force`. Raises `RequestError`
+    `progress(done, total, what)` is called along long work. Files appear whole or not at all, and take the
+    place of others only with `force`. Raises `RequestError`
     for what cannot be, `MissingExtraError` for a library that is not installed, and `OutputError` for a file
     that exists or cannot be written.
 
@@ -183,7 +222,9 @@ def export(
         if not motion.circuits:
             raise RequestError(f"motion: {motion.motion_type}, so there are no rows to export")
         return fill_folder(
-            target.parent, lambda aside: form.write(motion, aside / target.name, units or "file"), force=force
+            target.parent,
+            lambda aside: form.write(motion, aside / target.name, units or "file", progress),
+            force=force,
         )
     from sevenbar.export.layout import arrange
 
@@ -192,8 +233,10 @@ def export(
         from sevenbar.export.meshes import write_stl_parts
 
         check_targets([target / f"{part.name}.stl" for part in assembly.parts], force=force)
-        return fill_folder(target, lambda aside: write_stl_parts(assembly, aside), force=force)
-    return fill_folder(target.parent, lambda aside: form.write(assembly, aside / target.name), force=force)
+        return fill_folder(target, lambda aside: write_stl_parts(assembly, aside, progress), force=force)
+    return fill_folder(
+        target.parent, lambda aside: form.write(assembly, aside / target.name, progress), force=force
+    )
 
 
 def format_of(path: Path, to: str | None) -> str:
@@ -218,7 +261,7 @@ def format_of(path: Path, to: str | None) -> str:
 def ending_of(to: str) -> str:
     """The ending that a file of a kind has where none is given; raises `RequestError` for another word."""
     word = to.lower().removeprefix(".")
-    ending = f".{ALIASES.get(word, word)}"
+    ending = "." + ALIASES.get(word, word)
     own = FORMATS[_word(to)].endings
     # "stp" is asked for by its ending, "mjcf" by its name: MuJoCo's files end in .xml
     return ending if ending in own and ending[1:] not in FORMATS else own[0]
@@ -230,8 +273,8 @@ def _word(to: str) -> str:
     word = ALIASES.get(word, word)
     known = {ending[1:]: name for name, form in FORMATS.items() for ending in form.endings}
     if word not in known:
-        near = suggestion(word, (*FORMATS, *ALIASES))
-        raise RequestError(f"to: {shown(to)} is not a format; {near}allowed: {', '.join(FORMATS)}")
+        help_on = f"{INSTEAD[word]}; " if word in INSTEAD else suggestion(word, [*FORMATS, *ALIASES])
+        raise RequestError(f"to: {shown(to)} is not a format; {help_on}allowed: {', '.join(FORMATS)}")
     return known[word]
 
 

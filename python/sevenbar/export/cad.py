@@ -11,28 +11,38 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, OutputError
 from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
 from sevenbar.kinematics.rigid import perpendicular
+from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.text.units import LENGTHS
 
 
-def write_step(assembly: Assembly, path: Path) -> None:
+def write_step(
+    assembly: Assembly,
+    path: Path,
+    progress: Progress = no_progress,
+) -> None:
     """Writes an assembly of one component for each part, in place in the pose, in millimetres.
 
     Each component has its part's name and colour, and its own coordinates are those of its link's frame.
     """
+    steps = len(assembly.parts) + 1
+    progress(0, steps, "build123d")
     library = _build123d()
     linkage = assembly.pose.linkage
     scale = LENGTHS[linkage.length_unit] / LENGTHS["mm"]
     components = []
-    for part in assembly.parts:
+    for done, part in enumerate(assembly.parts):
+        progress(done, steps, part.name)
         shape = solid(part, scale)
         frame = assembly.frames[part.body]
         shape.label = part.name
         shape.color = library.Color(*(c / 255 for c in bytes.fromhex(part.colour[1:])))
         shape.location = library.Location(_plane(library, scale * frame[:3, 3], frame[:3, 0], frame[:3, 2]))
         components.append(shape)
+    progress(steps - 1, steps, path.name)
     whole = library.Compound(label=linkage.name, children=components)
     if not library.export_step(whole, path):
         raise OutputError(f"{path}: the STEP writer of build123d failed; nothing was written")
+    progress(steps, steps, "")
 
 
 def solid(part: Part, scale: float) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 
 from sevenbar.errors import MissingExtraError
 from sevenbar.export.parts import Assembly, Ball, Part, Rod, Solid, frame_of, length_of
+from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.text.units import LENGTHS
 
 #: Flat faces round a rod, and rings of a ball: 0.2 % of the radius from round.
@@ -18,7 +19,11 @@ SECTIONS = 48
 TO_GLTF = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
-def write_glb(assembly: Assembly, path: Path) -> None:
+def write_glb(
+    assembly: Assembly,
+    path: Path,
+    progress: Progress = no_progress,
+) -> None:
     """Writes the assembly as a scene [m]: a node for each link, in place by its matrix, parts below it."""
     library = _trimesh()
     scene = library.Scene(base_frame="world")
@@ -28,7 +33,8 @@ def write_glb(assembly: Assembly, path: Path) -> None:
     scene.graph.update(frame_to="linkage", frame_from="world", matrix=TO_GLTF)
     for name, frame in zip(assembly.bodies, assembly.frames, strict=True):
         scene.graph.update(frame_to=name, frame_from="linkage", matrix=metres @ frame @ back)
-    for part in assembly.parts:
+    for done, part in enumerate(assembly.parts):
+        progress(done, len(assembly.parts), part.name)
         solid = mesh(part)
         solid.apply_transform(metres)
         solid.visual = library.visual.TextureVisuals(
@@ -46,21 +52,33 @@ def write_glb(assembly: Assembly, path: Path) -> None:
             parent_node_name=assembly.bodies[part.body],
         )
     path.write_bytes(scene.export(file_type="glb"))
+    progress(len(assembly.parts), len(assembly.parts), "")
 
 
-def write_stl(assembly: Assembly, path: Path) -> None:
+def write_stl(
+    assembly: Assembly,
+    path: Path,
+    progress: Progress = no_progress,
+) -> None:
     """Writes all parts in the pose into one binary STL, in the linkage's own length unit and report frame."""
     placed = []
-    for part in assembly.parts:
+    for done, part in enumerate(assembly.parts):
+        progress(done, len(assembly.parts), part.name)
         solid = mesh(part)
         solid.apply_transform(assembly.frames[part.body])
         placed.append(solid)
     path.write_bytes(_trimesh().util.concatenate(placed).export(file_type="stl"))
+    progress(len(assembly.parts), len(assembly.parts), "")
 
 
-def write_stl_parts(assembly: Assembly, folder: Path) -> None:
+def write_stl_parts(
+    assembly: Assembly,
+    folder: Path,
+    progress: Progress = no_progress,
+) -> None:
     """Writes each part into a binary STL of its own, in its link's frame and the linkage's length unit."""
-    for part in assembly.parts:
+    for done, part in enumerate(assembly.parts, start=1):
+        progress(done, len(assembly.parts), part.name)
         (folder / f"{part.name}.stl").write_bytes(mesh(part).export(file_type="stl"))
 
 

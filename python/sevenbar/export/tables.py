@@ -15,16 +15,23 @@ import numpy as np
 from sevenbar.errors import MissingExtraError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.folder import write_columns
+from sevenbar.reporting.files import Progress, no_progress
+from sevenbar.reporting.folder import write_parts
 from sevenbar.text.units import LENGTHS
 
 #: "file": lengths in the linkage's own unit, and angles of flat tables in degrees; "si": metres and radians.
 Units = Literal["file", "si"]
 
 
-def write_csv(motion: Motion, path: Path, units: Units) -> None:
+def write_csv(
+    motion: Motion,
+    path: Path,
+    units: Units,
+    progress: Progress = no_progress,
+) -> None:
     """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
-    write_columns(path, motion.columns(si=units == "si"))
+    rows = sum(circuit.tally.rows for circuit in motion)
+    write_parts(path, motion.column_parts(si=units == "si"), lambda done: progress(done, rows, "rows"))
 
 
 def write_parquet(motion: Motion, path: Path, units: Units) -> None:
@@ -34,13 +41,22 @@ def write_parquet(motion: Motion, path: Path, units: Units) -> None:
         from pyarrow import parquet
     except ImportError:
         raise _missing("parquet", "pyarrow") from None
-    columns = {name: np.asarray(values) for name, values in motion.columns(si=units == "si").items()}
-    arrays = [
-        arrow.array(values.tolist() if values.dtype.kind == "U" else values) for values in columns.values()
-    ]
-    table = arrow.table(arrays, names=list(columns))
-    table = table.replace_schema_metadata({"sevenbar": json.dumps(note(motion, units, flat=True))})
-    parquet.write_table(table, path)
+    about = {"sevenbar": json.dumps(note(motion, units, flat=True))}
+    writer = None
+    for part in motion.column_parts(si=units == "si"):
+        columns = {name: np.asarray(values) for name, values in part.items()}
+        arrays = [
+            arrow.array(values.tolist() if values.dtype.kind == "U" else values)
+            for values in columns.values()
+        ]
+        table = arrow.table(arrays, names=list(columns)).replace_schema_metadata(about)
+        if writer is None:
+            writer = parquet.ParquetWriter(path, table.schema)
+        writer.write_table(table)
+        # or they would live until the next ones are made
+        del part, columns, arrays, table
+    assert writer is not None
+    writer.close()
 
 
 def write_npz(motion: Motion, path: Path, units: Units) -> None:

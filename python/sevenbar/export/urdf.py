@@ -41,7 +41,9 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
     )
     for colour in dict.fromkeys(part.colour for part in assembly.parts):
         channels = " ".join(f"{c / 255:.6g}" for c in bytes.fromhex(colour[1:]))
-        Xml.SubElement(Xml.SubElement(robot, "material", name=colour), "color", rgba=f"{channels} 1")
+        Xml.SubElement(
+            Xml.SubElement(robot, "material", name=_material(colour)), "color", rgba=f"{channels} 1"
+        )
     weights = masses(assembly)
     _add_link(robot, assembly, assembly.bodies.index("ground"), "ground", None, scale)
     parent, mount = "ground", linkage.base
@@ -147,7 +149,12 @@ def _add_link(
         for solid in part.add:
             visual = Xml.SubElement(link, "visual")
             _geometry(visual, solid, scale)
-            Xml.SubElement(visual, "material", name=part.colour)
+            Xml.SubElement(visual, "material", name=_material(part.colour))
+
+
+def _material(colour: str) -> str:
+    """The name of a colour's material: some importers take letters, digits and underscores only."""
+    return f"colour_{colour.removeprefix('#')}"
 
 
 def _geometry(visual: Xml.Element, solid: Solid, scale: float) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -154,6 +155,16 @@ class Law(Printed):
         return np.column_stack([self.q, self.dq, self.ddq, self.dddq])
 
 
+@dataclass(frozen=True)
+class Tally:
+    """How many rows a circuit has, how many of each status, and their greatest closure error [length]."""
+
+    rows: int
+    statuses: Mapping[str, int]
+    #: NaN where no row has one.
+    residual: float
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Circuit(Printed):
     """One connected motion, row by row along it.
@@ -211,6 +222,21 @@ class Circuit(Printed):
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
     _sensitivity: Callable[[Circuit], Sensitivity] = field(repr=False)
+
+    @cached_property
+    def tally(self) -> Tally:
+        """What there is to say of the rows as a whole."""
+        words, counts = np.unique(self.status, return_counts=True)
+        known = self.residual[np.isfinite(self.residual)]
+        return Tally(
+            len(self.time),
+            {str(word): int(count) for word, count in zip(words, counts, strict=True)},
+            float(known.max()) if known.size else math.nan,
+        )
+
+    def fleeting(self) -> Circuit:
+        """The circuit for one look at its rows: those of a long one are not kept with it."""
+        return self
 
     @property
     def input(self) -> Floats:

@@ -18,6 +18,7 @@ from sevenbar.kinematics.circuits import (
     Integers,
     Law,
     Sensitivity,
+    Tally,
     Trace,
     Words,
 )
@@ -25,6 +26,9 @@ from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search
 
 _STATUS_WORDS = np.array(STATUSES)
+
+#: Joint values with three derivatives (4, n, columns), and status, pass, residual, condition (n,).
+CoreRows = tuple[Floats, Integers, Integers, Floats, Floats]
 
 
 def change_points_from(raw: _core.RawMotion, column: int) -> tuple[ChangePoint, ...]:
@@ -60,6 +64,13 @@ def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
     )
 
 
+def tally_from(course: _core.Course, size: float) -> Tally:
+    """What there is to say of the rows of a course; `size` is that of which residuals are parts."""
+    counts = {word: count for word, count in zip(STATUSES, course.statuses, strict=True) if count}
+    worst = math.nan if course.residual is None else course.residual * size
+    return Tally(sum(course.statuses), dict(sorted(counts.items())), worst)
+
+
 def circuit_from(
     raw: _core.RawCircuit,
     *,
@@ -71,20 +82,24 @@ def circuit_from(
     size: float,
     point: Callable[[Integers, Words, int, Floats], Trace],
     sensitivity: Callable[[Circuit], Sensitivity],
+    rows: CoreRows | None = None,
 ) -> Circuit:
     """A circuit as the core has it.
 
     `columns` are input and output, `size` that of which residuals are parts; `point` traces a point along
-    rows in an order and of a status.
+    rows in an order and of a status. `rows` are those of a course, where the circuit has one.
     """
     input_column, output_column = columns
-    (q, dq, ddq, dddq), order = raw.joints, np.arange(len(raw.status))
+    joints, statuses, branch, residual, condition = rows or (
+        raw.joints, raw.status, raw.branch, raw.residual, raw.condition,
+    )  # fmt: skip
+    (q, dq, ddq, dddq), order = joints, np.arange(len(statuses))
     turns_back = any(kind == "input" for kind, *_ in raw.dead_centres)
-    if raw.mode is None and speed < 0 and law is None and raw.turns and not turns_back:
+    if len(order) and raw.mode is None and speed < 0 and law is None and raw.turns and not turns_back:
         order = np.append(order[:1], order[:0:-1])
         turns = np.array([kind == "turn" for kind in linkage.column_kinds])
         q, dq, ddq, dddq = _backwards(q, turns)[order], dq[order], ddq[order], dddq[order]
-    status = _STATUS_WORDS[raw.status[order]]
+    status = _STATUS_WORDS[statuses[order]]
     # the pose of a row may be known where a ball's turns are not
     status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
     inputs = q[:, input_column]
@@ -106,10 +121,10 @@ def circuit_from(
         dddq=dddq,
         time=driven_time(inputs, speed, law),
         status=status,
-        branch=raw.branch[order],
+        branch=branch[order],
         mode=np.full(len(order), index) if raw.mode is None else raw.mode,
-        residual=raw.residual[order] * size,
-        condition=raw.condition[order],
+        residual=residual[order] * size,
+        condition=condition[order],
         dead_centres=tuple(DeadCentre(*d) for d in raw.dead_centres),
         input_range=raw.input_range,
         output_range=raw.output_range,

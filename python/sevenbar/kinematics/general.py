@@ -14,9 +14,10 @@ from sevenbar import _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit, Integers, Law, Trace, Words
-from sevenbar.kinematics.from_core import change_points_from, circuit_from, search_from
+from sevenbar.kinematics.from_core import change_points_from, circuit_from, search_from, tally_from
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joints import Z
+from sevenbar.kinematics.long_circuit import LONG, LongCircuit
 from sevenbar.kinematics.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.motion import Modes, Motion, Solvable
 from sevenbar.kinematics.rigid import axis_to_z, inverse
@@ -159,7 +160,8 @@ class GeneralLoop:
         """Every circuit over the whole range of one column."""
         linkage = self._linkage
         table = None if law is None else law.table
-        raw = self._solve(column, partial(self._core.motion, column, output, samples, speed, table))
+        keep = samples < LONG
+        raw = self._solve(column, partial(self._core.motion, column, output, samples, speed, table, keep))
         assert raw.search is not None
         mobility = self._mobility(raw.search.found)
         if law is None:
@@ -253,7 +255,8 @@ class GeneralLoop:
     def _circuit(
         self, index: int, raw: _core.RawCircuit, columns: tuple[int, int], speed: float, law: Law | None
     ) -> Circuit:
-        return circuit_from(
+        known = partial(
+            circuit_from,
             raw,
             linkage=self._linkage,
             index=index,
@@ -261,9 +264,17 @@ class GeneralLoop:
             speed=speed,
             law=law,
             size=self.size,
-            point=partial(self._trace, raw.rows),
             sensitivity=partial(sensitivity_of, self._linkage),
         )
+        if raw.course is None:
+            return known(point=partial(self._trace, raw.rows))
+        course = raw.course
+
+        def made() -> Circuit:
+            joints, status, branch, residual, condition, rows = self._core.rows(course)
+            return known(point=partial(self._trace, rows), rows=(joints, status, branch, residual, condition))
+
+        return LongCircuit.of(known(point=partial(self._trace, None)), tally_from(course, self.size), made)
 
     def _trace(self, rows: _core.Rows | None, order: Integers, status: Words, link: int, at: Floats) -> Trace:
         """A point, `at` in its link's own frame, along rows in an order and of a status."""

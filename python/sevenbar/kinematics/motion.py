@@ -270,10 +270,20 @@ class Motion(Printed):
         >>> list(sb.load("planar_4r").motion().columns())[:6]
         ['circuit', 'branch', 'sample', 'status', 'time_s', 'theta_1_deg']
         """
-        parts = [_circuit_columns(circuit, self.linkage, si) for circuit in self.circuits]
+        parts = list(self.column_parts(si=si))
         if not parts:
             return {}
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def column_parts(self, *, si: bool = False) -> Iterator[dict[str, npt.NDArray[Any]]]:
+        """`columns` circuit by circuit: the rows of a long one are dropped with its part.
+
+        >>> import sevenbar as sb
+        >>> [len(part["status"]) for part in sb.load("rssr").motion(36).column_parts()]
+        [36, 36]
+        """
+        for circuit in self.circuits:
+            yield _circuit_columns(circuit.fleeting(), self.linkage, si)
 
     def to_frame(self) -> pd.DataFrame:
         """`columns` as a pandas table (extra `[frame]`)."""

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sevenbar.kinematics.motion import Motion, chosen_circuit
-from sevenbar.reporting.folder import fill_folder
+from sevenbar.reporting.files import Files, Report, Write, figure_files
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,15 +39,24 @@ def write_figures(
     `kinds` of `KINDS`; `points` (link, at) by name, for the kind point. Raises `OutputError` where one of the
     files exists and `force` is not given.
     """
-    return fill_folder(
-        Path(folder), lambda staging: _draw(motion, staging, kinds, points, circuit, figures), force=force
+    return figures_report(kinds, points, circuit, figures).write(motion, folder, force=force)
+
+
+def figures_report(
+    kinds: Sequence[str], points: Places, circuit: int, formats: Sequence[str]
+) -> Report[Motion]:
+    """Figures alone, for who writes them: as `write_figures`."""
+    return Report(
+        lambda motion: "",  # noqa: ARG005
+        lambda motion: {},  # noqa: ARG005
+        figures=lambda motion: _files(motion, kinds, points, circuit, formats),
     )
 
 
-def draw_for_report(motion: Motion, folder: Path, formats: Sequence[str]) -> None:
-    """Draws configuration and motion; but for an RSSR, whose curves show all, also joints and points."""
+def report_figures(motion: Motion, formats: Sequence[str]) -> Files[Motion]:
+    """Configuration and motion; unless of an RSSR, whose curves show all, also joints and points."""
     if not motion.circuits:
-        return
+        return {}
     general = motion.linkage.kind != "RSSR"
     posed = posed_circuit(motion)
     kinds = ["curves", *(["joints"] if general else [])]
@@ -56,30 +66,34 @@ def draw_for_report(motion: Motion, folder: Path, formats: Sequence[str]) -> Non
         moves = np.unique(inputs[np.isfinite(inputs)]).size > 1
         kinds += ["configuration", *(["point"] if general and moves else [])]
     points = {point.name: (point.link, point.at) for point in motion.linkage.points}
-    _draw(motion, folder, kinds, points, posed or 0, formats)
+    return _files(motion, kinds, points, posed or 0, formats)
 
 
 def posed_circuit(motion: Motion) -> int | None:
     """The first circuit with a pose to draw; `None` where a law leaves the range of all."""
-    posed = (circuit.index for circuit in motion if (circuit.status != "no-solution").any())
+    posed = (circuit.index for circuit in motion if set(circuit.tally.statuses) - {"no-solution"})
     return next(posed, None)
 
 
-def _draw(
-    motion: Motion, folder: Path, kinds: Sequence[str], points: Places, circuit: int, formats: Sequence[str]
-) -> None:
+def _files(
+    motion: Motion, kinds: Sequence[str], points: Places, circuit: int, formats: Sequence[str]
+) -> Files[Motion]:
+    """What draws and writes each figure, by the file's name."""
     from sevenbar.drawing import plot
 
-    def made() -> Iterator[tuple[str, Figure]]:
+    def made() -> Iterator[tuple[str, Callable[[], Figure]]]:
         if "curves" in kinds:
-            yield "motion", plot.curves(motion)
+            yield "motion", lambda: plot.curves(motion)
         if "joints" in kinds:
-            yield "joints", plot.joints(motion)
+            yield "joints", lambda: plot.joints(motion)
         if "configuration" in kinds:
-            yield "configuration", plot.configuration(motion, circuit)
+            yield "configuration", lambda: plot.configuration(motion, circuit)
         if "point" in kinds:
             for name, point in points.items():
-                yield f"path_{_file_name(name)}", plot.point_path(motion, point, circuit, name=name)
+                yield (
+                    f"path_{_file_name(name)}",
+                    partial(plot.point_path, motion, point, circuit, name=name),
+                )
         if "modes" in kinds:
             chosen = chosen_circuit(motion, circuit)
             # a limit is no place to show modes at: there two are one
@@ -88,12 +102,17 @@ def _draw(
             modes = motion.linkage.assembly_modes(value, input=motion.input)
             yield (
                 "modes",
-                plot.modes_overview(motion.linkage, modes, input=motion.input, output=motion.output),
+                lambda: plot.modes_overview(motion.linkage, modes, input=motion.input, output=motion.output),
             )
 
-    for name, figure in made():
-        for ending in formats:
-            plot.save(figure, folder / f"{name}.{ending}")
+    files: dict[str, Write[Motion]] = {}
+    for name, draw in made():
+        files |= figure_files(name, formats, partial(_drawn, draw))
+    return files
+
+
+def _drawn(draw: Callable[[], Figure], _motion: Motion) -> Figure:
+    return draw()
 
 
 def _file_name(name: str) -> str:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy.typing as npt
 from rich.console import Console, RenderableType
 
-from sevenbar.reporting.folder import check_targets, fill_folder, write_columns
+from sevenbar.reporting.folder import check_targets, fill_folder, write_columns, write_parts
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,18 +29,50 @@ Files = Mapping[str, Write[T]]
 
 
 @dataclass(frozen=True)
+class LongTable(Generic[T]):
+    """Writes a table that says how far it is: columns (n,) in parts, and how many rows there will be."""
+
+    parts: Callable[[T], Iterable[Mapping[str, npt.ArrayLike]]]
+    rows: Callable[[T], int]
+
+    def __call__(
+        self,
+        found: T,
+        path: Path,
+        progress: Callable[[float], object] = lambda share: None,  # noqa: ARG005
+    ) -> None:
+        """Writes it; `progress(share)` is called with the share that is written, 0 to 1."""
+        total = max(1, self.rows(found))
+        write_parts(path, self.parts(found), lambda done: progress(done / total))
+
+
+#: Called with what is done, of how much, and what is at work.
+Progress = Callable[[float, int, str], object]
+
+
+def no_progress(done: float, total: int, what: str) -> None:
+    """Reports nothing."""
+
+
+@dataclass(frozen=True)
 class Report(Generic[T]):
     """How results of one kind are reported; the names of files are known before there is a result."""
 
     text: Callable[[T], RenderableType]
     as_dict: Callable[[T], dict[str, Any]]
     files: Files[T] = field(default_factory=dict)
-    #: draws figures into the folder, whose names the result decides; before the files are written
-    figures: Callable[[T, Path], object] | None = None
+    #: figures whose names the result decides; written after the files
+    figures: Callable[[T], Files[T]] | None = None
+    #: files that show the figures; written last
+    pages: Files[T] = field(default_factory=dict)
 
     def targets(self, folder: Path) -> list[Path]:
         """The files that `write` may write, for a look before long work."""
-        return [folder / name for name in self.files]
+        return [folder / name for name in (*self.files, *self.pages)]
+
+    def files_of(self, found: T) -> Files[T]:
+        """The files of a result, in the order in which they are written."""
+        return {**self.files, **({} if self.figures is None else self.figures(found)), **self.pages}
 
     def json(self, found: T) -> str:
         """A result as JSON text."""
@@ -49,21 +82,39 @@ class Report(Generic[T]):
         """Prints a result for people."""
         (console or Console()).print(self.text(found))
 
-    def write(self, found: T, folder: str | os.PathLike[str], *, force: bool = False) -> list[Path]:
+    def write(
+        self,
+        found: T,
+        folder: str | os.PathLike[str],
+        *,
+        force: bool = False,
+        progress: Progress = no_progress,
+    ) -> list[Path]:
         """Writes the files of a result into a folder, all or none; returns their paths.
 
-        The folder is made if need be. All are finished in a folder aside before the first is put in place.
-        Raises `OutputError` where that cannot be done, and where one exists and `force` is not given.
+        The folder is made if need be. All are finished in a folder aside before the first is put in place;
+        after Ctrl+C those that are whole are (`Stopped`). `progress(done, total, name)` is called before each
+        file, and within long tables. Raises `OutputError` where that cannot be done, and where one exists and
+        `force` is not given.
         """
-        check_targets(self.targets(Path(folder)), force=force)
+        files = self.files_of(found)
+        check_targets([Path(folder) / name for name in files], force=force)
 
-        def fill(staging: Path) -> None:
-            if self.figures is not None:
-                self.figures(found, staging)
-            for name, write in self.files.items():
-                write(found, staging / name)
+        def fill(staging: Path) -> Iterator[Path]:
+            for done, (name, write) in enumerate(files.items()):
+                progress(done, len(files), name)
+                if isinstance(write, LongTable):
+                    write(found, staging / name, partial(_further, progress, done, len(files), name))
+                else:
+                    write(found, staging / name)
+                yield staging / name
+            progress(len(files), len(files), "")
 
         return fill_folder(Path(folder), fill, force=force)
+
+
+def _further(progress: Progress, done: int, total: int, name: str, share: float) -> None:
+    progress(done + share, total, name)
 
 
 def text_file(text: Callable[[T], str]) -> Write[T]:
@@ -90,7 +141,11 @@ def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure |
 
         if not drawn or drawn[0][0] is not found:
             drawn[:] = [(found, draw(found))]
-        if (figure := drawn[0][1]) is not None:
+        figure = drawn[0][1]
+        if path.suffix == f".{formats[-1]}":
+            # a figure takes room
+            drawn.clear()
+        if figure is not None:
             save(figure, path)
 
     return {f"{stem}.{ending}": write for ending in formats}

@@ -6,15 +6,19 @@ import csv
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.errors import OutputError
+
+#: Rows of a table that are text at once.
+ROWS_AT_ONCE = 5_000
 
 
 def check_targets(files: Iterable[Path], *, force: bool) -> None:
@@ -44,30 +48,62 @@ def _unwritable(folder: Path, reason: str) -> OutputError:
     return OutputError(f"{folder}: cannot be written: {reason}; give a folder that can be made or written")
 
 
-def fill_folder(folder: Path, fill: Callable[[Path], None], *, force: bool = False) -> list[Path]:
+class Stopped(KeyboardInterrupt):
+    """Ctrl+C while files were written, which left those that were whole by then."""
+
+    def __init__(self, files: Sequence[Path]) -> None:
+        super().__init__()
+        self.files = tuple(files)
+
+    @property
+    def kept(self) -> str:
+        """What is left, in words."""
+        return f"these files are whole and kept: {', '.join(map(str, self.files))}"
+
+
+def fill_folder(folder: Path, fill: Callable[[Path], object], *, force: bool = False) -> list[Path]:
     """Lets `fill` write into a folder aside, then moves its files into `folder`: whole, or not at all.
 
-    Without `force` a file that is there already is an `OutputError`, and nothing is changed.
+    Without `force` a file that is there already is an `OutputError`, and nothing is changed. Where `fill` is
+    a generator of its files, each yielded once it is whole, those that are whole outlive Ctrl+C: `Stopped`.
     """
     _check_folder(folder)
     made = [p for p in (folder, *folder.parents) if not p.exists()]
     staging = None
+    whole: list[Path] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
         staging = Path(tempfile.mkdtemp(prefix=".partial-", dir=folder))
-        fill(staging)
+        filling = fill(staging)
+        if isinstance(filling, Iterator):
+            whole.extend(filling)
         files = sorted(staging.iterdir())
         check_targets([folder / file.name for file in files], force=force)
         return [file.replace(folder / file.name) for file in files]
     except OSError as error:
         _undo(made, staging)
         raise _unwritable(folder, (error.strerror or str(error)).lower()) from None
+    except KeyboardInterrupt:
+        kept = _keep(whole, folder, force=force)
+        _undo([] if kept else made, staging)
+        if kept:
+            raise Stopped(kept) from None
+        raise
     except BaseException:
         _undo(made, staging)
         raise
     finally:
         if staging is not None:
             shutil.rmtree(staging, ignore_errors=True)
+
+
+def _keep(whole: Sequence[Path], folder: Path, *, force: bool) -> list[Path]:
+    """Moves files that are there and may be put into a folder."""
+    return [
+        file.replace(folder / file.name)
+        for file in whole
+        if file.exists() and (force or not (folder / file.name).exists())
+    ]
 
 
 def _undo(made: Sequence[Path], staging: Path | None) -> None:
@@ -80,12 +116,53 @@ def _undo(made: Sequence[Path], staging: Path | None) -> None:
 
 def write_columns(path: Path, columns: Mapping[str, npt.ArrayLike]) -> None:
     """Writes columns of one length (n,) as CSV, their names as its head; as `write_csv` for the rest."""
-    write_csv(path, list(columns), zip(*(np.asarray(c).tolist() for c in columns.values()), strict=True))
+    write_parts(path, [columns])
 
 
-def write_csv(path: Path, head: Sequence[str], lines: Iterable[Iterable[Any]]) -> None:
-    """Writes a table as CSV; a value that does not exist, NaN or None, is an empty cell."""
+def write_parts(
+    path: Path,
+    parts: Iterable[Mapping[str, npt.ArrayLike]],
+    wrote: Callable[[int], object] = lambda rows: None,  # noqa: ARG005
+) -> None:
+    """Writes columns (n,) that come in parts with the same names, one under the other, as CSV.
+
+    One part is held at a time, and a piece of it as text; `wrote(rows)` is called after each piece with the
+    number of rows that there are by then.
+    """
+    done, head = 0, False
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(head)
-        writer.writerows(["" if cell is None or cell != cell else cell for cell in line] for line in lines)
+        for part in parts:
+            if not head:
+                writer.writerow(list(part))
+                head = True
+            arrays = [np.asarray(column) for column in part.values()]
+            count = len(arrays[0]) if arrays else 0
+            for first in range(0, count, ROWS_AT_ONCE):
+                pieces = [array[first : first + ROWS_AT_ONCE].tolist() for array in arrays]
+                writer.writerows(map(_cells, zip(*pieces, strict=True)))
+                wrote(done + first + len(pieces[0]))
+            done += count
+            # or they would live until the next ones are made
+            del part, arrays
+        if not head:
+            writer.writerow([])
+
+
+def write_csv(path: Path | StringIO, head: Sequence[str], lines: Iterable[Iterable[Any]]) -> None:
+    """Writes a table as CSV; a value that does not exist, NaN or None, is an empty cell."""
+    if isinstance(path, Path):
+        with path.open("w", newline="", encoding="utf-8") as file:
+            _write_lines(file, head, lines)
+    else:
+        _write_lines(path, head, lines)
+
+
+def _write_lines(file: TextIO, head: Sequence[str], lines: Iterable[Iterable[Any]]) -> None:
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(map(_cells, lines))
+
+
+def _cells(line: Iterable[Any]) -> list[Any]:
+    return ["" if cell is None or cell != cell else cell for cell in line]

@@ -6,13 +6,11 @@ A report only writes down what the motion holds; it solves nothing.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
@@ -22,8 +20,8 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
-from sevenbar.reporting.figures import draw_for_report, posed_circuit, write_figures
-from sevenbar.reporting.files import Report, columns_file, json_file, json_text, without_nan
+from sevenbar.reporting.figures import posed_circuit, report_figures, write_figures
+from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.summary import (
@@ -36,7 +34,7 @@ from sevenbar.reporting.summary import (
     side_lengths,
     summary,
 )
-from sevenbar.text.markdown import table
+from sevenbar.text.markdown import plain, table
 
 __all__ = [
     "as_dict",
@@ -120,11 +118,8 @@ def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
         "motion_type": circuit.motion_type,
         "closed": circuit.closed,
         "turns": circuit.turns,
-        "rows": len(circuit.time),
-        "statuses": {
-            str(word): int(count)
-            for word, count in zip(*np.unique(circuit.status, return_counts=True), strict=True)
-        },
+        "rows": circuit.tally.rows,
+        "statuses": dict(circuit.tally.statuses),
         "input_range": circuit.input_range,
         "output_range": circuit.output_range,
         "dead_centres": [vars(d) for d in circuit.dead_centres],
@@ -195,21 +190,16 @@ def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
     '# RSSR of Sun and Zhou'
     """
     told = summary(motion)
-    parts = [f"# {_plain(told.title)}"]
+    parts = [f"# {plain(told.title)}"]
     parts.append(
-        "\n".join(f"- {name}: {_plain(fact)}" if name else f"  {_plain(fact)}" for name, fact in told.facts)
+        "\n".join(f"- {name}: {plain(fact)}" if name else f"  {plain(fact)}" for name, fact in told.facts)
     )
     for sheet in told.sheets:
-        heads, *rows = ([_plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
+        heads, *rows = ([plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
         parts.append(table(heads, rows, right=sheet.right))
         parts += [sheet.note] if sheet.note else []
     parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
     return "\n\n".join(parts) + "\n"
-
-
-def _plain(words: str) -> str:
-    """Words of which Markdown leaves every character as it is, a line break apart."""
-    return re.sub(r"([\\`*_\[\]<>|#])", r"\\\1", words).replace("\n", "<br>")
 
 
 def _table(sheet: Sheet) -> Table:
@@ -226,14 +216,29 @@ def _table(sheet: Sheet) -> Table:
     return table
 
 
-def motion_report(figures: Sequence[str] = ("png",)) -> Report[Motion]:
-    """How a motion is reported, with the figures in these formats."""
-    files = {
+def motion_report(
+    figures: Sequence[str] = ("png",), drawn: Callable[[Motion], Motion] = lambda motion: motion
+) -> Report[Motion]:
+    """How a motion is reported, with the figures in these formats.
+
+    `drawn` gives the motion that the figures show, where it is another, such as one of fewer rows.
+    """
+    files: Files[Motion] = {
         "report.json": json_file(as_dict),
-        "motion.csv": columns_file(Motion.columns),
-        "report.md": _write_markdown,
+        "motion.csv": LongTable(Motion.column_parts, row_count),
     }
-    return Report(text, as_dict, files, partial(draw_for_report, formats=figures))
+    return Report(
+        text,
+        as_dict,
+        files,
+        lambda motion: report_figures(drawn(motion), figures),
+        {"report.md": _write_markdown},
+    )
+
+
+def row_count(motion: Motion) -> int:
+    """The rows of all circuits."""
+    return sum(circuit.tally.rows for circuit in motion)
 
 
 def _write_markdown(motion: Motion, path: Path) -> None:

@@ -116,8 +116,8 @@ def side_lengths(linkage: Solvable) -> dict[str, float]:
 
 def closure_error(circuits: Iterable[Circuit]) -> float:
     """The greatest closure error [length]; NaN where no row has one."""
-    residuals = [circuit.residual[np.isfinite(circuit.residual)] for circuit in circuits]
-    return max((float(values.max()) for values in residuals if values.size), default=math.nan)
+    residuals = [circuit.tally.residual for circuit in circuits]
+    return max((worst for worst in residuals if not math.isnan(worst)), default=math.nan)
 
 
 def facts_of(motion: Motion) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Tables in Markdown."""
+"""Words and tables in Markdown."""
 
 from __future__ import annotations
 
@@ -7,6 +7,22 @@ from collections.abc import Collection, Iterable, Sequence
 
 #: A bar that would end its cell, in code as well.
 _BAR = re.compile(r"(?<!\\)\|")
+
+#: What means something wherever it is; an entity; an underscore at the edge of a word; a bracket that would
+#: make a link; what begins a line of another kind.
+_MEANS = re.compile(
+    r"[\\`*<]|&(?=#?\w+;)|(?<![^\W_])_|_(?![^\W_])|\](?=[(\[:])|^[#>]|^[-+](?= )|(?<=^1)[.)](?= )",
+    re.MULTILINE,
+)
+
+
+def plain(words: str) -> str:
+    r"""Words that Markdown shows as they are; only what it would take for something else is escaped.
+
+    >>> print(plain("ball_a [mm]  x < y  *b*"))
+    ball_a [mm]  x \< y  \*b\*
+    """
+    return _MEANS.sub(r"\\\g<0>", words).replace("\n", "<br>")
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, right: Collection[int] = ()) -> str:

@@ -1,10 +1,10 @@
 //! One circuit: its rows over an input, and what it is measured by.
 
 use super::extremes::output_extremes;
-use super::passes::Passes;
+use super::passes::{Pass, Passes};
 use super::row::Row;
-use super::rows::Rows;
-use crate::loops::circuits::curve::{End, Node};
+use super::rows::{Rows, Tally};
+use crate::loops::circuits::curve::{Curve, End, Node};
 use crate::loops::circuits::turnings::{self, Turning};
 use crate::loops::description::described_loop::{Column, Loop};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
@@ -17,10 +17,47 @@ use std::f64::consts::TAU;
 /// One connected motion over an input.
 #[derive(Clone, Debug)]
 pub struct Circuit {
-    /// The rows.
+    /// The rows; none of them where there is a course.
     pub rows: Rows,
+    /// What makes the rows, where they are not kept.
+    pub course: Option<Course>,
     /// What it is measured by, at the speed of the rows; by a law there are no extremes of rates.
     pub measures: CircuitMeasures,
+}
+
+/// A circuit on a grid of inputs whose rows are computed when they are wanted, and may be dropped again.
+#[derive(Clone, Debug)]
+pub struct Course {
+    curve: Curve,
+    input: usize,
+    passes: Vec<Pass>,
+    limits: Vec<Node>,
+    grid: (f64, f64),
+    offsets: Vec<f64>,
+    speed: f64,
+    /// What the rows were when they were computed first.
+    pub tally: Tally,
+}
+
+impl Course {
+    /// The rows, to the last bit those that were dropped.
+    pub fn rows(&self, linkage: &Loop) -> Rows {
+        let rows = linkage.reduced.chain.as_ref().map(|chain| {
+            let passes = Passes {
+                chain,
+                curve: self.curve.clone(),
+                input: self.input,
+                passes: self.passes.clone(),
+                limits: self.limits.clone(),
+            };
+            grid_rows(&passes, self.grid)
+        });
+        Rows {
+            rows: rows.unwrap_or_default(),
+            offsets: self.offsets.clone(),
+            speed: self.speed,
+        }
+    }
 }
 
 /// What is wanted of circuits.
@@ -36,12 +73,14 @@ pub(super) struct Wanted<'a> {
     pub speed: f64,
     /// The input and its derivatives by time, instead of the grid.
     pub law: Option<&'a [[f64; 4]]>,
+    /// Whether rows on the grid are kept; else circuits have a course.
+    pub keep: bool,
 }
 
 /// The circuit of some passes.
 pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circuit {
     let chain = passes.chain;
-    let Wanted { driver, follower, grid, speed, law } = *wanted;
+    let Wanted { driver, follower, grid, speed, law, keep } = *wanted;
     let curve = &passes.curve;
     let gained = curve.gained();
     let closed = curve.end == End::Closed;
@@ -49,16 +88,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
     let turns = curve.goes_round(chain, driver.inner);
     // never stopped by a dead centre
     let driven_round = turns && !passes.turns_back();
-    let mut rows = passes.rows(grid.0, grid.1);
-    if !closed {
-        // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
-        let lost = |r: &Row| r.status == RowStatus::NoSolution;
-        rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
-        rows.drain(..rows.iter().take_while(|r| lost(r)).count());
-    }
-    if driven_round {
-        begin_at_zero(chain, &mut rows, driver.inner, &gained, grid.1);
-    }
+    let mut rows = grid_rows(passes, grid);
     let extremes = if driven_round && !crosses && law.is_none() {
         output_extremes(passes, &rows, follower.inner, &gained, grid.1)
     } else {
@@ -100,18 +130,47 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
         rows = passes.law_rows(&inner_law, chain.is_turn(driver.inner), shift[driver.inner]);
     }
     let offset = |column| linkage.chain_column(column).map_or(0.0, |c| shift[c]);
-    Circuit {
-        rows: Rows {
-            rows,
-            offsets: (0..linkage.columns).map(offset).collect(),
-            speed: if law.is_some() {
-                1.0
-            } else {
-                speed * linkage.inward(driver.outer)
-            },
+    let mut rows = Rows {
+        rows,
+        offsets: (0..linkage.columns).map(offset).collect(),
+        speed: if law.is_some() {
+            1.0
+        } else {
+            speed * linkage.inward(driver.outer)
         },
-        measures: measures.at_speed(speed),
+    };
+    // one without rows is no circuit, so a course is never of none
+    let course = (!keep && law.is_none() && !rows.is_empty()).then(|| {
+        let tally = rows.tally(linkage);
+        rows.rows = Vec::new();
+        Course {
+            curve: curve.clone(),
+            input: passes.input,
+            passes: passes.passes.clone(),
+            limits: passes.limits.clone(),
+            grid,
+            offsets: rows.offsets.clone(),
+            speed: rows.speed,
+            tally,
+        }
+    });
+    Circuit { rows, course, measures: measures.at_speed(speed) }
+}
+
+/// The rows of a circuit on a grid of inputs, from its first to its last, and from the input zero where it goes round.
+fn grid_rows(passes: &Passes, grid: (f64, f64)) -> Vec<Row> {
+    let (chain, curve) = (passes.chain, &passes.curve);
+    let mut rows = passes.rows(grid.0, grid.1);
+    if curve.end != End::Closed {
+        // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
+        let lost = |r: &Row| r.status == RowStatus::NoSolution;
+        rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
+        rows.drain(..rows.iter().take_while(|r| lost(r)).count());
     }
+    if curve.goes_round(chain, passes.input) && !passes.turns_back() {
+        begin_at_zero(chain, &mut rows, passes.input, &curve.gained(), grid.1);
+    }
+    rows
 }
 
 /// A curve as the description has it.

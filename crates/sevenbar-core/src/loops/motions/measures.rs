@@ -33,7 +33,7 @@ pub fn measures(linkage: &Loop, input: usize, output: usize, samples: usize, spe
     if !linkage.can_be_driven() {
         return none(Driven::ManyFreedoms);
     }
-    let Some(motion) = motion(linkage, input, output, samples, speed, None) else {
+    let Some(motion) = motion(linkage, input, output, samples, speed, None, true) else {
         return none(Driven::NoInput);
     };
     if motion.motion_type == "two-inputs" {

@@ -58,7 +58,8 @@ pub enum Through {
 
 /// Every circuit over the inputs of one column, on a grid of `samples` a turn or at the inputs of a law.
 ///
-/// `None` where one of the columns is no joint of one freedom that moves.
+/// Without `keep` the circuits of a grid have courses in place of rows. `None` where one of the columns is no joint of one freedom that
+/// moves.
 pub fn motion(
     linkage: &Loop,
     input: usize,
@@ -66,6 +67,7 @@ pub fn motion(
     samples: usize,
     speed: f64,
     law: Option<&[[f64; 4]]>,
+    keep: bool,
 ) -> Option<Motion> {
     let Some(chain) = &linkage.reduced.chain else {
         let search = Search::new(Completeness::Searched);
@@ -87,12 +89,19 @@ pub fn motion(
         .filter(|c| !rests(c))
         .filter_map(|c| Passes::new(chain, c, driver.inner))
         .collect();
-    let wanted = Wanted { driver, follower, grid: grid(chain, &passes, samples), speed, law };
+    let wanted = Wanted {
+        driver,
+        follower,
+        grid: grid(chain, &passes, samples),
+        speed,
+        law,
+        keep,
+    };
     // a pose so far out that the loop hardly closes leaves nothing to tell
     let (passes, circuits): (Vec<&Passes>, Vec<Circuit>) = passes
         .iter()
         .map(|p| (p, circuit(linkage, p, &wanted)))
-        .filter(|(_, c)| !c.rows.is_empty())
+        .filter(|(_, c)| c.course.is_some() || !c.rows.is_empty())
         .unzip();
     let change_points: Vec<ChangePoint> = curves
         .change_points
@@ -183,7 +192,7 @@ pub fn circuit_through(
         return Some(Through::Still);
     };
     let grid = grid(chain, std::slice::from_ref(&passes), samples);
-    let wanted = Wanted { driver, follower, grid, speed, law };
+    let wanted = Wanted { driver, follower, grid, speed, law, keep: true };
     let circuit = circuit(linkage, &passes, &wanted);
     Some(Through::Circuit(Box::new(circuit)))
 }

@@ -10,6 +10,7 @@ use crate::loops::equation::dense::{COLUMNS, combined, dot, length};
 use crate::loops::mobility::rank::AGREE;
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
+use crate::vectors::LANES;
 use std::f64::consts::TAU;
 
 /// A row nearer than this part of a grid step to a dead centre is that dead centre's.
@@ -17,6 +18,9 @@ const SAME_ROW: f64 = 1e-9;
 
 /// An input of a law nearer than this to a dead centre's is that dead centre's.
 const SAME_LIMIT: f64 = 1e-12;
+
+/// Rows that are solved before they are put down: whole blocks of lanes, and few enough that what they begin from takes no room.
+const AT_ONCE: usize = 512 * LANES;
 
 /// The closure error [rad, or parts of the size] that a row may keep.
 const ROW_CLOSED: f64 = 1e-10;
@@ -371,19 +375,25 @@ impl Passes<'_> {
         let value_at = |node: usize| self.curve.nodes[node].at.values[self.input];
         let rising = p.end > p.start;
         let mut segment = p.from;
-        let starts: Vec<Near> = values
-            .map(|value| {
-                while segment + 1 < p.to && (value_at(segment + 1) <= value) == rising {
-                    segment += 1;
-                }
-                let rough = self.rough_in(segment, value);
-                Near { at: self.start(&rough), value, tube: rough.tube }
-            })
-            .collect();
-        let found = rows_near(self.chain, self.input, pass, &starts);
-        rows.extend(starts.iter().zip(found).map(|(near, row)| {
-            row.or_else(|| self.row(pass, near.value, &UNIT))
-                .unwrap_or(Row::missing(pass))
-        }));
+        rows.reserve_exact(values.size_hint().0);
+        let mut values = values.peekable();
+        while values.peek().is_some() {
+            let starts: Vec<Near> = values
+                .by_ref()
+                .take(AT_ONCE)
+                .map(|value| {
+                    while segment + 1 < p.to && (value_at(segment + 1) <= value) == rising {
+                        segment += 1;
+                    }
+                    let rough = self.rough_in(segment, value);
+                    Near { at: self.start(&rough), value, tube: rough.tube }
+                })
+                .collect();
+            let found = rows_near(self.chain, self.input, pass, &starts);
+            rows.extend(starts.iter().zip(found).map(|(near, row)| {
+                row.or_else(|| self.row(pass, near.value, &UNIT))
+                    .unwrap_or(Row::missing(pass))
+            }));
+        }
     }
 }

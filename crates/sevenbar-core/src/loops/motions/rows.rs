@@ -28,7 +28,37 @@ pub struct Rows {
     pub(super) speed: f64,
 }
 
+/// What may be said of rows that are not at hand.
+#[derive(Clone, Debug)]
+pub struct Tally {
+    /// How many rows there are.
+    pub rows: usize,
+    /// How many there are of each status, by its number.
+    pub statuses: [usize; RowStatus::COUNT],
+    /// The greatest closure error, relative to the size or radians; none where no row has one.
+    pub residual: Option<f64>,
+}
+
 impl Rows {
+    /// What there is to say of them.
+    pub(super) fn tally(&self, linkage: &Loop) -> Tally {
+        let has_balls = (0..linkage.columns).any(|c| is_ball_turn(linkage, c));
+        let mut table = vec![[0.0; 4]; linkage.columns];
+        let mut statuses = [0; RowStatus::COUNT];
+        for row in &self.rows {
+            let mut status = row.status;
+            if status == RowStatus::Ok && has_balls {
+                write_joint_rates(linkage, &row.at, &row.rates, &mut table);
+                if table.iter().any(|q| q[0].is_nan()) {
+                    status = RowStatus::TurnsUndefined;
+                }
+            }
+            statuses[status as usize] += 1;
+        }
+        let errors = self.rows.iter().map(|r| r.residual).filter(|r| r.is_finite());
+        Tally { rows: self.len(), statuses, residual: errors.reduce(f64::max) }
+    }
+
     /// How many rows.
     pub fn len(&self) -> usize {
         self.rows.len()

@@ -1,0 +1,115 @@
+"""What every command has: `-o` for `--out`, and an option that is given once only; and whole numbers."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import typer.core
+
+from sevenbar.errors import RequestError, SevenbarError, shown
+
+#: What to say of options of which a second one is a mistake in thought, too.
+WHY_ONE = {
+    "--input": "one joint drives, so give one of them (loops with two inputs are not covered)",
+    "--output": "one joint is the output, so give one of them",
+}
+
+
+#: Calls that show what a command does, below its options.
+EXAMPLES = {
+    "analyze": (
+        "sevenbar analyze rssr",
+        "sevenbar analyze mine.toml --speed '60 rpm' -o report",
+        "sevenbar analyze rssr --input rocker --json",
+    ),
+    "modes": (
+        "sevenbar modes seven_r --at 30deg",
+        "sevenbar modes rssp --input slider --at=-20mm",
+        "sevenbar modes bennett --at 0.5rad -o modes.svg",
+    ),
+    "plot": (
+        "sevenbar plot seven_r -o figures",
+        "sevenbar plot rssr --kind curves,point --link 2 --at 500,40,0 --figures svg -o figures",
+    ),
+    "gallery": ("sevenbar gallery", "sevenbar gallery rssr > mine.toml"),
+    "studio": ("sevenbar studio seven_r", "sevenbar studio mine.toml --port 9000 --no-open"),
+    "simulate": (
+        "sevenbar simulate rssr",
+        "sevenbar simulate seven_r --engine mujoco --circuit 2 -o check",
+    ),
+    "export": (
+        "sevenbar export rssr --to step",
+        "sevenbar export rssr --to adams --at 30deg",
+        "sevenbar export seven_r --circuit 2 --at 0.5rad -o mode_2.glb",
+        "sevenbar export rssr -o motion.parquet --units si",
+    ),
+    "compare": ("sevenbar compare rssr examples/rssr_table1.csv",),
+    "calibrate": ("sevenbar calibrate rssr examples/rssr_bench.csv --hold D --offset input,output -o bench",),
+    "sweep": (
+        "sevenbar sweep rssr --over L1=100:400:31 --over L3=300:800:51 --measure motion_type,swing -o sweep",
+    ),
+    "map": ("sevenbar map rssr --over L1=100:400 --over L3=300:800 --measure transmission_lowest -o maps",),
+    "tolerance": ("sevenbar tolerance rssr --tolerance 'L*=0.5mm' --tolerance M=1 -o tolerance",),
+    "swing": ("sevenbar design swing --swing 60deg --time-ratio 1.2 -o swing",),
+    "path": (
+        "sevenbar design path planar_4r --path examples/coupler_curve.csv --link 2 --at 0,-50,20 "
+        "--vary 'length_*' --vary P.v --vary P.w -o coupler",
+    ),
+    "point": ("sevenbar design point seven_r --link 4 --box=-200:200,-200:200,-200:200 -o point",),
+    "inertia": ("sevenbar design inertia seven_r --mass P=2.5 -o torque",),
+    "function": ("sevenbar design function --y 'x^2' --x 0:1 -o parabola",),
+}
+
+
+class Command(typer.core.TyperCommand):
+    """A command of sevenbar."""
+
+    def __init__(self, name: str | None, *args: Any, **options: Any) -> None:
+        if not options.get("epilog") and name in EXAMPLES:
+            # lines of a paragraph would flow into each other
+            options["epilog"] = "\n\n".join(("Examples:", *EXAMPLES[name]))
+        super().__init__(name, *args, **options)
+        for parameter in self.params:
+            if "--out" in parameter.opts and "-o" not in parameter.opts:
+                parameter.opts.append("-o")
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """As usual; an option given twice is refused, of which otherwise the last would count silently."""
+        # the parser takes words off the list
+        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
+        for parameter, count in Counter(order).items():
+            single = parameter.param_type_name == "option" and not parameter.multiple
+            if count > 1 and single and not getattr(parameter, "is_flag", False):
+                option = parameter.opts[0]
+                raise RequestError(f"{option}: given {count} times; {WHY_ONE.get(option, 'give it once')}")
+        return super().parse_args(ctx, args)
+
+
+def count_of(option: str) -> Callable[[object], int]:
+    """What reads the number of an option, whole and perhaps with an exponent: 360, 1e6.
+
+    >>> count_of("--samples")("1e6")
+    1000000
+    """
+
+    def read(given: object) -> int:
+        text = str(given).strip()
+        try:
+            return int(text)
+        except ValueError:
+            pass
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not value.is_integer():
+            # no RequestError: the reader of options would take a ValueError for its own
+            raise SevenbarError(
+                f"{option}: {shown(text)} is not a count; give a whole number, as in 360 or 1e6"
+            )
+        return int(value)
+
+    return read
