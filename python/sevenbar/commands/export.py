@@ -39,8 +39,8 @@ def export(
         str | None,
         typer.Option(
             autocompletion=_formats,
-            help="Tables: csv, xlsx (or excel), parquet, npz, mat (or matlab), json. Bodies: glb, stl, step. Models: urdf, "
-            "mjcf (or mujoco), cmd (or adams). By the ending of --out where left out.",
+            help="Tables: csv, xlsx (or excel), parquet, npz, mat (or matlab), json. Bodies: glb, stl, step. "
+            "Models: urdf, mjcf (or mujoco), cmd (or adams). By the ending of --out where left out.",
         ),
     ] = None,
     out: Annotated[
