@@ -29,11 +29,7 @@ NEAR = 1e-12
 
 
 def sind(degrees: Any) -> Any:
-    """The sine of an angle in degrees, exact at multiples of 30.
-
-    >>> float(sind(30)), float(sind(180))
-    (0.5, 0.0)
-    """
+    """The sine of an angle in degrees, exact at multiples of 30."""
     turn = np.remainder(np.asarray(degrees, dtype=float), 360.0)
     sine = np.sin(np.radians(turn))
     for angle, exact in ((0, 0.0), (30, 0.5), (90, 1.0), (150, 0.5), (180, 0.0), (210, -0.5), (270, -1.0),
