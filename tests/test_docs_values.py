@@ -16,7 +16,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import axes_of, split_ranges
 from sevenbar.errors import SevenbarError
 from sevenbar.sweep.axes import axis_from_text, axis_of
-from sevenbar.text.expression import value_of
+from sevenbar.text.amounts import value_of
 from sevenbar.text.ranges import split_name
 from sevenbar.text.units import turning_speed
 

@@ -209,7 +209,7 @@ def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
     assert json.loads((tmp_path / "new" / "s.json").read_text())["input"] == "slider"
     for arguments, message in (
         (["rssr", "--to", "urdf"], "rssr.urdf: exists already; give another path, or --force to replace it"),
-        (["rssr"], "--to: missing; give a format, csv, parquet,"),
+        (["rssr"], "--to: missing; give a format, csv, xlsx, parquet,"),
         (["rssr", "--out", "rssr.urdf/x.csv"], "rssr.urdf: cannot be written: it is a file; give a folder"),
         (["rssr", "--to", "doc"], "to: 'doc' is not a format; allowed: csv,"),
         (["rssp", "--to", "glb", "--at", "3mm"], "--at: '3mm' is no value of crank, which turns;"),

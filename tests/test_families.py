@@ -125,6 +125,7 @@ def test_squares_and_parallelograms_are_change_points():
     [
         (lambda: sb.bennett(50, 30, 100), "alpha: 30 rad is more than a turn; give radians, or a text, as in '30 deg'"),
         (lambda: sb.bennett(50, "180 deg", 1), "alpha: 180 deg: its sine is 0, so no other length follows; give another angle"),
+        (lambda: sb.bennett(50, "30", 1), "alpha: '30' has no unit; give one as in '30 deg', or a number in radians"),
         (lambda: sb.bennett(-50, 1, 1), "a: -50 is not a length; give a number > 0"),
         (lambda: sb.bennett("50 kg", 1, 1), "a: '50 kg': 'kg' is not a unit known here; allowed: um"),
         (lambda: sb.bennett(50, "50 mm", 1), "alpha: '50 mm': is a length where an angle belongs"),

@@ -12,7 +12,8 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.formulas import KINDS_OF_NUMBERS
 from sevenbar.description.schema import TABLES
 from sevenbar.errors import DescriptionError, RequestError
-from sevenbar.text.expression import FUNCTIONS, cosd, function_of, sind, tand, value_of
+from sevenbar.text.amounts import value_of
+from sevenbar.text.expression import FUNCTIONS, cosd, function_of, sind, tand
 
 RSSR = "format = 1\n[drive]\nspeed = 2\n[rssr]\nM = 700\nN = 700\nL1 = {}\nL3 = 550\nD = 0\n"
 BENNETT = """format = 1
@@ -135,7 +136,7 @@ def test_a_bennett_loop_by_its_formula_moves_and_by_six_digits_does_not():
 
 
 def test_every_number_of_a_file_may_be_a_formula_and_the_kinds_are_the_schema_s():
-    units = {"length": "length", "length per turn": "length", "angle_unit": "angle"}
+    units = {"length": "length", "length per turn": "pitch", "angle_unit": "angle"}
     for head, form in TABLES.items():
         told = {
             name: units[field.json_schema_extra["unit"]]
@@ -178,7 +179,7 @@ kind = "S"
 at = [50, 60, 70]
 [[joint]]
 kind = "H"
-pitch = "2*4mm"
+pitch = "2*4mm/turn"
 at = [0, 0, 90]
 axis = [1, 0, 0]
 [[point]]

@@ -124,7 +124,7 @@ REFUSED = [
     ("five_bar", ("joint", 0, "axis"), [0.0, 0.0, 0.0], "joint[1].axis: [0.0, 0.0, 0.0] has no direction"),
     ("rsur", ("joint", 2, "axes", 0), [0, 0, 0], "joint[3].axes[1]: [0, 0, 0] has no direction"),
     ("seven_r", ("link", 3, "twist"), math.inf, "link[4].twist: inf is not a finite number"),
-    ("seven_r", ("link", 3, "length"), "abc", "link[4].length: 'abc' is text"),
+    ("seven_r", ("link", 3, "length"), "abc", "link[4].length: 'abc': no 'abc' is known"),
 ]  # fmt: skip
 
 

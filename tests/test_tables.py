@@ -108,7 +108,7 @@ def test_lengths_and_angles_of_several_units_are_brought_to_the_first(tmp_path):
 def test_sliding_and_screw_joints_leave_what_moves_open(tmp_path):
     path = tmp_path / "dh.csv"
     path.write_text(
-        "joint,a [mm],alpha [deg],d [mm],theta [deg],pitch [mm],input\nR,1,90,2,theta1,,\nP,3,90,d2,30,,x\nH,4,90,5,q,8,\nR,1,0,0,0,0,\n"
+        "joint,a [mm],alpha [deg],d [mm],theta [deg],pitch [mm/turn],input\nR,1,90,2,theta1,,\nP,3,90,d2,30,,x\nH,4,90,5,q,8,\nR,1,0,0,0,0,\n"
     )
     linkage = sb.load(path)
     assert linkage.kind == "RPHR"
@@ -321,6 +321,8 @@ def test_offsets_and_twists_may_be_left_out_in_python_too():
     [
         (lambda: sb.from_dh("RRRR", a=[1, 2, 1, 2]),
          "a: is called length here (a is length, alpha twist, d offset, theta angle); give length="),
+        (lambda: sb.from_dh("RRRR", twist=["30", "1 deg", "pi/2", "0.1 rad"]),
+         "twist[0]: '30' has no unit; give one as in '30 deg', or a number in radians"),
         (lambda: sb.from_dh("RRRR", alpha=[1, 2, 1, 2]), "alpha: is called twist here"),
         (lambda: sb.from_dh("RRRR", lenght=[1, 2, 1, 2]), "lenght: is no argument; did you mean 'length'?"),
         (lambda: sb.from_dh(pd.DataFrame(ROWS, columns=DH), length=[1]), "length: is given in addition to a data frame; leave one out"),

@@ -33,9 +33,6 @@ def test_a_file_of_notepad_is_read(tmp_path, encoding):
          "a STEP file; 'sevenbar axes' lists the axes of its cylinders, as a table to begin with"),
         (b"\xd0\xcf\x11\xe0" + bytes(100), "an old Excel or Office file; save it as .xlsx or CSV"),
         (b"%PDF-1.7\n", "a PDF file; give a TOML file of format 1, or a table (.csv, .xlsx)"),
-        (TEXT.replace("speed =", 'joint = ["crank", "rocker"]\nspeed =').encode(),
-         "drive.joint: ['crank', 'rocker'] are two inputs; give one, as a loop is driven at one joint here "
-         "('Two inputs' on the page 'What is not covered' says what to do instead)"),
     ],
 )  # fmt: skip
 def test_each_wrong_file_has_its_message(tmp_path, content, message):

@@ -19,7 +19,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import unit
 from sevenbar.kinematics.word import Place, Values, between, word_of
 from sevenbar.text.grid import listed
-from sevenbar.text.table import name_and_unit
+from sevenbar.text.table import name_and_unit, number
 from sevenbar.text.units import LENGTHS, measured_unit
 
 if TYPE_CHECKING:
@@ -211,6 +211,12 @@ def _in_unit(key: str, values: Any, length_unit: str) -> Any:
     plain = _plain(values)
     name = getattr(values, "name", None)
     written = name_and_unit(name)[1] if isinstance(name, str) else ""
+    if isinstance(plain, list) and key in ("twist", "angle"):
+        for i, value in enumerate(plain):
+            if isinstance(value, str) and number(value) is not None:
+                raise RequestError(
+                    f"{key}[{i}]: {shown(value)} has no unit; give one as in '30 deg', or a number in radians"
+                )
     if not written or not isinstance(plain, list):
         return plain
     unit = measured_unit(written)

@@ -9,13 +9,13 @@ from typing import Any
 from sevenbar.description.schema import context_of
 from sevenbar.description.values import number_of
 from sevenbar.errors import RequestError
-from sevenbar.text.expression import Kind
+from sevenbar.text.amounts import Kind
 
 #: What the numbers of each table are; a test compares this with the schema.
 KINDS_OF_NUMBERS: Mapping[str, Mapping[str, Kind]] = {
     "rssr": dict.fromkeys(("M", "N", "L1", "L2", "L3", "D"), "length"),
-    "joint": {"at": "length", "axis": "number", "axes": "number", "pitch": "length"},
-    "link": {"length": "length", "offset": "length", "pitch": "length", "twist": "angle", "angle": "angle"},
+    "joint": {"at": "length", "axis": "number", "axes": "number", "pitch": "pitch"},
+    "link": {"length": "length", "offset": "length", "pitch": "pitch", "twist": "angle", "angle": "angle"},
     "point": {"at": "length"},
 }
 

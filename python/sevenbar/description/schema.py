@@ -25,9 +25,9 @@ from sevenbar.description.values import (
     EXAMPLE_OF_AXES,
     Angle,
     Direction,
-    InputName,
     Length,
     Number,
+    Pitch,
     Speed,
     Text,
     Vector,
@@ -110,7 +110,7 @@ class JointForm(_Form):
         ),
     ] = None
     pitch: Annotated[
-        Number | None,
+        Pitch | None,
         _key(
             f"of {letters_with('pitch')}, which needs it: right-handed, left-hand if negative",
             "length per turn",
@@ -138,7 +138,7 @@ class LinkForm(_Form):
     offset: Annotated[Number, _key("of R and H, along the joint's axis (H: at theta = 0)", "length")] = 0.0
     angle: Annotated[Angle, _key("of P: its fixed theta", "angle_unit")] = 0.0
     pitch: Annotated[
-        Number,
+        Pitch,
         _key(
             f"of {letters_with('pitch')}, which needs it: right-handed, left-hand if negative",
             "length per turn",
@@ -161,7 +161,7 @@ class DriveForm(_Form):
         Speed,
         _key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
     ] = 1.0
-    joint: Annotated[InputName | None, _key("the input; left out, the first joint that is no ball")] = None
+    joint: Annotated[Text | None, _key("the input; left out, the first joint that is no ball")] = None
     output: Annotated[
         Text | None, _key("the output; left out, the last joint that is neither a ball nor the input")
     ] = None

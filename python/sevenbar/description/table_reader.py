@@ -23,7 +23,7 @@ from sevenbar.description.written import meant_kind, names_ground
 from sevenbar.errors import DescriptionError, Problem, RequestError, shown
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.text.expression import Kind, value_of
+from sevenbar.text.amounts import Kind, value_of
 from sevenbar.text.grid import CellTable, grid_of_frame
 from sevenbar.text.table import number
 from sevenbar.text.units import ANGLES, LENGTHS, MeasuredUnit, measured_unit
@@ -180,7 +180,7 @@ class _Reader:
 
     def _unit_of(self, kind: str, known: Mapping[str, float]) -> str:
         """The first unit of lengths or angles that the columns have."""
-        units = [measured_unit(self.grid.unit(column)) for column in self.columns.values()]
+        units = [measured_unit(self._unit(column)) for column in self.columns.values()]
         sizes = [u.size for u in units if u is not None and (u.kind, u.order) == (kind, 0)]
         return next((name for size in sizes[:1] for name, own in known.items() if own == size), "")
 
@@ -196,7 +196,7 @@ class _Reader:
         column = self.columns[key]
         if column in self._units_refused or not self._has_right_unit(column, kind):
             return None
-        unit = measured_unit(self.grid.unit(column)) if kind != "number" else None
+        unit = measured_unit(self._unit(column)) if kind != "number" else None
         value = number(text)
         own = {"length": self.length_unit, "angle": self.angle_unit}
         try:
@@ -204,7 +204,7 @@ class _Reader:
                 value = (
                     value_of(text, kind, length_unit=own["length"], angle_unit=own["angle"])
                     if unit is None
-                    else value_of(text, kind, **_in(kind, self.grid.unit(column), unit)) * self._scale(unit)
+                    else value_of(text, kind, **_in(kind, self._unit(column), unit)) * self._scale(unit)
                 )
             elif not math.isfinite(value):
                 raise RequestError(f"{shown(text)} is not a finite number; give a finite number")
@@ -220,15 +220,20 @@ class _Reader:
             return None
         return value
 
+    def _unit(self, column: int) -> str:
+        """The unit of a column as written; of a pitch without `/turn`."""
+        unit = self.grid.unit(column)
+        return re.sub(r"/\s*(turn|rev)$", "", unit) if column == self.columns.get("pitch") else unit
+
     def _has_right_unit(self, column: int, kind: Kind) -> bool:
         """Whether the unit of a column is one of its kind, or none; else it is reported, once."""
-        written = self.grid.unit(column)
+        written = self._unit(column)
         unit = measured_unit(written)
-        wanted = {"length": ("slide", 0), "angle": ("turn", 0)}.get(kind)
+        wanted = {"length": ("slide", 0), "pitch": ("slide", 0), "angle": ("turn", 0)}.get(kind)
         if not written or (unit is not None and (unit.kind, unit.order) == wanted):
             return True
-        what = "directions" if kind == "number" else f"{kind}s"
-        give = {"length": "give one like mm", "angle": "give one like deg"}.get(kind, "leave it out")
+        what = {"number": "directions", "pitch": "pitches"}.get(kind, f"{kind}s")
+        give = {"number": "leave it out", "angle": "give one like deg"}.get(kind, "give one like mm")
         self._wrong(f"{shown(written)} is not a unit of {what}; {give}", column=column)
         self._units_refused.add(column)
         return False
@@ -382,7 +387,7 @@ class _Reader:
             if column not in self.columns:
                 continue
             self.places[f"{place}.{column}"] = self.grid.place(row, self.columns[column])
-            what: Kind = "angle" if column in _ANGLES_OF_ROWS else "length"
+            what: Kind = "angle" if column in _ANGLES_OF_ROWS else "pitch" if column == "pitch" else "length"
             # the variable of a row has a word, such as theta_1
             if column == moving and number(self.text(row, column)) is None:
                 continue
@@ -409,7 +414,7 @@ class _Reader:
         if "axis 2" in table:
             table["axes"] = [table.pop("axis", [0.0, 0.0, 0.0]), table.pop("axis 2")]
             self.places[f"{place}.axes"] = self._span(row, "axis ")
-        if "pitch" in self.columns and (pitch := self.amount(row, "pitch", "length")) is not None:
+        if "pitch" in self.columns and (pitch := self.amount(row, "pitch", "pitch")) is not None:
             table["pitch"] = pitch
             self.places[f"{place}.pitch"] = self.grid.place(row, self.columns["pitch"])
         # a ball has no axis, whatever a list of axes holds
@@ -496,7 +501,7 @@ class _Reader:
         spoken = [row for row in names if self.text(row, "speed")]
         for row in spoken[:1]:
             column = self.columns["speed"]
-            drive["speed"] = f"{self.text(row, 'speed')} {self.grid.unit(column)}".strip()
+            drive["speed"] = f"{self.text(row, 'speed')} {self._unit(column)}".strip()
             self.places["drive.speed"] = self.grid.place(row, column)
         for row in spoken[1:]:
             self._wrong("is a second speed; give one, in the row of the input", row, self.columns["speed"])
@@ -505,9 +510,10 @@ class _Reader:
 
 def _in(kind: Kind, written: str, unit: MeasuredUnit) -> dict[str, str]:
     """The unit in which a formula of a column is read."""
-    known = LENGTHS if kind == "length" else ANGLES
+    known = ANGLES if kind == "angle" else LENGTHS
     name = next((name for name, size in known.items() if size == unit.size), written)
-    return {f"{kind}_unit": name} if kind != "number" and name in known else {}
+    key = "angle_unit" if kind == "angle" else "length_unit"
+    return {key: name} if kind != "number" and name in known else {}
 
 
 def _kind(word: str) -> str:

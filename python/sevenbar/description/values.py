@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.text.expression import Kind, value_of
+from sevenbar.text.amounts import Kind, value_of
 from sevenbar.text.units import ANGLES, LENGTHS, TURNING_SPEEDS, sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
@@ -53,6 +53,10 @@ def _number(value: object, info: ValidationInfo, kind: Kind = "number") -> float
 
 def _signed_length(value: object, info: ValidationInfo) -> float:
     return _number(value, info, "length")
+
+
+def _pitch(value: object, info: ValidationInfo) -> float:
+    return _number(value, info, "pitch")
 
 
 def _length(value: object, info: ValidationInfo) -> float:
@@ -120,16 +124,6 @@ def _text(value: object) -> str:
     return value.strip()
 
 
-def _one_joint(value: object) -> str:
-    if isinstance(value, list | tuple) and len(value) > 1:
-        count = {2: "two", 3: "three"}.get(len(value), str(len(value)))
-        raise refuse(
-            f"{shown(value)} are {count} inputs; give one, as a loop is driven at one joint here "
-            "('Two inputs' on the page 'What is not covered' says what to do instead)"
-        )
-    return _text(value)
-
-
 #: A formula before a unit of speed: `2*pi*5 rad/s`.
 _SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])
 _FORMULA_OF_SPEED = re.compile(rf"(.+?)\s*({_SPEED_UNITS})")
@@ -152,11 +146,11 @@ _OR_TEXT = WithJsonSchema(_FORMULA)
 _POSITIVE = WithJsonSchema({**_FORMULA, "exclusiveMinimum": 0})
 
 Number = Annotated[float, BeforeValidator(_signed_length), _OR_TEXT]
+Pitch = Annotated[float, BeforeValidator(_pitch), _OR_TEXT]
 Angle = Annotated[float, BeforeValidator(_angle), _OR_TEXT]
 Length = Annotated[float, BeforeValidator(_length), _POSITIVE]
 _Component = Annotated[float, _OR_TEXT]
 Vector = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_vector)]
 Direction = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_direction)]
 Text = Annotated[str, BeforeValidator(_text)]
-InputName = Annotated[str, BeforeValidator(_one_joint)]
 Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]

@@ -1,0 +1,201 @@
+"""The number of a dimension that a formula writes down, "50*sin(100deg)/sin(30deg)", its units checked."""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+
+from sevenbar.errors import RequestError, shown
+from sevenbar.text.expression import (
+    CALLED,
+    CONSTANTS,
+    FUNCTIONS,
+    LONGEST,
+    NEAR,
+    OPERATORS,
+    WrongFormulaError,
+    cosd,
+    evaluated,
+    parsed,
+    sind,
+    tand,
+)
+from sevenbar.text.units import ANGLES, length_sizes
+
+#: The functions of an angle by what they are in degrees, and those that give one.
+OF_ANGLES = {"sin": sind, "cos": cosd, "tan": tand}
+TO_ANGLES = ("asin", "acos", "atan")
+
+#: What may end a pitch, which is a length per turn.
+_A_TURN = re.compile(r"\s*/\s*turn\s*$")
+
+#: What a dimension is: it says which unit its formula may have, and what a formula without one means.
+Kind = Literal["length", "pitch", "angle", "number"]
+
+
+def value_of(text: str, kind: Kind, *, length_unit: str = "mm", angle_unit: str = "deg") -> float:
+    """The number of a dimension that a text writes down, in `length_unit` or `angle_unit`.
+
+    Numbers with or without a unit, pi, e, + - * / ^, brackets, sqrt, abs, and the functions of angles. A
+    length or an angle without a unit is in the file's; an angle of pi, or of asin, acos, atan, is in radians.
+    The angle of sin, cos and tan needs a unit, or pi. Raises `RequestError` where units do not fit.
+
+        >>> value_of("50*sin(100deg)/sin(30deg)", "length")
+        98.4807753012208
+        >>> value_of("pi/3", "angle"), value_of("1in + 2 cm", "length")
+        (60.0, 45.4)
+    """
+    if kind == "pitch":
+        text = _A_TURN.sub("", text)
+    if len(text) > LONGEST:
+        raise RequestError(f"{len(text)} characters are too long; give a formula of at most {LONGEST}")
+    sizes = length_sizes(length_unit)
+    names = {name: _Amount(value, turns=name == "pi") for name, value in CONSTANTS.items()}
+    names |= {CALLED[unit]: _Amount(size, length=Fraction(1)) for unit, size in sizes.items()}
+    # angles are carried in the file's own unit, so that what is written in it stays as it is
+    own = ANGLES[angle_unit]
+    for unit, size in ANGLES.items():
+        same = unit == angle_unit
+        names[CALLED[unit]] = _Amount(1.0 if same else size / own, angle=1, turns=not same)
+    try:
+        body = parsed(text, names)
+        with np.errstate(all="ignore"):
+            found = evaluated(body, names, partial(_operated, own=own), partial(_applied, own=own))
+        number = _fitting(found, kind, own)
+    except WrongFormulaError as error:
+        remedy = "" if "; " in str(error) else f"; give {_EXAMPLES[kind]}"
+        raise RequestError(f"{shown(text)}: {error}{remedy}") from None
+    if not math.isfinite(number):
+        raise RequestError(f"{shown(text)} has no finite value; give {_EXAMPLES[kind]}")
+    return number
+
+
+#: What a dimension may look like, for messages.
+_EXAMPLES: Mapping[Kind, str] = {
+    "length": "a length, as in 250, '25 cm' or '50*sin(30deg)'",
+    "pitch": "a length per turn, as in 8, '8 mm/turn' or '2*4mm'",
+    "angle": "an angle, as in 30, '30deg' or 'pi/6'",
+    "number": "a number, as in 0.5 or 'cos(60deg)'",
+}
+
+
+@dataclass(frozen=True)
+class _Amount:
+    """A number with the powers of length and angle in its unit.
+
+    `turns`: it comes of pi, of radians or of an inverse function. `mixed`: such a number and another one were
+    added, neither with a unit.
+    """
+
+    number: float
+    length: Fraction = Fraction(0)
+    angle: int = 0
+    turns: bool = False
+    mixed: bool = False
+
+    @property
+    def plain(self) -> bool:
+        return not (self.length or self.angle)
+
+    @property
+    def what(self) -> str:
+        if self.plain:
+            return "a number without a unit"
+        known = {(1, 0): "a length", (0, 1): "an angle", (2, 0): "an area"}
+        return next((what for power, what in known.items() if self.has(*power)), "neither length nor angle")
+
+    def has(self, length: int, angle: int) -> bool:
+        """Whether its unit has these powers of length and angle."""
+        return self.length == length and self.angle == angle
+
+
+def _operated(sign: type[ast.AST], *sides: Any, own: float) -> _Amount:
+    """Amounts added, multiplied and so on; `own` is the size [rad] of the file's unit of angles."""
+    first, *rest = [side if isinstance(side, _Amount) else _Amount(float(side)) for side in sides]
+    if not rest:
+        return replace(first, number=float(OPERATORS[sign](first.number)))
+    (second,) = rest
+    mixed = first.mixed or second.mixed
+    if sign in (ast.Add, ast.Sub):
+        first, second = _in_radians(first, second, own), _in_radians(second, first, own)
+        if (first.length, first.angle) != (second.length, second.angle):
+            verb = "adds" if sign is ast.Add else "subtracts"
+            raise WrongFormulaError(f"it {verb} {first.what} and {second.what}; give each its unit")
+        length, angle = first.length, first.angle
+        mixed |= first.plain and first.turns != second.turns and 0.0 not in (first.number, second.number)
+    elif sign is ast.Pow:
+        if not second.plain:
+            raise WrongFormulaError(f"{second.what} is no exponent; give a number without a unit")
+        power = Fraction(second.number).limit_denominator(12) if abs(second.number) < 100 else Fraction(0)
+        if not first.plain and float(power) != second.number:
+            raise WrongFormulaError(
+                f"{first.what} to the power {second.number:g} has no unit; give a whole exponent"
+            )
+        length, turned = first.length * power, first.angle * power
+        if turned.denominator != 1:
+            raise WrongFormulaError("the root of an angle has no unit; give a number without a unit")
+        angle = int(turned)
+    else:
+        turn = 1 if sign is ast.Mult else -1
+        length, angle = first.length + turn * second.length, first.angle + turn * second.angle
+    number = float(OPERATORS[sign](np.float64(first.number), second.number))
+    return _Amount(number, length, angle, first.turns or second.turns, mixed)
+
+
+def _in_radians(one: _Amount, other: _Amount, own: float) -> _Amount:
+    """A number of pi that is added to an angle is an angle itself."""
+    is_angle = one.plain and one.turns and not one.mixed and other.angle == 1
+    return _Amount(one.number / own, angle=1, turns=True) if is_angle else one
+
+
+def _applied(name: str, value: Any, *, own: float) -> _Amount:
+    """A function of an amount, which must have the unit that the function takes."""
+    x = value if isinstance(value, _Amount) else _Amount(float(value))
+    if name in OF_ANGLES:
+        if x.has(0, 1):
+            degrees = x.number if own == ANGLES["deg"] else math.degrees(x.number)
+        elif x.plain and ((x.turns and not x.mixed) or x.number == 0):
+            degrees = math.degrees(x.number)
+        else:
+            unit = (
+                f"write {name}({x.number:g}deg), or {name}({x.number:g} rad)" if x.plain else "give an angle"
+            )
+            raise WrongFormulaError(f"{name} of {x.what}; {unit}")
+        near = 30.0 * round(degrees / 30.0) if math.isfinite(degrees) else 0.0
+        exact = abs(degrees - near) <= NEAR
+        return _Amount(float(OF_ANGLES[name](near) if exact else FUNCTIONS[name](math.radians(degrees))))
+    if name == "abs":
+        return replace(x, number=abs(x.number))
+    if name == "sqrt":
+        return _operated(ast.Pow, x, 0.5, own=own)
+    if not x.plain:
+        raise WrongFormulaError(f"{name} of {x.what}; give a number without a unit")
+    number = float(FUNCTIONS[name](np.float64(x.number)))
+    return _Amount(number / own, angle=1, turns=True) if name in TO_ANGLES else _Amount(number)
+
+
+def _fitting(found: Any, kind: Kind, own: float) -> float:
+    """The number of an amount that has the unit of its dimension, or none."""
+    amount = found if isinstance(found, _Amount) else _Amount(float(found))
+    number = float(amount.number)
+    if kind == "angle" and amount.plain and amount.mixed:
+        raise WrongFormulaError(
+            "it adds a number of pi and another; give each its unit, as in 'pi/3 rad + 5deg'"
+        )
+    if kind == "angle" and amount.turns and amount.plain:
+        amount = _Amount(number / own, angle=1, turns=True)
+    wanted = {"length": (1, 0), "pitch": (1, 0), "angle": (0, 1), "number": (0, 0)}[kind]
+    if not amount.plain and not amount.has(*wanted):
+        belongs = {"angle": "an angle", "number": "a number without a unit"}.get(kind, "a length")
+        raise WrongFormulaError(f"is {amount.what} where {belongs} belongs")
+    # 60, not 59.99999999999999, of pi/3
+    short = float(f"{amount.number:.13g}")
+    return short if amount.turns and abs(short - amount.number) <= 2e-15 * abs(short) else amount.number
