@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -58,8 +59,12 @@ def simulate(
     check_out(report, out, force=force)
     ahead = Ahead("--steps", f"{steps} steps in {engine}", seconds=steps / STEPS[engine])
     agree(ahead, yes=yes)
-    way, model = prepared(loaded, steps=steps, circuit=circuit, input=input_joint, output=output, speed=speed)
     with progress_bar(f"{engine}: {loaded.name}") as progress:
-        progress(0, 0)
+        if sys.stderr.isatty():
+            # a refusal takes it away
+            progress(0, 0)
+        way, model = prepared(
+            loaded, steps=steps, circuit=circuit, input=input_joint, output=output, speed=speed
+        )
         run = moved(way, model, engine, progress)
     deliver(run, report, out, json=json, force=force)
