@@ -14,7 +14,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description.gallery import names
 from sevenbar.drawing import plot
-from sevenbar.drawing.figure import CIRCUIT_COLOURS
+from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.kinematics.poses import walk
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels

@@ -195,7 +195,7 @@ def _axes() -> tuple[Figure, Axes]:
 
 @picture_of.register(Linkage)
 def _(linkage: Linkage) -> Figure | None:
-    from sevenbar.drawing.paths import modes_overview
+    from sevenbar.drawing.configuration import modes_overview
 
     # only what closes at once: a loop with screws is searched for its modes
     if "H" in linkage.kind:
@@ -211,7 +211,7 @@ def _(linkage: Linkage) -> Figure | None:
 
 @picture_of.register(Motion)
 def _(motion: Motion) -> Figure | None:
-    from sevenbar.drawing.plot import panel, passes
+    from sevenbar.drawing.output_curves import panel, passes
 
     if not motion.circuits:
         return None

@@ -19,8 +19,9 @@ from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
 from sevenbar.design.maps.lettering import LINE, RASTER, names, take
 from sevenbar.design.maps.plane import Kind
-from sevenbar.drawing.figure import STYLE, new_figure
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.names import short
+from sevenbar.drawing.style import STYLE
 from sevenbar.errors import RequestError, shown, suggestion
 
 #: Sheets of paper, width and height [inch].
