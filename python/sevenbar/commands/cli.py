@@ -15,9 +15,20 @@ import typer.core
 
 import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver, tell_written
-from sevenbar.commands.given import check_law, input_column, input_value, law_of, point_of
+from sevenbar.commands.given import (
+    check_law,
+    film_of,
+    input_column,
+    input_value,
+    law_of,
+    look_of,
+    point_of,
+)
 from sevenbar.commands.options import (
     Figures,
+    FigureSize,
+    FigureStyle,
+    FigureView,
     Force,
     InputJoint,
     InputValue,
@@ -35,7 +46,8 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.errors import RequestError, SevenbarError, shown
-from sevenbar.reporting.figures import KINDS, Places, write_figures
+from sevenbar.kinematics.motion import chosen_circuit
+from sevenbar.reporting.figures import KINDS, FigureLook, Places, write_figures
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
 
@@ -114,23 +126,37 @@ def analyze(
     ] = None,
     figures: Figures = None,
     animate: Annotated[
-        Path | None, typer.Option(help="Write the moving linkage to this .gif or .mp4.")
+        Path | None, typer.Option(help="Write the moving linkage to this .gif, .mp4 or .html.")
     ] = None,
+    circuit: Annotated[
+        int | None, typer.Option(help="The circuit that is drawn and filmed; the first by default.")
+    ] = None,
+    view: FigureView = None,
+    size: FigureSize = None,
+    style: FigureStyle = None,
+    fps: Annotated[float | None, typer.Option(help="Pictures a second of the film.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Length of the film.")] = None,
     force: Force = False,
     json: Json = False,
 ) -> None:
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar.reporting.report import motion_report
 
-    report = motion_report(figure_formats(figures, out))
+    look = look_of(view, size, style)
+    report = motion_report(figure_formats(figures, out), circuit=circuit, look=look)
+    film_look = film_of(fps, seconds, animate)
+    if out is None and animate is None:
+        _refuse_unused({"--circuit": circuit, "--view": view, "--size": size, "--style": style})
     check_law(law, speed)
     loaded = sb.load(linkage)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint)
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
+    if circuit is not None:
+        chosen_circuit(motion, circuit)
     elsewhere = []
     if animate is not None:
-        film = _film(motion, animate, out, force=force)
+        film = _film(motion, animate, out, circuit, look, film_look, force=force)
         if out is not None and _same_folder(animate.parent, out):
             # of the files that appear together
             report = replace(report, files={**report.files, animate.name: film})
@@ -140,12 +166,25 @@ def analyze(
     deliver(motion, report, out, json=json, force=force, also=elsewhere)
 
 
+def _refuse_unused(given: dict[str, object]) -> None:
+    """Refuses options of figures where none is drawn."""
+    for option, value in given.items():
+        if value is not None:
+            raise RequestError(f"{option}: no figure is drawn; give --out, --animate, or both")
+
+
 def _film(
-    motion: sb.Motion, file: Path, out: Path | None, *, force: bool
+    motion: sb.Motion,
+    file: Path,
+    out: Path | None,
+    circuit: int | None,
+    look: FigureLook,
+    film: dict[str, float],
+    *,
+    force: bool,
 ) -> Callable[[sb.Motion, Path], object]:
     """What draws the animation; raises where it cannot be, before anything is written."""
-    from sevenbar.drawing.animate import animate, check_ending, check_target
-    from sevenbar.kinematics.motion import chosen_circuit
+    from sevenbar.drawing.animate import animate, check_ending, check_film, check_target
     from sevenbar.reporting.figures import posed_circuit
 
     if out is not None and _same_folder(file.parent, out):
@@ -154,11 +193,14 @@ def _film(
     else:
         check_target(file)
     check_targets([file], force=force)
-    drawn = chosen_circuit(motion, posed_circuit(motion) or 0).index
+    check_film(file, **film)
+    posed = posed_circuit(motion) or 0 if circuit is None else circuit
+    drawn = chosen_circuit(motion, posed).index
 
     def draw(motion: sb.Motion, path: Path) -> None:
         with progress_bar(f"drawing {path.name}") as progress:
-            animate(motion, path, circuit=drawn, progress=progress)
+            arguments: dict[str, Any] = {**look.of_pictures, **film}
+            animate(motion, path, circuit=drawn, progress=progress, **arguments)
 
     return draw
 
@@ -203,17 +245,21 @@ def plot_(
     point: PointName = None,
     link: PointLink = None,
     at: PointPlace = None,
-    circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space.")] = 0,
+    circuit: Annotated[int, typer.Option(help="The circuit of the pictures of the linkage.")] = 0,
     samples: Samples = 360,
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
     figures: Figures = None,
+    view: FigureView = None,
+    size: FigureSize = None,
+    style: FigureStyle = None,
     force: Force = False,
 ) -> None:
     """Draw a linkage: curves of the output, all joints, all modes, the linkage in space, a point's path."""
     formats = figure_formats(figures, out)
     kinds = _kinds(kind)
+    look = look_of(view, size, style)
     loaded = sb.load(linkage)
     points = _points(loaded, point_of(point, link, at))
     if "point" in kinds and not points:
@@ -221,7 +267,9 @@ def plot_(
             raise RequestError("--kind: point needs a point; give --link and --at, as the linkage names none")
         kinds.remove("point")
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
-    written = write_figures(motion, out, kinds, points, circuit=circuit, figures=formats, force=force)
+    written = write_figures(
+        motion, out, kinds, points, circuit=circuit, figures=formats, look=look, force=force
+    )
     tell_written(written, below=False)
 
 

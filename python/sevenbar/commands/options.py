@@ -14,7 +14,17 @@ from sevenbar.errors import RequestError, shown
 Source = Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")]
 Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
 Figures = Annotated[
-    list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
+    list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf, eps; may be repeated.")
+]
+FigureView = Annotated[
+    str | None,
+    typer.Option("--view", help="plane, space, xy, xz, yz or iso, or elevation and azimuth, as in '30,-60'."),
+]
+FigureSize = Annotated[
+    str | None, typer.Option("--size", help="Size of the figures, as in '85x60mm' or '3.3x2.5in'.")
+]
+FigureStyle = Annotated[
+    str | None, typer.Option("--style", help="Style of the figures: screen, paper or ieee.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
 InputJoint = Annotated[

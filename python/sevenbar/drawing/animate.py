@@ -84,50 +84,21 @@ def animate(
     ffmpeg = check_target(target)
     ending = target.suffix.lower()
     chosen = chosen_circuit(motion, circuit)
-    if seconds is not None:
-        if frames is not None:
-            raise RequestError("seconds: frames and fps give the length of the film; leave one of them out")
-        if (
-            isinstance(seconds, bool)
-            or not isinstance(seconds, (int, float, np.number))
-            or not 0 < seconds < 1e6
-        ):
-            raise RequestError(f"seconds: {shown(seconds)} is not a length of a film; give a number > 0")
-        if isinstance(fps, (int, float)) and fps > 0:
-            frames = max(2, round(seconds * fps))
-    frames = FRAMES if frames is None else frames
-    if (
-        isinstance(frames, bool)
-        or not isinstance(frames, (int, np.integer))
-        or not 2 <= frames <= MOST_FRAMES
-    ):
-        if seconds is not None:
-            raise RequestError(
-                f"seconds: {shown(seconds)} at {fps:g} pictures a second are more than {MOST_FRAMES}"
-            )
-        raise RequestError(f"frames: {shown(frames)} is not a count; give 2 to {MOST_FRAMES}")
-    if (
-        isinstance(fps, bool)
-        or not isinstance(fps, (int, float, np.number))
-        or not 0.1 <= fps <= FASTEST[ending]
-    ):
-        raise RequestError(
-            f"fps: {shown(fps)} is not offered; give 0.1 to {FASTEST[ending]:g} for a {ending} file"
-        )
+    frames = check_film(target, frames=frames, fps=fps, seconds=seconds)
     size = _even(page_size(style, None if figsize is None else checked_size(figsize), SIZE, wide=True))
     with written_whole(target) as file, styled(style):
         frame = skeleton(motion, chosen)
         seen = view_of(view, motion.linkage, scene.shown_places(frame))
         heading = title_text(title, f"{title_of(motion)}\ncircuit {chosen.index}")
         if ending == ".html":
-            rows = _rows(motion, walk(chosen), int(frames))
+            rows = _rows(motion, walk(chosen), frames)
             text = film_page(motion, chosen, frame, seen, rows, fps=float(fps), title=heading)
             file.write_text(text, encoding="utf-8")
             return target
-        shown_as = _pictures(motion, chosen, frame, seen, int(frames), size, heading)
-        pictures = _reported(shown_as, int(frames), progress)
+        shown_as = _pictures(motion, chosen, frame, seen, frames, size, heading)
+        pictures = _reported(shown_as, frames, progress)
         if ending == ".gif":
-            _write_gif(pictures, file, int(frames), float(fps))
+            _write_gif(pictures, file, frames, float(fps))
         else:
             _write_mp4(pictures, file, float(fps), ffmpeg, target, size)
     return target
@@ -137,6 +108,33 @@ def _even(size: tuple[float, float]) -> tuple[float, float]:
     """The size [inch] with even pixels, as video wants them."""
     width, height = (2 * max(1, round(side * DPI / 2)) / DPI for side in size)
     return width, height
+
+
+def check_film(
+    target: Path, *, frames: int | None = None, fps: float = RATE, seconds: float | None = None
+) -> int:
+    """How many pictures a film has; raises `RequestError` for a count, a rate or a length not offered."""
+    most = FASTEST[target.suffix.lower()]
+    if isinstance(fps, bool) or not isinstance(fps, (int, float, np.number)) or not 0.1 <= fps <= most:
+        raise RequestError(
+            f"fps: {shown(fps)} is not offered; give 0.1 to {most:g} for a {target.suffix.lower()} file"
+        )
+    if seconds is not None:
+        if frames is not None:
+            raise RequestError("seconds: frames and fps give the length of the film; leave one of them out")
+        usable = isinstance(seconds, (int, float, np.number)) and not isinstance(seconds, bool)
+        if not (usable and 2 <= seconds * fps <= MOST_FRAMES):
+            raise RequestError(
+                f"seconds: {shown(seconds)} is not offered; at {fps:g} pictures a second "
+                f"give {2 / fps:g} to {MOST_FRAMES / fps:g}"
+            )
+        return round(float(seconds * fps))
+    if frames is None:
+        return FRAMES
+    counts = isinstance(frames, (int, np.integer)) and not isinstance(frames, bool)
+    if not (counts and 2 <= frames <= MOST_FRAMES):
+        raise RequestError(f"frames: {shown(frames)} is not a count; give 2 to {MOST_FRAMES}")
+    return int(frames)
 
 
 def check_target(target: Path) -> str:

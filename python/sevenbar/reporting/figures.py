@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +24,25 @@ Places = Mapping[str, tuple[int, tuple[float, float, float]]]
 KINDS = ("curves", "joints", "modes", "configuration", "point")
 
 
+@dataclass(frozen=True)
+class FigureLook:
+    """How figures are drawn: the view of pictures, the size of the page [inch], the style."""
+
+    view: str | tuple[float, float] | None = None
+    size: tuple[float, float] | None = None
+    style: str | None = None
+
+    @property
+    def of_curves(self) -> dict[str, Any]:
+        """The arguments of a figure without a picture of the linkage."""
+        return {"figsize": self.size, "style": self.style}
+
+    @property
+    def of_pictures(self) -> dict[str, Any]:
+        """The arguments of a figure with one."""
+        return {"view": self.view, **self.of_curves}
+
+
 def write_figures(
     motion: Motion,
     folder: str | os.PathLike[str],
@@ -31,6 +51,7 @@ def write_figures(
     *,
     circuit: int = 0,
     figures: Sequence[str] = ("png",),
+    look: FigureLook | None = None,
     force: bool = False,
 ) -> list[Path]:
     """Writes figures of these kinds into a folder, all or none; returns their paths.
@@ -38,17 +59,30 @@ def write_figures(
     `kinds` of `KINDS`; `points` (link, at) by name, for the kind point. Raises `OutputError` where one of the
     files exists and `force` is not given.
     """
+    drawn = look or FigureLook()
     return fill_folder(
-        Path(folder), lambda staging: _draw(motion, staging, kinds, points, circuit, figures), force=force
+        Path(folder),
+        lambda staging: _draw(motion, staging, kinds, points, circuit, figures, drawn),
+        force=force,
     )
 
 
-def draw_for_report(motion: Motion, folder: Path, formats: Sequence[str]) -> None:
-    """Draws configuration and motion; but for an RSSR, whose curves show all, also joints and points."""
+def draw_for_report(
+    motion: Motion,
+    folder: Path,
+    formats: Sequence[str],
+    *,
+    circuit: int | None = None,
+    look: FigureLook | None = None,
+) -> None:
+    """Draws configuration and motion; for any loop other than an RSSR, whose curves show all, joints and points.
+
+    Linkage and points are drawn on `circuit`, the first with a pose by default.
+    """
     if not motion.circuits:
         return
     general = motion.linkage.kind != "RSSR"
-    posed = posed_circuit(motion)
+    posed = posed_circuit(motion) if circuit is None else circuit
     kinds = ["curves", *(["joints"] if general else [])]
     if posed is not None:
         # a law that rests leaves no path
@@ -56,7 +90,7 @@ def draw_for_report(motion: Motion, folder: Path, formats: Sequence[str]) -> Non
         moves = np.unique(inputs[np.isfinite(inputs)]).size > 1
         kinds += ["configuration", *(["point"] if general and moves else [])]
     points = {point.name: (point.link, point.at) for point in motion.linkage.points}
-    _draw(motion, folder, kinds, points, posed or 0, formats)
+    _draw(motion, folder, kinds, points, posed or 0, formats, look or FigureLook())
 
 
 def posed_circuit(motion: Motion) -> int | None:
@@ -66,20 +100,27 @@ def posed_circuit(motion: Motion) -> int | None:
 
 
 def _draw(
-    motion: Motion, folder: Path, kinds: Sequence[str], points: Places, circuit: int, formats: Sequence[str]
+    motion: Motion,
+    folder: Path,
+    kinds: Sequence[str],
+    points: Places,
+    circuit: int,
+    formats: Sequence[str],
+    look: FigureLook,
 ) -> None:
     from sevenbar.drawing import plot
 
     def made() -> Iterator[tuple[str, Figure]]:
         if "curves" in kinds:
-            yield "motion", plot.curves(motion)
+            yield "motion", plot.curves(motion, **look.of_curves)
         if "joints" in kinds:
-            yield "joints", plot.joints(motion)
+            yield "joints", plot.joints(motion, **look.of_curves)
         if "configuration" in kinds:
-            yield "configuration", plot.configuration(motion, circuit)
+            yield "configuration", plot.configuration(motion, circuit, **look.of_pictures)
         if "point" in kinds:
             for name, point in points.items():
-                yield f"path_{_file_name(name)}", plot.point_path(motion, point, circuit, name=name)
+                figure = plot.point_path(motion, point, circuit, name=name, **look.of_pictures)
+                yield f"path_{_file_name(name)}", figure
         if "modes" in kinds:
             chosen = chosen_circuit(motion, circuit)
             # a limit is no place to show modes at: there two are one
@@ -88,7 +129,9 @@ def _draw(
             modes = motion.linkage.assembly_modes(value, input=motion.input)
             yield (
                 "modes",
-                plot.modes_overview(motion.linkage, modes, input=motion.input, output=motion.output),
+                plot.modes_overview(
+                    motion.linkage, modes, input=motion.input, output=motion.output, **look.of_pictures
+                ),
             )
 
     for name, figure in made():

@@ -22,7 +22,7 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
-from sevenbar.reporting.figures import draw_for_report, posed_circuit, write_figures
+from sevenbar.reporting.figures import FigureLook, draw_for_report, posed_circuit, write_figures
 from sevenbar.reporting.files import Report, columns_file, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
@@ -226,14 +226,17 @@ def _table(sheet: Sheet) -> Table:
     return table
 
 
-def motion_report(figures: Sequence[str] = ("png",)) -> Report[Motion]:
-    """How a motion is reported, with the figures in these formats."""
+def motion_report(
+    figures: Sequence[str] = ("png",), *, circuit: int | None = None, look: FigureLook | None = None
+) -> Report[Motion]:
+    """How a motion is reported, with the figures in these formats, of a circuit, drawn in a way."""
     files = {
         "report.json": json_file(as_dict),
         "motion.csv": columns_file(Motion.columns),
         "report.md": _write_markdown,
     }
-    return Report(text, as_dict, files, partial(draw_for_report, formats=figures))
+    draw = partial(draw_for_report, formats=figures, circuit=circuit, look=look)
+    return Report(text, as_dict, files, draw)
 
 
 def _write_markdown(motion: Motion, path: Path) -> None:
