@@ -16,6 +16,7 @@ from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.general import GeneralLoop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Modes, Motion, Output, Solvable
+from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
 from sevenbar.text.units import sliding_speed, turning_speed
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
@@ -154,6 +155,26 @@ class Linkage(Solvable):
     @cached_property
     def _mobility(self) -> Mobility:
         return self._general.mobility(self.columns.index(self.drive.joint))
+
+    @cached_property
+    def plane(self) -> MotionPlane | None:
+        """The plane of a planar loop; `None` for any other.
+
+        >>> import sevenbar as sb
+        >>> sb.load("planar_4r").plane.x.tolist()
+        [0.0, 1.0, 0.0]
+        """
+        return plane_of(self)
+
+    @cached_property
+    def sphere(self) -> MotionSphere | None:
+        """The centre of a spherical loop, and a radius to draw it with; `None` for any other.
+
+        >>> import sevenbar as sb
+        >>> sb.load("spherical_4r").sphere.radius
+        1.0
+        """
+        return sphere_of(self)
 
     @property
     def idle(self) -> tuple[str, ...]:

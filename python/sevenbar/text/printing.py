@@ -89,8 +89,10 @@ def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
 
 
 def brief(value: object) -> str:
-    """A value on one line: an array by its shape, a result by its head, much by its count."""
+    """A value on one line: a vector by its numbers, an array by its shape, a result by its head."""
     if isinstance(value, np.ndarray):
+        if value.shape == (3,):
+            return f"({', '.join(f'{x + 0.0:.6g}' for x in value)})"
         return f"array {value.shape}"
     if isinstance(value, Printed):
         return repr(value).partition("\n")[0]
