@@ -13,7 +13,9 @@ from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import NotCoveredError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.closed_form import ClosedForm
+from sevenbar.kinematics.four_bar import four_bar_of
 from sevenbar.kinematics.general import GeneralLoop
+from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Modes, Motion, Output, Solvable
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
@@ -175,6 +177,21 @@ class Linkage(Solvable):
         1.0
         """
         return sphere_of(self)
+
+    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+        """The links by Grashof's rule, driven and read as the drive has it or as given.
+
+        `None` for a loop that is no planar or spherical four-bar and no slider-crank.
+
+            >>> import sevenbar as sb
+            >>> bar = sb.load("planar_4r").four_bar()
+            >>> bar.excess, bar.grashof
+            (-30.0, 'crank-rocker')
+
+        Source: docs/theory_measures.md, (1) to (3).
+        """
+        first, second = self._ends(input, self.drive.output if output is None and input is None else output)
+        return four_bar_of(self, self.columns[first], self.columns[second])
 
     @property
     def idle(self) -> tuple[str, ...]:
