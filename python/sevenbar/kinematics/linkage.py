@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import NotCoveredError, RequestError, shown
+from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.four_bar import four_bar_of
@@ -177,6 +178,11 @@ class Linkage(Solvable):
         1.0
         """
         return sphere_of(self)
+
+    @cached_property
+    def answers(self) -> LinkageAnswers:
+        """What its circuits take from it: named points, transmission, its plane."""
+        return LinkageAnswers(self)
 
     def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule, driven and read as the drive has it or as given.

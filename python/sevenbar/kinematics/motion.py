@@ -15,6 +15,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.kinematics.circuits import (
+    Answers,
     Circuit,
     Law,
     Words,
@@ -179,6 +180,11 @@ class Solvable(Loop, ABC):
     @abstractmethod
     def spin_axes(self) -> dict[str, Floats]:
         """The axis that holds the idle spin beyond a ball, by the ball's name."""
+
+    @cached_property
+    @abstractmethod
+    def answers(self) -> Answers:
+        """What its circuits take from it."""
 
     @abstractmethod
     def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
@@ -347,6 +353,9 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
             for axis, letter in enumerate("xyz"):
                 head = point_column(point.name, letter, order=order, length=length)
                 columns[head] = values[:, axis] * scale
+    if circuit.transmission_angle is not None:
+        transmission = circuit.transmission_angle
+        columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
     columns[f"residual_{length}"] = circuit.residual * scale
     return columns
 

@@ -99,7 +99,7 @@ def _circuits(motion: Motion) -> list[tuple[str, str]]:
     """A line for each circuit: its type where they differ, its ranges; one line where all agree."""
     told = []
     for circuit in motion.circuits[:MOST_CIRCUITS]:
-        facts = circuit_facts(motion, circuit)
+        facts = circuit_facts(motion, circuit, ("motion type", "range of "))
         texts = [text for label, text in facts if label == "motion type"]
         ranges = [(label, text) for label, text in facts if label.startswith("range of ")]
         texts += [f"{label.removeprefix('range of ')} {text}" for label, text in ranges]
@@ -137,12 +137,18 @@ def _(circuit: Circuit) -> str:
             ("input dead centres", still("input")),
             ("output dead centres", still("output")),
             ("time ratio", "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"),
-            ("transmission angle", range_of(circuit.transmission, Shown("rad"))),
+            ("transmission angle", range_of(_known_transmission(circuit), Shown("rad"))),
             ("velocity", range_of(circuit.velocity)),
             ("acceleration", range_of(circuit.acceleration)),
             ("closure error", f"at most {closure_error([circuit]):.1e}"),
         ],
     )
+
+
+def _known_transmission(circuit: Circuit) -> Extremes | None:
+    """The transmission angle if it has been found: to print is not to solve."""
+    known: Extremes | None = vars(circuit).get("transmission", circuit._transmission)
+    return known
 
 
 @text_of.register(Trace)
