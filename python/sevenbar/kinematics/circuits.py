@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.errors import RequestError, shown
+from sevenbar.errors import RequestError, shown, ends_here
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.rigid import axial, pose
@@ -323,6 +323,7 @@ class Circuit(Printed):
         ends.append(ends[0] + math.tau * self.turns)
         return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
 
+    @ends_here
     def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Trace:
         """A point of link 1, 2, .. along the circuit, or a point of the linkage by its name.
 
@@ -354,6 +355,7 @@ class Circuit(Printed):
             raise RequestError(f"at: {place.size} numbers; give three")
         return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
 
+    @ends_here
     def sensitivity(self) -> Sensitivity:
         """Exact derivatives of all joints and named points by every number of the linkage's description.
 
@@ -368,6 +370,7 @@ class Circuit(Printed):
         """
         return self._sensitivity(self)
 
+    @ends_here
     def link_motion(self, link: int) -> LinkMotion:
         """How link 1, 2, .. turns along the circuit: angular velocity and acceleration, report frame.
 
@@ -391,6 +394,7 @@ class Circuit(Printed):
         spin = rate @ back
         return LinkMotion(turn, axial(spin), axial(second @ back + rate @ np.swapaxes(rate, -1, -2)))
 
+    @ends_here
     def screw_axes(self, link: int, relative_to: int | None = None) -> ScrewAxes:
         """The instantaneous screw axis of a link on each row, against the ground or another link.
 
@@ -414,6 +418,7 @@ class Circuit(Printed):
         status = np.where(words == "ok", others, words)
         return screw_axes(int(link), int(other), own, base, self.size, status)
 
+    @ends_here
     def instant_centres(self) -> InstantCentres:
         """The instant centres of all pairs of links of a planar loop, on each row.
 

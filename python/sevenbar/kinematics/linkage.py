@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
-from sevenbar.errors import NotCoveredError, RequestError, shown
+from sevenbar.errors import NotCoveredError, RequestError, shown, ends_here
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.closed_form import ClosedForm
@@ -80,6 +80,7 @@ class Linkage(Solvable):
         except RequestError as error:
             raise RequestError(f"speed: {error}") from None
 
+    @ends_here
     def output(
         self,
         values: npt.ArrayLike,
@@ -124,6 +125,7 @@ class Linkage(Solvable):
             )
         return solver.outputs(array, int(order), column, constant, law)
 
+    @ends_here
     def assembly_modes(
         self, theta: float, *, input: str | None = None, method: Literal["auto", "general"] = "auto"
     ) -> Modes:
@@ -169,6 +171,11 @@ class Linkage(Solvable):
         """
         return plane_of(self)
 
+    @property
+    def is_planar(self) -> bool:
+        """Whether it can only move in its plane."""
+        return self.plane is not None
+
     @cached_property
     def sphere(self) -> MotionSphere | None:
         """The centre of a spherical loop, and a radius to draw it with; `None` for any other.
@@ -184,6 +191,7 @@ class Linkage(Solvable):
         """What its circuits take from it: named points, transmission, its plane."""
         return LinkageAnswers(self)
 
+    @ends_here
     def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule, driven and read as the drive has it or as given.
 
@@ -240,6 +248,7 @@ class Linkage(Solvable):
                 "between these balls; describe the loop from another joint on, so that R or P stands there"
             )
 
+    @ends_here
     def motion(
         self,
         samples: int = 360,
@@ -273,6 +282,7 @@ class Linkage(Solvable):
         self._refuse_unheld()
         return self._general.motion(column, output_column, samples, rate, law)
 
+    @ends_here
     def circuit(
         self,
         pose: npt.ArrayLike,

@@ -23,7 +23,7 @@ from sevenbar.kinematics.circuits import (
 from sevenbar.kinematics.columns import joint_column, point_column
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.grashof import FourBar
-from sevenbar.text.printing import Printed
+from sevenbar.text.printing import Drawable, Printed
 from sevenbar.text.units import LENGTHS
 
 if TYPE_CHECKING:
@@ -186,6 +186,11 @@ class Solvable(Loop, ABC):
     def answers(self) -> Answers:
         """What its circuits take from it."""
 
+    @property
+    @abstractmethod
+    def is_planar(self) -> bool:
+        """Whether it can only move in a plane."""
+
     @abstractmethod
     def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
@@ -228,7 +233,7 @@ class Solvable(Loop, ABC):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion(Printed):
+class Motion(Drawable):
     """The circuits of a linkage over the whole input range."""
 
     linkage: Solvable
