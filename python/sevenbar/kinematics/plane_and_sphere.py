@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -85,6 +86,20 @@ def plane_of(loop: Loop) -> MotionPlane | None:
         >>> sb.load("planar_4r").plane.normal.tolist(), sb.load("bennett").plane
         ([1.0, 0.0, 0.0], None)
     """
+    found = in_plane(loop)
+    return None if found is None else found.plane
+
+
+class InPlane(NamedTuple):
+    """The plane of a loop; of the joints of `expanded` those that move in it, and the turn that is held."""
+
+    plane: MotionPlane
+    moves: tuple[int, ...]
+    held: int | None
+
+
+def in_plane(loop: Loop) -> InPlane | None:
+    """The plane of a planar loop, and what moves in it; `None` for any other."""
     parts = expanded(loop)
     letters, count = parts.letters, len(parts.letters)
     if "H" in letters:
@@ -103,7 +118,10 @@ def plane_of(loop: Loop) -> MotionPlane | None:
         normal = _normal(letters, frames)
         if normal is not None and _in_plane(letters, frames, end, normal, size_of(loop), still is None):
             back = frames.get(0, end)
-            return _drawn(parts.base[:3, :3] @ back[:3, :3].T @ normal, parts.base[:3, 3])
+            plane = _drawn(parts.base[:3, :3] @ back[:3, :3].T @ normal, parts.base[:3, 3])
+            out = [i for i in frames if letters[i] == "P" and abs(frames[i][:3, 2] @ normal) > SAME]
+            moves = tuple(i for i in range(count) if i in frames and i not in out)
+            return InPlane(plane, moves, still)
     return None
 
 

@@ -57,6 +57,19 @@ class Printed:
         return [name for name in super().__dir__() if not name.startswith("_")]
 
 
+class Drawable(Printed):
+    """A result with a figure of its own."""
+
+    def plot(self, **options: Any) -> Any:
+        """Its figure, a matplotlib Figure, as `sevenbar.plot` draws it with these options.
+
+        A linkage is drawn in space, a motion as the curves of its output; `kind` names another function of
+        `sevenbar.plot` that takes it, as in `motion.plot(kind="joints")`.
+        """
+        _import_words(self)
+        return figure_of(self, **options)
+
+
 def _import_words(value: object) -> None:
     folder = type(value).__module__.rpartition(".")[0]
     if folder in SAID_IN:
@@ -74,6 +87,12 @@ def text_of(value: Any) -> str:
 def picture_of(value: object) -> Any:  # noqa: ARG001
     """A small matplotlib figure of a result; `None` where there is nothing to draw."""
     return None
+
+
+@singledispatch
+def figure_of(value: object, **options: Any) -> Any:
+    """The figure of a result; what each kind has is registered where figures are known."""
+    raise NotImplementedError(f"no figure of {type(value).__name__} with {options}")
 
 
 def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
