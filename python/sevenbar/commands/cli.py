@@ -47,7 +47,7 @@ from sevenbar.commands.options import (
 )
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.motion import chosen_circuit
-from sevenbar.reporting.figures import KINDS, FigureLook, Places, write_figures
+from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, write_figures
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
 
@@ -180,7 +180,7 @@ def _film(
     out: Path | None,
     circuit: int | None,
     look: FigureLook,
-    film: dict[str, float],
+    film: dict[str, Any],
     *,
     force: bool,
 ) -> Callable[[sb.Motion, Path], object]:
@@ -200,8 +200,7 @@ def _film(
 
     def draw(motion: sb.Motion, path: Path) -> None:
         with progress_bar(f"drawing {path.name}") as progress:
-            arguments: dict[str, Any] = {**look.of_pictures, **film}
-            animate(motion, path, circuit=drawn, progress=progress, **arguments)
+            animate(motion, path, circuit=drawn, progress=progress, **look.of_pictures, **film)
 
     return draw
 
@@ -268,6 +267,10 @@ def plot_(
             raise RequestError("--kind: point needs a point; give --link and --at, as the linkage names none")
         kinds.remove("point")
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
+    if "transmission" in kinds and all(found.transmission_angle is None for found in motion):
+        if kind is not None and "transmission" in kind:
+            raise RequestError("--kind: this linkage has no transmission angle; leave transmission out")
+        kinds.remove("transmission")
     written = write_figures(
         motion, out, kinds, points, circuit=circuit, figures=formats, look=look, force=force
     )
@@ -281,7 +284,7 @@ def _kinds(given: list[str] | None) -> list[str]:
     for word in kinds:
         if word not in (*KINDS, "all"):
             raise RequestError(f"--kind: {shown(word)} is not a figure; allowed: {', '.join(KINDS)}, all")
-    return list(KINDS) if "all" in kinds else kinds
+    return list(USUAL_KINDS) if "all" in kinds else kinds
 
 
 def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Places:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
@@ -86,7 +86,7 @@ def _page(option: str, text: str) -> tuple[float, float]:
     return sides[0] or 0.0, sides[1] or 0.0
 
 
-def film_of(fps: float | None, seconds: float | None, film: Path | None) -> dict[str, float]:
+def film_of(fps: float | None, seconds: float | None, film: Path | None) -> dict[str, Any]:
     """Rate and length of --fps and --seconds, those that are given."""
     given = {name: value for name, value in (("fps", fps), ("seconds", seconds)) if value is not None}
     if given and film is None:

@@ -127,6 +127,16 @@ def prepare_given(space: Space, frame: Skeleton) -> None:
     draw_box(space, frame, box)
 
 
+def prepare_box(space: Space, box: Box, unit: str, room: Rectangle | None, *, letters: str = "xyz") -> None:
+    """The same for a box of any places; the caller's axes, which keep their place, have no `room`."""
+    set_limits(space, box)
+    if room is None:
+        fill_given(space, box)
+    else:
+        fit_picture(space, box, room)
+    draw_frame(space, box, unit, letters=letters)
+
+
 def fill_given(space: Space, box: Box) -> None:
     """Makes the box as large as the caller's axes can hold with its labels."""
     axes, view = space.axes, space.view
@@ -143,8 +153,5 @@ def place_picture(
 ) -> Space:
     """New axes that show places (n, 3) in a rectangle of the page; `letters` name the axes of space."""
     space = Space(own_axes(figure, view), view)
-    box = box_round(places, view)
-    set_limits(space, box)
-    fit_picture(space, box, room)
-    draw_frame(space, box, unit, letters=letters)
+    prepare_box(space, box_round(places, view), unit, room, letters=letters)
     return space

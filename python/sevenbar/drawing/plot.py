@@ -18,6 +18,7 @@ from __future__ import annotations
 from sevenbar.drawing.configuration import configuration, modes_overview
 from sevenbar.drawing.figure import FORMATS, save
 from sevenbar.drawing.joint_curves import joints
+from sevenbar.drawing.measure_figures import axodes, transmission
 from sevenbar.drawing.output_curves import curves
 from sevenbar.drawing.paths import point_path
 from sevenbar.drawing.style import STYLES
@@ -27,12 +28,14 @@ __all__ = [
     "FORMATS",
     "STYLES",
     "VIEWS",
+    "axodes",
     "configuration",
     "curves",
     "joints",
     "modes_overview",
     "point_path",
     "save",
+    "transmission",
 ]
 
 

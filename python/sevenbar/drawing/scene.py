@@ -28,6 +28,8 @@ FAINT = 0.72
 FOOT, DEPTH, HATCH = 0.035, 0.055, 0.022
 #: How far the axes through the centre of a sphere reach, as a share of its radius.
 REACH = 1.3
+#: The same with their letters.
+LETTERED = 1.6
 #: Lines on a sphere: their distance [deg], and how many places each has.
 MERIDIANS, PLACES = 30.0, 121
 
@@ -77,7 +79,7 @@ def box_of(frame: Skeleton, view: View) -> Box:
         # a disc as it is seen, the ends of the axes, and what stands out of it
         turns = np.linspace(0, math.tau, PLACES)
         disc = np.stack([np.cos(turns), np.sin(turns)], axis=1) @ view.screen
-        ways = sphere.radius * np.concatenate([disc, REACH * np.eye(3)])
+        ways = sphere.radius * np.concatenate([disc, LETTERED * np.eye(3)])
         outline = np.concatenate([sphere.centre + ways, frame.places[:, frame.shown].reshape(-1, 3)])
         outline = outline[np.isfinite(outline).all(axis=1)]
     return box_round(shown_places(frame), view, outline)

@@ -31,16 +31,19 @@ class DegreeLocator(Locator):
         """The ticks between the ends of the axis."""
         assert self.axis is not None
         low, high = self.axis.get_view_interval()
-        return self.tick_values(low, high)
+        return self._between(low, high, min(self.most, max(2, self.axis.get_tick_space())))
 
     def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
         """The ticks between two angles [deg]."""
+        return self._between(vmin, vmax, self.most)
+
+    def _between(self, vmin: float, vmax: float, most: int) -> Sequence[float]:
         low, high = sorted((float(vmin), float(vmax)))
-        if (high - low) / self.most <= DEGREE_STEPS[0] / 2:
-            return MaxNLocator(self.most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+        if (high - low) / most <= DEGREE_STEPS[0] / 2:
+            return MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         for step in (*DEGREE_STEPS, *(360.0 * k for k in (2, 5, 10, 20, 50, 100, 1000))):
             first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-            if last - first < self.most:
+            if last - first < most:
                 break
         return [k * step for k in range(first, last + 1)]
 

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 Places = Mapping[str, tuple[int, tuple[float, float, float]]]
 
 #: What can be drawn of a motion.
-KINDS = ("curves", "joints", "modes", "configuration", "point")
+KINDS = ("curves", "joints", "modes", "configuration", "point", "transmission", "axodes")
+#: Those that are drawn where none is named: axodes are for those who look for them.
+USUAL_KINDS = KINDS[:-1]
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ def draw_for_report(
     circuit: int | None = None,
     look: FigureLook | None = None,
 ) -> None:
-    """Draws configuration and motion; for any loop other than an RSSR, whose curves show all, joints and points.
+    """Draws configuration and motion; also joints and points, save of an RSSR, whose curves show all.
 
     Linkage and points are drawn on `circuit`, the first with a pose by default.
     """
@@ -115,6 +117,10 @@ def _draw(
             yield "motion", plot.curves(motion, **look.of_curves)
         if "joints" in kinds:
             yield "joints", plot.joints(motion, **look.of_curves)
+        if "transmission" in kinds:
+            yield "transmission", plot.transmission(motion, **look.of_curves)
+        if "axodes" in kinds:
+            yield "axodes", plot.axodes(motion, circuit=circuit, **look.of_pictures)
         if "configuration" in kinds:
             yield "configuration", plot.configuration(motion, circuit, **look.of_pictures)
         if "point" in kinds:
