@@ -19,6 +19,7 @@ PAGES = {
     "studio": "studio.md",
     "compare": "measured.md",
     "calibrate": "measured.md",
+    "axes": "theory_measures.md",
     "simulate": "simulation.md",
     "export": "export.md",
     "sweep": "sweep.md",
