@@ -217,5 +217,7 @@ def test_the_command_says_what_it_wrote_and_ends_mistakes_with_2(tmp_path):
         assert (failed.returncode, failed.stdout) == (2, "")
         assert failed.stderr.startswith(f"sevenbar: {message}")
     assert not (tmp_path / "rssp.glb").exists()
-    assert run("rssr", "--to", "mjcf", "--samples", "24").stdout == "written: rssr.xml\n"
+    written, masses = run("rssr", "--to", "mjcf", "--samples", "24").stdout.splitlines()
+    assert written == "written: rssr.xml"
+    assert masses == "masses are assumed: 1 kg for every body; put in your own where forces matter"
     assert run("rssr", "--to", "urdf", "--force", "--samples", "24").returncode == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,7 +17,6 @@ from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.options import Force, InputJoint, OutputJoint, Samples, Source, Speed, Yes
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.long_circuit import LONG
 from sevenbar.reporting.folder import check_targets
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def export(
     yes: Yes = False,
 ) -> None:
     """Write files for other programs: motion, bodies in a pose, models (some: extras 'export', 'cad')."""
-    from sevenbar.export import FORMATS, Bodies, Table, ending_of, format_of
+    from sevenbar.export import FORMATS, Table, ending_of, format_of
     from sevenbar.export import export as write_export
 
     if out is None:
@@ -87,7 +87,8 @@ def export(
         agree(table_ahead(moved, samples, out.name, text=text), yes=yes)
     motion = long_motion(moved, samples)
     with progress_bar(f"writing {out}") as progress:
-        if isinstance(form, Bodies) or samples >= LONG:
+        if sys.stderr.isatty():
+            # a refusal takes it away
             progress(0, 0)
         written = write_export(
             motion,

@@ -168,7 +168,6 @@ INSTEAD = {
     "inventor": "give step, which every CAD program reads",
     "simscape": "give urdf, which smimport reads, and close the loop by the .loop.json file",
     "simulink": "give urdf, which smimport reads, and close the loop by the .loop.json file",
-    "xlsx": "give csv, which spreadsheets open",
     "xls": "give csv, which spreadsheets open",
 }
 

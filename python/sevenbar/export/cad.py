@@ -9,6 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, OutputError
+from sevenbar.export.libraries import installed
 from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
 from sevenbar.kinematics.rigid import perpendicular
 from sevenbar.reporting.files import Progress, no_progress
@@ -25,7 +26,8 @@ def write_step(
     Each component has its part's name and colour, and its own coordinates are those of its link's frame.
     """
     steps = len(assembly.parts) + 1
-    progress(0, steps, "build123d")
+    if installed("build123d"):
+        progress(0, steps, "build123d")
     library = _build123d()
     linkage = assembly.pose.linkage
     scale = LENGTHS[linkage.length_unit] / LENGTHS["mm"]

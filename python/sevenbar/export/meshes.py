@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.errors import MissingExtraError
+from sevenbar.export.libraries import installed
 from sevenbar.export.parts import Assembly, Ball, Part, Rod, Solid, frame_of, length_of
 from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.text.units import LENGTHS
@@ -25,6 +26,7 @@ def write_glb(
     progress: Progress = no_progress,
 ) -> None:
     """Writes the assembly as a scene [m]: a node for each link, in place by its matrix, parts below it."""
+    _begun(assembly, progress)
     library = _trimesh()
     scene = library.Scene(base_frame="world")
     scale = LENGTHS[assembly.pose.linkage.length_unit]
@@ -34,8 +36,8 @@ def write_glb(
     for name, frame in zip(assembly.bodies, assembly.frames, strict=True):
         scene.graph.update(frame_to=name, frame_from="linkage", matrix=metres @ frame @ back)
     for done, part in enumerate(assembly.parts):
-        progress(done, len(assembly.parts), part.name)
         solid = mesh(part)
+        progress(done + 1, len(assembly.parts), part.name)
         solid.apply_transform(metres)
         solid.visual = library.visual.TextureVisuals(
             material=library.visual.material.PBRMaterial(
@@ -61,10 +63,11 @@ def write_stl(
     progress: Progress = no_progress,
 ) -> None:
     """Writes all parts in the pose into one binary STL, in the linkage's own length unit and report frame."""
+    _begun(assembly, progress)
     placed = []
     for done, part in enumerate(assembly.parts):
-        progress(done, len(assembly.parts), part.name)
         solid = mesh(part)
+        progress(done + 1, len(assembly.parts), part.name)
         solid.apply_transform(assembly.frames[part.body])
         placed.append(solid)
     path.write_bytes(_trimesh().util.concatenate(placed).export(file_type="stl"))
@@ -77,9 +80,16 @@ def write_stl_parts(
     progress: Progress = no_progress,
 ) -> None:
     """Writes each part into a binary STL of its own, in its link's frame and the linkage's length unit."""
+    _begun(assembly, progress)
     for done, part in enumerate(assembly.parts, start=1):
-        progress(done, len(assembly.parts), part.name)
         (folder / f"{part.name}.stl").write_bytes(mesh(part).export(file_type="stl"))
+        progress(done, len(assembly.parts), part.name)
+
+
+def _begun(assembly: Assembly, progress: Progress) -> None:
+    """Says so before the library is imported, which takes its time, if it is there."""
+    if installed("trimesh", "manifold3d"):
+        progress(0, len(assembly.parts), "trimesh")
 
 
 def mesh(part: Part) -> Any:
