@@ -34,6 +34,7 @@ EXAMPLES = {
         "sevenbar plot seven_r -o figures",
         "sevenbar plot rssr --kind curves,point --link 2 --at 500,40,0 --figures svg -o figures",
     ),
+    "axes": ("sevenbar axes rssr --link 2", "sevenbar axes planar_4r --link 2 --relative-to 1 -o axes"),
     "gallery": ("sevenbar gallery", "sevenbar gallery rssr > mine.toml"),
     "studio": ("sevenbar studio seven_r", "sevenbar studio mine.toml --port 9000 --no-open"),
     "simulate": (
