@@ -14,7 +14,7 @@ from PIL import Image
 
 import sevenbar as sb
 from sevenbar.description.gallery import names
-from sevenbar.drawing import paths, plot, skeleton
+from sevenbar.drawing import output_curves, paths, plot, skeleton
 from sevenbar.drawing.animate import animate
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.poses import frames_of
@@ -82,9 +82,11 @@ def test_a_path_holds_the_points_own_numbers(motions: dict[str, sb.Motion]) -> N
         np.testing.assert_array_equal(path, np.concatenate([trace.position, trace.position[:1]]))
         rows, arrows, longest = paths.arrows_along(trace.position, vectors)
         assert len(rows) == paths.ARROWS
-        scale = np.linalg.norm(arrows, axis=1).max() / longest
+        # the greatest of all rows is named, whether it is among the arrows or not
+        assert longest == np.linalg.norm(vectors, axis=1).max()
+        scale = np.linalg.norm(arrows, axis=1).max() / np.linalg.norm(vectors[rows], axis=1).max()
         np.testing.assert_allclose(arrows, scale * vectors[rows], rtol=1e-12, atol=1e-12)
-        assert f"longest arrow {longest:.4g} mm/s" in drawn.get_title()
+        assert f"at most {longest:.1f} mm/s" in drawn.get_title()
     x, y = figure.axes[2].lines[0].get_data()
     np.testing.assert_allclose(np.asarray(y)[:-1], np.linalg.norm(trace.velocity, axis=1), rtol=1e-14)
     np.testing.assert_allclose(np.asarray(x)[:-1], np.degrees(motion.circuits[2].input), rtol=1e-14)
@@ -108,7 +110,7 @@ def test_a_point_that_does_not_exist_is_told(motions: dict[str, sb.Motion]) -> N
 def test_every_joint_has_a_panel_with_a_line_for_each_circuit(motions: dict[str, sb.Motion]) -> None:
     motion = motions["seven_r"]
     figure = plot.joints(motion)
-    assert [axes.get_ylabel() for axes in figure.axes] == [f"theta_{i} [deg]" for i in range(2, 8)]
+    assert [axes.get_ylabel() for axes in figure.axes] == [f"θ{i} [deg]" for i in "₂₃₄₅₆₇"]
     for column, axes in enumerate(figure.axes, start=1):
         assert len(axes.lines) == 8
         for circuit, line in zip(motion, axes.lines, strict=True):
@@ -124,16 +126,16 @@ def test_slides_are_drawn_in_the_length_unit(motions: dict[str, sb.Motion]) -> N
     motion = motions["rssp"]
     figure = plot.curves(motion, "input")
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels == ["output position [mm]", "velocity [mm/s]", "acceleration [mm/s²]"]
+    assert labels == ["slider position [mm]", "slider velocity [mm/s]", "slider acceleration [mm/s²]"]
     line = next(line for line in figure.axes[0].lines if line.get_label() == "circuit 0")
     np.testing.assert_array_equal(np.asarray(line.get_ydata())[:-1], motion.circuits[0].output)
     driven = motion.linkage.motion(samples=48, input="slider", output="crank")
     figure = plot.curves(driven)
-    assert figure.axes[-2].get_xlabel() == "input position: slider [mm]"
+    assert figure.axes[-2].get_xlabel() == "slider position [mm]"
     marked = {
         round(float(mark.get_xdata()[0]), 6)
         for mark in figure.axes[0].lines
-        if mark.get_label() == plot.LIMIT
+        if mark.get_label() == output_curves.LIMIT
     }
     assert marked == set(np.round(driven.limits, 6))
     assert "slider at ±1 mm/s" in figure.legends[0].get_title().get_text()
@@ -145,19 +147,24 @@ def test_all_modes_are_drawn_to_one_scale() -> None:
     figure = plot.modes_overview(linkage, modes)
     assert [axes.get_title() for axes in figure.axes] == [f"mode {i}" for i in range(8)]
     assert len({(a.get_xlim(), a.get_ylim(), a.get_zlim()) for a in figure.axes}) == 1  # type: ignore[attr-defined]
-    assert figure.get_suptitle().endswith("8 assembly modes at theta_1 = 30°")
+    assert figure.get_suptitle().endswith("8 assembly modes\nat θ₁ = 30°")
     rssp = sb.load("rssp")
     with pytest.raises(RequestError, match="modes: the loop closes at no mode"):
         plot.modes_overview(rssp, rssp.assembly_modes(5000.0, input="slider"), input="slider")
 
 
-def test_eight_circuits_are_eight_looks_in_the_curves(motions: dict[str, sb.Motion]) -> None:
-    drawn = plot.passes(motions["seven_r"])
+def test_circuits_whose_curves_coincide_are_one_line_that_names_both(motions: dict[str, sb.Motion]) -> None:
+    motion = motions["seven_r"]
+    drawn = output_curves.passes(motion)
     assert len({(line.style["color"], str(line.style["ls"])) for line in drawn}) == 8
-    figure = plot.curves(motions["seven_r"])
+    # the 7R paper's loop: each output belongs to two circuits
+    for first, second in ((0, 1), (2, 3), (4, 5), (6, 7)):
+        np.testing.assert_allclose(drawn[first].angle, drawn[second].angle, atol=1e-9)
+    figure = plot.curves(motion)
     figure.canvas.draw()
     entries = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert entries == [*(f"circuit {i}" for i in range(8)), plot.EXTREME]
+    pairs = [f"circuits {i} and {i + 1}" for i in range(0, 8, 2)]
+    assert entries == [*pairs, output_curves.EXTREME]
     box, page = figure.legends[0].get_window_extent(), figure.bbox
     assert box.x0 >= page.x0
     assert box.x1 <= page.x1

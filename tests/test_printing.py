@@ -169,7 +169,7 @@ def test_without_matplotlib_and_without_a_pose_there_is_no_picture_and_no_error(
     apart = sb.rssr(M=700, N=700, L1=10, L2=20, L3=30, D=0)
     assert "<img" not in apart._repr_html_()
     assert "<img" not in apart.motion()._repr_html_()
-    for module in ("figure", "paths", "plot"):
+    for module in ("figure", "configuration", "output_curves"):
         monkeypatch.setitem(sys.modules, f"sevenbar.drawing.{module}", None)
     for result in (linkage, motion, motion.circuits[0]):
         assert "<img" not in result._repr_html_()

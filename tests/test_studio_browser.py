@@ -28,7 +28,7 @@ from controls import (
     upload,
 )
 from served import Studio
-from sevenbar.drawing.scene import COUPLER, INPUT, OUTPUT
+from sevenbar.drawing.style import COUPLER, INPUT, OUTPUT
 
 #: After a text is typed it is taken, and after any change the page is sent anew [ms].
 TAKEN, SHOWN = 1300, 400

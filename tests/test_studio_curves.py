@@ -13,8 +13,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.gallery import names
-from sevenbar.drawing import plot
-from sevenbar.drawing.figure import CIRCUIT_COLOURS
+from sevenbar.drawing import output_curves
+from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.kinematics.poses import walk
 from sevenbar.studio.state.view import View, views_of
 from sevenbar.studio.svg.curves import panels
@@ -67,7 +67,7 @@ def test_every_vertex_is_a_row_of_the_circuit_to_a_tenth_of_a_pixel(name: str) -
 @pytest.mark.parametrize("over", ["input", "time"])
 def test_curves_of_the_output_are_those_of_the_figures(name: str, over: str) -> None:
     motion = motion_of(name)
-    drawn = plot.passes(motion)
+    drawn = output_curves.passes(motion)
     for circuit in motion:
         for panel, word in zip(
             output_panels(motion, circuit.index, over=over),

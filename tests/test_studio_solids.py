@@ -13,8 +13,8 @@ import sevenbar as sb
 from sevenbar.arrays import Floats
 from sevenbar.description import gallery
 from sevenbar.drawing import skeleton
-from sevenbar.drawing.scene import INPUT, OUTPUT
 from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.drawing.style import INPUT, OUTPUT
 from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.pictures.poses import stretched, turns
 from sevenbar.studio.pictures.shapes import mesh

@@ -19,6 +19,7 @@ PAGES = {
     "studio": "studio.md",
     "compare": "measured.md",
     "calibrate": "measured.md",
+    "axodes": "theory_measures.md",
     "simulate": "simulation.md",
     "export": "export.md",
     "axes": "tables.md#axes-picked-from-a-cad-model",

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from evidence.accuracy.quantiles import QUANTITIES, ROUNDING
-from sevenbar.drawing.figure import STYLE
+from sevenbar.drawing.style import STYLE
 
 Results = Mapping[str, Any]
 

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from evidence.benches.outcome import Plot
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure, save
+from sevenbar.drawing.figure import new_figure, save
+from sevenbar.drawing.style import CIRCUIT_COLOURS, STYLE
 
 #: Width and height [inch].
 SIZE = (6.4, 3.6)

@@ -103,7 +103,19 @@ def __dir__() -> list[str]:
     return sorted({*__all__, *_ON_DEMAND})
 
 
+def _offered(module: ModuleType) -> list[str]:
+    own = [
+        name
+        for name, value in vars(module).items()
+        if not name.startswith("_") and getattr(value, "__module__", None) == module.__name__
+    ]
+    return list(getattr(module, "__all__", own))
+
+
 def __getattr__(name: str) -> ModuleType:
     if name in _ON_DEMAND:
-        return importlib.import_module(_ON_DEMAND[name])
+        module = importlib.import_module(_ON_DEMAND[name])
+        # what it offers, without what it imports
+        module.__dict__.setdefault("__dir__", lambda: sorted(_offered(module)))
+        return module
     raise AttributeError(f"module 'sevenbar' has no attribute '{name}'")

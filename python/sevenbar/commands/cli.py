@@ -18,10 +18,21 @@ import sevenbar as sb
 from sevenbar.commands.command import Command
 from sevenbar.commands.consent import agree
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
-from sevenbar.commands.given import check_law, input_column, input_value, law_of, point_of
+from sevenbar.commands.given import (
+    check_law,
+    film_of,
+    input_column,
+    input_value,
+    law_of,
+    look_of,
+    point_of,
+)
 from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.options import (
     Figures,
+    FigureSize,
+    FigureStyle,
+    FigureView,
     Force,
     InputJoint,
     InputValue,
@@ -41,7 +52,8 @@ from sevenbar.commands.options import (
 from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import sample_count
-from sevenbar.reporting.figures import KINDS, Places, figures_report
+from sevenbar.kinematics.motion import chosen_circuit
+from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
 
@@ -51,6 +63,7 @@ MOST_DRAWN = 3600
 #: Commands that live with what they do, imported when one of them is called: a report should not wait for
 #: the studio.
 _ELSEWHERE = {
+    "axodes": "sevenbar.commands.axodes:axodes",
     "studio": "sevenbar.commands.studio:studio",
     "compare": "sevenbar.commands.compare:compare",
     "calibrate": "sevenbar.commands.compare:calibrate",
@@ -134,8 +147,16 @@ def analyze(
     ] = None,
     figures: Figures = None,
     animate: Annotated[
-        Path | None, typer.Option(help="Write the moving linkage to this .gif or .mp4.")
+        Path | None, typer.Option(help="Write the moving linkage to this .gif, .mp4 or .html.")
     ] = None,
+    circuit: Annotated[
+        int | None, typer.Option(help="The circuit that is drawn and filmed; the first by default.")
+    ] = None,
+    view: FigureView = None,
+    size: FigureSize = None,
+    style: FigureStyle = None,
+    fps: Annotated[float | None, typer.Option(help="Pictures a second of the film.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Length of the film.")] = None,
     force: Force = False,
     yes: Yes = False,
     json: Json = False,
@@ -143,7 +164,11 @@ def analyze(
     """Analyse a linkage: motion type, circuits, limits, rates, and what a designer reads of them."""
     from sevenbar.reporting.report import motion_report
 
+    look = look_of(view, size, style)
     formats = figure_formats(figures, out)
+    film_look = film_of(fps, seconds, animate)
+    if out is None and animate is None:
+        _refuse_unused({"--circuit": circuit, "--view": view, "--size": size, "--style": style})
     check_law(law, speed)
     loaded = sb.load(linkage)
     report = motion_report(formats)
@@ -153,12 +178,14 @@ def analyze(
     if out is not None and read is None:
         agree(table_ahead(moved, samples, "motion.csv"), yes=yes)
     motion = long_motion(moved, samples)
+    if circuit is not None:
+        chosen_circuit(motion, circuit)
     # more rows than that are no better to look at
     seen = motion if motion.samples <= MOST_DRAWN or read is not None else moved(MOST_DRAWN)
-    report = motion_report(formats, lambda _: seen)
+    report = motion_report(formats, lambda _: seen, circuit=circuit, look=look)
     elsewhere: dict[Path, Callable[[Path], object]] = {}
     if animate is not None:
-        film = _film(seen, animate, out, force=force)
+        film = _film(seen, animate, out, circuit, look, film_look, force=force)
         if out is not None and _same_folder(animate.parent, out):
             # of the files that appear together
             report = replace(report, pages={**report.pages, animate.name: lambda _, path: film(path)})
@@ -167,10 +194,25 @@ def analyze(
     deliver(motion, report, out, json=json, force=force, also=elsewhere)
 
 
-def _film(motion: sb.Motion, file: Path, out: Path | None, *, force: bool) -> Callable[[Path], object]:
+def _refuse_unused(given: dict[str, object]) -> None:
+    """Refuses options of figures where none is drawn."""
+    for option, value in given.items():
+        if value is not None:
+            raise RequestError(f"{option}: no figure is drawn; give --out, --animate, or both")
+
+
+def _film(
+    motion: sb.Motion,
+    file: Path,
+    out: Path | None,
+    circuit: int | None,
+    look: FigureLook,
+    film: dict[str, Any],
+    *,
+    force: bool,
+) -> Callable[[Path], object]:
     """What draws the animation; raises where it cannot be, before anything is written."""
-    from sevenbar.drawing.animate import animate, check_ending, check_target
-    from sevenbar.kinematics.motion import chosen_circuit
+    from sevenbar.drawing.animate import animate, check_ending, check_film, check_target
     from sevenbar.reporting.figures import posed_circuit
 
     if out is not None and _same_folder(file.parent, out):
@@ -179,11 +221,13 @@ def _film(motion: sb.Motion, file: Path, out: Path | None, *, force: bool) -> Ca
     else:
         check_target(file)
     check_targets([file], force=force)
-    drawn = chosen_circuit(motion, posed_circuit(motion) or 0).index
+    check_film(file, **film)
+    posed = posed_circuit(motion) or 0 if circuit is None else circuit
+    drawn = chosen_circuit(motion, posed).index
 
     def draw(path: Path) -> None:
         with progress_bar(f"drawing {path.name}") as progress:
-            animate(motion, path, circuit=drawn, progress=progress)
+            animate(motion, path, circuit=drawn, progress=progress, **look.of_pictures, **film)
 
     return draw
 
@@ -233,17 +277,23 @@ def plot_(
     point: PointName = None,
     link: PointLink = None,
     at: PointPlace = None,
-    circuit: Annotated[int, typer.Option(help="The circuit that is drawn in space, counted from 0.")] = 0,
+    circuit: Annotated[
+        int, typer.Option(help="The circuit of the pictures of the linkage, counted from 0.")
+    ] = 0,
     samples: Samples = 360,
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
     figures: Figures = None,
+    view: FigureView = None,
+    size: FigureSize = None,
+    style: FigureStyle = None,
     force: Force = False,
 ) -> None:
     """Draw a linkage: curves of the output, all joints, all modes, the linkage in space, a point's path."""
     formats = figure_formats(figures, out)
     kinds = _kinds(kind)
+    look = look_of(view, size, style)
     loaded = sb.load(linkage)
     points = _points(loaded, point_of(point, link, at))
     if "point" in kinds and not points:
@@ -254,7 +304,11 @@ def plot_(
     motion = loaded.motion(
         min(sample_count("samples", samples), MOST_DRAWN), input=input_joint, output=output, speed=speed
     )
-    report = figures_report(kinds, points, circuit, formats)
+    if "transmission" in kinds and all(found.transmission_angle is None for found in motion):
+        if kind is not None and "transmission" in kind:
+            raise RequestError("--kind: this linkage has no transmission angle; leave transmission out")
+        kinds.remove("transmission")
+    report = figures_report(kinds, points, circuit, formats, look)
     tell_written(write_files(report, motion, out, force=force), below=False)
 
 
@@ -265,7 +319,7 @@ def _kinds(given: list[str] | None) -> list[str]:
     for word in kinds:
         if word not in (*KINDS, "all"):
             raise RequestError(f"--kind: {shown(word)} is not a figure; allowed: {', '.join(KINDS)}, all")
-    return list(KINDS) if "all" in kinds else kinds
+    return list(USUAL_KINDS) if "all" in kinds else kinds
 
 
 def _points(linkage: sb.Linkage, asked: str | tuple[int, Place] | None) -> Places:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.joint_text import joint_value
-from sevenbar.text.ranges import Place, split_range, three_numbers
+from sevenbar.text.ranges import Place, split_list, split_range, three_numbers, with_common_unit
 from sevenbar.text.units import amount, examples_of, sizes_of
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.limits import Limits
     from sevenbar.kinematics.circuits import Law
+    from sevenbar.reporting.figures import FigureLook
 
 
 def check_law(law: Path | None, speed: str | None) -> None:
@@ -50,6 +51,49 @@ def point_of(name: str | None, link: int | None, at: str | None) -> str | tuple[
         missing = "--at" if at is None else "--link"
         raise RequestError(f"{missing}: missing; give --point NAME, or --link with --at")
     return link, three_numbers("--at", at, "a place", "-100,-90,-80")
+
+
+def look_of(view: str | None, size: str | None, style: str | None) -> FigureLook:
+    """How figures are drawn: --view, --size and --style."""
+    from sevenbar.reporting.figures import FigureLook
+
+    if view is None and size is None and style is None:
+        return FigureLook()
+    # matplotlib is needed from here on
+    from sevenbar.drawing.style import check_style
+    from sevenbar.drawing.view import check_view
+
+    asked: str | tuple[float, float] | None = view
+    if view is not None and "," in view:
+        angles = [amount(word, sizes_of("deg"), "deg") for word in split_list(view)]
+        if len(angles) == 2 and None not in angles:
+            asked = angles[0] or 0.0, angles[1] or 0.0
+    return FigureLook(
+        check_view(asked, "--view"),
+        None if size is None else _page("--size", size),
+        None if style is None else check_style(style, "--style"),
+    )
+
+
+def _page(option: str, text: str) -> tuple[float, float]:
+    """Width and height [inch] of a text like 85x60mm; a plain number is in millimetres."""
+    parts = with_common_unit(*parts) if len(parts := text.lower().split("x")) == 2 else None
+    sides = [amount(part.strip(), sizes_of("in"), "mm") for part in parts or ()]
+    if len(sides) != 2 or not all(side is not None and 0.5 <= side <= 60 for side in sides):
+        raise RequestError(
+            f"{option}: {shown(text)} is not a size; give width and height of 13 to 1524 mm, as in '85x60mm'"
+        )
+    return sides[0] or 0.0, sides[1] or 0.0
+
+
+def film_of(fps: float | None, seconds: float | None, film: Path | None) -> dict[str, Any]:
+    """Rate and length of --fps and --seconds, those that are given."""
+    given = {name: value for name, value in (("fps", fps), ("seconds", seconds)) if value is not None}
+    if given and film is None:
+        raise RequestError(
+            f"--{next(iter(given))}: a film is missing; give --animate, as in '--animate film.gif'"
+        )
+    return given
 
 
 def angle(option: str, text: str) -> float:

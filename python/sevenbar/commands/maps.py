@@ -49,6 +49,9 @@ def map_(
     ] = None,
     figures: Figures = None,
     size: Annotated[str, typer.Option(help="Sheet of the figures: A4, A3, A2 or A1.")] = "A4",
+    no_key: Annotated[
+        bool, typer.Option("--no-key", help="Leave out the key and the numbers at the side.")
+    ] = False,
     force: Force = False,
     json: Json = False,
 ) -> None:
@@ -67,7 +70,7 @@ def map_(
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
     chosen = with_contours(names) if names else ()
     loaded = sb.load(linkage)
-    report = map_report(names, formats, size=size)
+    report = map_report(names, formats, size=size, side=not no_key)
     check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.name}") as progress:
         found = motion_map(loaded, ranges, grid=grid, input=input_joint, progress=progress)

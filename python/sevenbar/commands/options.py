@@ -44,7 +44,17 @@ Samples = Annotated[
 ]
 Figures = Annotated[
     list[str] | None,
-    typer.Option(help="Format of the figures: png (the default), svg, pdf; may be repeated."),
+    typer.Option(help="Format of the figures: png (the default), svg, pdf, eps; may be repeated."),
+]
+FigureView = Annotated[
+    str | None,
+    typer.Option("--view", help="plane, space, xy, xz, yz or iso, or elevation and azimuth, as in '30,-60'."),
+]
+FigureSize = Annotated[
+    str | None, typer.Option("--size", help="Size of the figures, as in '85x60mm' or '3.3x2.5in'.")
+]
+FigureStyle = Annotated[
+    str | None, typer.Option("--style", help="Style of the figures: screen, paper or ieee.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Go on without asking where it is much or long.")]

@@ -10,7 +10,7 @@ from pathlib import Path
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
 from sevenbar.description.tables import ENDINGS, description_of_bytes, is_table
-from sevenbar.errors import DescriptionError, Problem, SevenbarError, shown
+from sevenbar.errors import DescriptionError, Problem, SevenbarError, ends_here, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.workbook import ZIP
 
@@ -23,6 +23,7 @@ LONGEST_LINE = 2_000
 LARGEST_TABLE = 20_000_000
 
 
+@ends_here
 def load(source: str | os.PathLike[str]) -> Linkage:
     """The linkage of a TOML file, of a table (CSV or Excel), or of the gallery by its name.
 
@@ -69,6 +70,7 @@ def note_of(source: str | os.PathLike[str]) -> str:
     return found.note
 
 
+@ends_here
 def loads(content: str, source: str = "text") -> Linkage:
     """The linkage described by a TOML text; `source` is its name in messages.
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from sevenbar.description.proportions import disproportions
 from sevenbar.description.table_reader import described_frame
-from sevenbar.errors import DescriptionError, Problem, RequestError, bare, shown, suggestion
+from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
@@ -32,6 +32,7 @@ Numbers = Sequence[float | str | None] | npt.NDArray[np.float64] | Any
 NO_LENGTH = 1e-12
 
 
+@ends_here
 def rssr(
     M: float | str,
     N: float | str,
@@ -69,6 +70,7 @@ def rssr(
     return from_description(raw)
 
 
+@ends_here
 def from_axes(
     joints: Sequence[Mapping[str, Any]],
     *,
@@ -104,6 +106,7 @@ def from_axes(
     return from_description(raw)
 
 
+@ends_here
 def from_dh(
     joints: Any,
     *,

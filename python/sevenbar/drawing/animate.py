@@ -1,4 +1,4 @@
-"""Animations of a motion: the linkage moving in space beside the curve of its output, as GIF or MP4."""
+"""Films of a motion: the linkage moving, and the curve of its output with it, as GIF, MP4 or HTML page."""
 
 from __future__ import annotations
 
@@ -7,21 +7,28 @@ import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, cast
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib import rc_context
 from matplotlib.artist import Artist
+from matplotlib.transforms import Bbox
 from PIL import Image
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing import plot, scene
-from sevenbar.drawing.figure import STYLE, new_figure, shown_value, slides, title, written_whole
-from sevenbar.drawing.skeleton import skeleton
+from sevenbar.drawing import output_curves, scene
+from sevenbar.drawing.figure import new_figure, shown_value, slides, title_of, title_text, written_whole
+from sevenbar.drawing.film_page import film_page
+from sevenbar.drawing.lettering import write_names
+from sevenbar.drawing.names import shown_name
+from sevenbar.drawing.page import own_axes, prepare, write_legend, write_title
+from sevenbar.drawing.skeleton import Skeleton, skeleton
+from sevenbar.drawing.space import Space
+from sevenbar.drawing.style import INK, checked_size, letters, page_size, stroke, styled
+from sevenbar.drawing.view import Asked, View, view_of
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
@@ -33,9 +40,13 @@ Picture = npt.NDArray[np.uint8]
 SIZE, DPI = (11.2, 6.4), 100
 MOST_FRAMES = 10_000
 #: Colours of a GIF from here on are white, lest Pillow, which looks colours up in steps of 4, tint the page.
-NEARLY_WHITE = 249
+NEARLY_WHITE = 247
 #: The greatest frame rates [1/s]: browsers slow down GIF pictures shorter than 20 ms.
-FASTEST = {".gif": 50.0, ".mp4": 240.0}
+FASTEST = {".gif": 50.0, ".mp4": 240.0, ".html": 240.0}
+#: Pictures of a film where neither their number nor its length is given, and their rate [1/s].
+FRAMES, RATE = 120, 25.0
+#: Poses for which the names of joints are placed, and their distances [points]: names move with their joints.
+NAMED_POSES, NEAR = 24, (6.0, 9.0)
 
 
 def animate(
@@ -43,45 +54,87 @@ def animate(
     path: str | os.PathLike[str],
     *,
     circuit: int = 0,
-    frames: int = 120,
-    fps: float = 25,
+    frames: int | None = None,
+    fps: float = RATE,
+    seconds: float | None = None,
+    view: Asked = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
     progress: Callable[[int, int], object] | None = None,
 ) -> Path:
-    """Writes one cycle of a circuit, evenly in time, as GIF or MP4 by the path's ending; returns the path.
+    """Writes one cycle of a circuit, evenly in time, as GIF, MP4 or HTML by the path's ending; returns it.
 
-    `frames` pictures are shown at `fps` [1/s]. A rocking circuit goes forth and back; the last picture leads
-    over to the first, save where a law drives: then the law is run once. `progress(done, total)` is called
-    after each picture.
+    The film shows `frames` pictures at `fps` [1/s], or takes `seconds`; 120 pictures where neither is given.
+    A rocking circuit goes forth and back; the last picture leads over to the first, save where a law drives:
+    then the law is run once. An HTML page plays by itself in any browser: it can be stopped, and a spatial
+    linkage turned with the mouse. `view`, `figsize`, `style` and `title` are those of `plot.configuration`.
+    `progress(done, total)` is called after each picture.
 
-    Raises `RequestError` for a circuit, count or rate that is not offered, `OutputError` for another ending
-    and where the file cannot be written (then nothing is left behind), `MissingExtraError` for MP4 without
-    ffmpeg.
+    Raises `RequestError` for a circuit, count, rate or view that is not offered, `OutputError` for another
+    ending and where the file cannot be written (then nothing is left behind), `MissingExtraError` for MP4
+    without ffmpeg.
+
+        >>> import sevenbar as sb, tempfile, pathlib
+        >>> folder = pathlib.Path(tempfile.mkdtemp())
+        >>> animate(sb.load("planar_4r").motion(), folder / "film.html", seconds=2).name
+        'film.html'
     """
     target = Path(path)
     ffmpeg = check_target(target)
     ending = target.suffix.lower()
     chosen = chosen_circuit(motion, circuit)
-    if (
-        isinstance(frames, bool)
-        or not isinstance(frames, (int, np.integer))
-        or not 2 <= frames <= MOST_FRAMES
-    ):
-        raise RequestError(f"frames: {shown(frames)} is not a count; give 2 to {MOST_FRAMES}")
-    if (
-        isinstance(fps, bool)
-        or not isinstance(fps, (int, float, np.number))
-        or not 0.1 <= fps <= FASTEST[ending]
-    ):
-        raise RequestError(
-            f"fps: {shown(fps)} is not offered; give 0.1 to {FASTEST[ending]:g} for a {ending} file"
-        )
-    with written_whole(target) as file, rc_context(STYLE):
-        pictures = _reported(_pictures(motion, chosen, int(frames)), int(frames), progress)
+    frames = check_film(target, frames=frames, fps=fps, seconds=seconds)
+    size = _even(page_size(style, None if figsize is None else checked_size(figsize), SIZE, wide=True))
+    with written_whole(target) as file, styled(style):
+        frame = skeleton(motion, chosen)
+        seen = view_of(view, motion.linkage, scene.shown_places(frame))
+        heading = title_text(title, f"{title_of(motion)}\ncircuit {chosen.index}")
+        if ending == ".html":
+            rows = _rows(motion, walk(chosen), frames)
+            text = film_page(motion, chosen, frame, seen, rows, fps=float(fps), title=heading)
+            file.write_text(text, encoding="utf-8")
+            return target
+        shown_as = _pictures(motion, chosen, frame, seen, frames, size, heading)
+        pictures = _reported(shown_as, frames, progress)
         if ending == ".gif":
-            _write_gif(pictures, file, int(frames), float(fps))
+            _write_gif(pictures, file, frames, float(fps))
         else:
-            _write_mp4(pictures, file, float(fps), ffmpeg, target)
+            _write_mp4(pictures, file, float(fps), ffmpeg, target, size)
     return target
+
+
+def _even(size: tuple[float, float]) -> tuple[float, float]:
+    """The size [inch] with even pixels, as video wants them."""
+    width, height = (2 * max(1, round(side * DPI / 2)) / DPI for side in size)
+    return width, height
+
+
+def check_film(
+    target: Path, *, frames: int | None = None, fps: float = RATE, seconds: float | None = None
+) -> int:
+    """How many pictures a film has; raises `RequestError` for a count, a rate or a length not offered."""
+    most = FASTEST[target.suffix.lower()]
+    if isinstance(fps, bool) or not isinstance(fps, (int, float, np.number)) or not 0.1 <= fps <= most:
+        raise RequestError(
+            f"fps: {shown(fps)} is not offered; give 0.1 to {most:g} for a {target.suffix.lower()} file"
+        )
+    if seconds is not None:
+        if frames is not None:
+            raise RequestError("seconds: frames and fps give the length of the film; leave one of them out")
+        usable = isinstance(seconds, (int, float, np.number)) and not isinstance(seconds, bool)
+        if not (usable and 2 <= seconds * fps <= MOST_FRAMES):
+            raise RequestError(
+                f"seconds: {shown(seconds)} is not offered; at {fps:g} pictures a second "
+                f"give {2 / fps:g} to {MOST_FRAMES / fps:g}"
+            )
+        return round(float(seconds * fps))
+    if frames is None:
+        return FRAMES
+    counts = isinstance(frames, (int, np.integer)) and not isinstance(frames, bool)
+    if not (counts and 2 <= frames <= MOST_FRAMES):
+        raise RequestError(f"frames: {shown(frames)} is not a count; give 2 to {MOST_FRAMES}")
+    return int(frames)
 
 
 def check_target(target: Path) -> str:
@@ -96,7 +149,9 @@ def check_ending(target: Path) -> str:
     """The same of the ending alone, where the folder may still have to be made."""
     ending = target.suffix.lower()
     if ending not in FASTEST:
-        raise OutputError(f"{target}: {shown(target.suffix)} is not an animation format; give .gif or .mp4")
+        raise OutputError(
+            f"{target}: {shown(target.suffix)} is not an animation format; give .gif, .mp4 or .html"
+        )
     return _ffmpeg() if ending == ".mp4" else ""
 
 
@@ -118,33 +173,61 @@ def _rows(motion: Motion, path: Walk, frames: int) -> Floats:
     return np.asarray(np.interp(np.linspace(once[0], once[-1], frames), once, np.arange(len(once))))
 
 
-def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture]:
+def _pictures(
+    motion: Motion,
+    circuit: Circuit,
+    frame: Skeleton,
+    seen: View,
+    frames: int,
+    size: tuple[float, float],
+    heading: str,
+) -> Iterator[Picture]:
     """The pictures (height, width, 3), one after the other; only what moves is drawn anew."""
-    path, frame = walk(circuit), skeleton(motion, circuit)
+    path = walk(circuit)
     ends = motion.input, motion.output
-    figure = new_figure(*SIZE)
+    figure = new_figure(*size)
     figure.set_dpi(DPI)
-    space = figure.add_axes((0.0, 0.02, SIZE[1] / SIZE[0], 1.0), projection="3d")
+    width, height = size
+    top = write_title(figure, heading)
+    # two parts of the page: the linkage, and the curve of its output
+    part = 0.6 * width
+    foot = write_legend(figure, scene.keys(frame, ends, seen), centre=part / 2, width=part)
+    space = Space(own_axes(figure, seen), seen)
+    prepare(space, frame, (0.0, foot, part, height - top - foot))
     scene.stage(space, frame, ends)
-    scene.label(space, frame, frame.pose(0), frame.standing)
-    curve = figure.add_axes((0.65, 0.3, 0.32, 0.5))
-    drawn = [line for line in plot.passes(motion) if line.circuit is circuit]
-    plot.panel(curve, motion, drawn, "angle", "input")
-    figure.suptitle(f"{title(motion)}\ncircuit {circuit.index}", fontsize=11)
-    figure.legend(handles=scene.keys(frame, ends), loc="lower left", ncols=4, frameon=False)
-    keys = plot.curve_keys([curve], drawn)
-    figure.legend(handles=keys, loc="upper center", bbox_to_anchor=(0.81, 0.2), ncols=2, frameon=False)
+    curve, keys_height = figure.add_axes((0.1, 0.1, 0.1, 0.1)), 0.0
+    drawn = [line for line in output_curves.passes(motion) if line.circuit is circuit]
+    output_curves.panel(curve, motion, drawn, "angle", "input")
+    keys = output_curves.curve_keys([curve], drawn)
+    keys_height = write_legend(figure, keys, centre=(part + width) / 2, width=width - part)
+    em = letters() / 72
+    room = (part + 6 * em, keys_height + 4 * em, width - part - 7.5 * em, height - top - keys_height - 8 * em)
+    tall = min(room[3], 0.8 * room[2])
+    bottom = room[1] + (room[3] - tall) / 2
+    curve.set_position((room[0] / width, bottom / height, room[2] / width, tall / height))
 
     bars = scene.bars(space, frame, ends)
-    (cursor,) = curve.plot([], [], color="#303030", lw=1.0, zorder=5)
-    (dot,) = curve.plot([], [], "o", color="#303030", ms=7, zorder=6)
-    reading = figure.text(0.65, 0.83, "", fontsize=10)
+    named = frame.places[np.linspace(0, len(frame.places) - 1, NAMED_POSES).astype(int)]
+    known = named[~np.isnan(named[:, : frame.solid]).any(axis=(1, 2))]
+    page = Bbox.from_extents(0, foot * DPI, part * DPI, (height - top) * DPI)
+    names = (
+        write_names(space, frame, known, range(len(frame.names)), within=page, distances=NEAR)
+        if len(known)
+        else []
+    )
+    (cursor,) = curve.plot([], [], color=INK, lw=1.0 * stroke(), zorder=5)
+    (dot,) = curve.plot([], [], "o", color=INK, ms=7 * stroke(), zorder=6)
+    place = room[0] / width, (bottom + tall + 0.7 * em) / height
+    reading = figure.text(*place, "", fontsize=letters())
     moving: list[tuple[Callable[[Artist], None], Artist]] = [
-        *((space.draw_artist, artist) for artist, _ in bars),
+        *((space.axes.draw_artist, artist) for artist, _ in bars),
+        *((space.axes.draw_artist, text) for text, _ in names),
         (curve.draw_artist, cursor),
         (curve.draw_artist, dot),
         (figure.draw_artist, reading),
     ]
+    # what is on top is drawn last
+    moving.sort(key=lambda one: one[1].get_zorder() if one[1].axes is space.axes else 100)
     for _, artist in moving:
         artist.set_animated(True)
     canvas: Any = figure.canvas
@@ -153,15 +236,22 @@ def _pictures(motion: Motion, circuit: Circuit, frames: int) -> Iterator[Picture
     count = np.arange(len(path.time))
     courses = ((motion.input, path.input), (motion.output, path.output))
     units = [f" {motion.linkage.length_unit}" if slides(motion, c) else "°" for c in ends]
+    said = [shown_name(name, 14) for name in ends]
     for row in _rows(motion, path, frames):
         angle, output = (
             float(shown_value(motion, column, np.interp(row, count, values))) for column, values in courses
         )
-        scene.put(bars, frame.pose(float(row)))
+        pose = frame.pose(float(row))
+        scene.put(space, bars, pose)
+        for text, where in names:
+            if np.isfinite(pose[where]).all():
+                text.xy = tuple(space.anchor(pose[where][None])[0])
         cursor.set_data([angle, angle], curve.get_ylim())
         dot.set_data([angle], [output])
         time = float(np.interp(row, count, path.time))
-        reading.set_text(f"t = {time:.3f} s    input {angle:.1f}{units[0]}    output {output:.1f}{units[1]}")
+        reading.set_text(
+            f"t = {time:.3f} s   {said[0]} {angle:.1f}{units[0]}   {said[1]} {output:.1f}{units[1]}"
+        )
         canvas.restore_region(still)
         for draw, artist in moving:
             draw(artist)
@@ -194,8 +284,10 @@ def _ffmpeg() -> str:
         ) from None
 
 
-def _write_mp4(pictures: Iterator[Picture], file: Path, fps: float, ffmpeg: str, target: Path) -> None:
-    width, height = (round(side * DPI) for side in SIZE)
+def _write_mp4(
+    pictures: Iterator[Picture], file: Path, fps: float, ffmpeg: str, target: Path, size: tuple[float, float]
+) -> None:
+    width, height = (round(side * DPI) for side in size)
     source = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", f"{fps:g}", "-i", "-"]
     result = ["-an", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", str(file)]
     command = [ffmpeg, "-y", "-loglevel", "error", *source, *result]

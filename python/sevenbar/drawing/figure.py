@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -15,34 +15,18 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import short
-from sevenbar.errors import OutputError, shown
+from sevenbar.drawing.names import quantity_label, short, shown_name
+from sevenbar.drawing.space import measuring
+from sevenbar.drawing.style import STYLE
+from sevenbar.errors import OutputError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
 
 #: What a figure can be written as.
-FORMATS = ("png", "svg", "pdf")
+FORMATS = ("png", "svg", "pdf", "eps")
 
 
 PNG_DPI = 200
-
-
-CIRCUIT_COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#6A3D9A", "#000000")
-
-
-LINE_STYLES = ("-", (0, (5, 1.6)), (0, (5, 1.5, 1, 1.5)), (0, (1.2, 1.2)))
-
-
-#: Names may hold dollars, so mathematical text is off.
-STYLE: dict[Any, Any] = {
-    "font.size": 9.0,
-    "text.usetex": False,
-    "text.parse_math": False,
-    "axes.unicode_minus": True,
-    "svg.hashsalt": "sevenbar",
-    "pdf.fonttype": 42,
-    "grid.color": "#e2e2e2",
-}
 
 
 #: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it).
@@ -61,10 +45,14 @@ def shown_value(motion: Motion, column: str, values: Any) -> Any:
 
 def input_label(motion: Motion) -> str:
     """What is written along an axis of the input."""
-    name = short(motion.input, 40)
-    if slides(motion, motion.input):
-        return f"input position: {name} [{motion.linkage.length_unit}]"
-    return f"input angle: {name} [deg]"
+    return column_label(motion, motion.input)
+
+
+def column_label(motion: Motion, column: str) -> str:
+    """What is written along an axis of a column: its name, whether it turns or slides, the unit."""
+    if slides(motion, column):
+        return quantity_label(column, "position", motion.linkage.length_unit)
+    return quantity_label(column, "angle", "deg")
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -74,9 +62,61 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def title(motion: Motion) -> str:
+def title_of(motion: Motion) -> str:
     """The linkage's name and motion type."""
     return f"{short(motion.linkage.name, 60)}: {motion.motion_type}"
+
+
+def title_text(title: bool | str, usual: str) -> str:
+    """The title of a figure: the caller's own, the usual one, or none."""
+    return title if isinstance(title, str) else usual if title else ""
+
+
+def headline(figure: Figure, title: bool | str, usual: str) -> None:
+    """Writes the title of a figure whose layout matplotlib finds."""
+    if text := title_text(title, usual):
+        figure.suptitle(text)
+
+
+def key_below(figure: Figure, handles: Sequence[Any], heading: str = "") -> None:
+    """Writes a legend below all panels, in as many columns as the page is wide."""
+    width = figure.bbox.width
+    for lines in range(1, len(handles) + 1):
+        made = figure.legend(
+            handles=list(handles), loc="outside lower center", ncols=-(-len(handles) // lines),
+            title=heading or None, title_fontsize="small", frameon=False,
+        )  # fmt: skip
+        if made.get_window_extent(measuring(figure)).width <= 0.98 * width or lines == len(handles):
+            break
+        made.remove()
+
+
+def circuits_text(numbers: Sequence[int]) -> str:
+    """Circuits by their numbers: "circuit 3", "circuits 1 and 5", "circuits 0, 1 and 2"."""
+    *first, last = map(str, numbers)
+    return f"circuits {', '.join(first)} and {last}" if first else f"circuit {last}"
+
+
+def given_axes(ax: Any, count: int, what: str) -> list[Any]:
+    """The caller's axes, as a list of so many; raises `RequestError` for another number."""
+    found = list(np.ravel(np.asarray(ax, dtype=object)))
+    if len(found) != count or not all(hasattr(axes, "plot") for axes in found):
+        raise RequestError(f"ax: give {count} axes of matplotlib, {what}")
+    return found
+
+
+def tidy(figure: Figure) -> None:
+    """Breaks the labels of upright axes that are longer than the axis, at the unit, then at words."""
+    renderer = measuring(figure)
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        label = axes.yaxis.label
+        for mark in (" [", " "):
+            if label.get_window_extent(renderer).height > 0.98 * axes.bbox.height:
+                head, _, tail = label.get_text().rpartition(mark)
+                if head:
+                    label.set_text(f"{head}\n{mark.strip()}{tail}")
+    figure.align_ylabels()
 
 
 def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
@@ -92,7 +132,7 @@ def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, 
 
 def note(motion: Motion, cut: bool) -> str:
     """How the input is driven, and whether rates were cut."""
-    name = short(motion.input, 40)
+    name = shown_name(motion.input)
     unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
     note = f"{name} at {motion.speed:g} {unit}/s"
     if motion.law is not None:
@@ -103,18 +143,30 @@ def note(motion: Motion, cut: bool) -> str:
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:
-    """Writes a figure as PNG (200 dpi), SVG or PDF, by the path's ending; returns the path.
+    """Writes a figure as PNG (200 dpi), SVG, PDF or EPS, by the path's ending; returns the path.
 
     Raises `OutputError` for another ending and where the file cannot be written; then nothing is left behind.
     """
     target = Path(path)
     ending = target.suffix.lower().removeprefix(".")
     if ending not in FORMATS:
-        raise OutputError(f"{target}: {shown(target.suffix)} is not a figure format; give .png, .svg or .pdf")
+        raise OutputError(
+            f"{target}: {shown(target.suffix)} is not a figure format; give .png, .svg, .pdf or .eps"
+        )
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with written_whole(target) as file, rc_context(STYLE):
         figure.savefig(file, format=ending, dpi=PNG_DPI, metadata=dates.get(ending))
+        if ending == "eps":
+            _without_date(file)
     return target
+
+
+def _without_date(file: Path) -> None:
+    """Takes the date and the name of a file aside out of an EPS, so that one figure gives the same bytes."""
+    lines = file.read_bytes().split(b"\n")
+    file.write_bytes(
+        b"\n".join(line for line in lines if not line.startswith((b"%%CreationDate", b"%%Title")))
+    )
 
 
 @contextmanager

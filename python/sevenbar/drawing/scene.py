@@ -1,81 +1,119 @@
-"""The linkage in space: the artists that draw its places."""
+"""The linkage as it is drawn: the artists of its links, joints, ground and paths, and their legend."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import Normal, withStroke
-from matplotlib.ticker import MaxNLocator
-from mpl_toolkits.mplot3d.art3d import Line3D, Poly3DCollection  # type: ignore[import-untyped]
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import Skeleton, short
+from sevenbar.drawing.names import amount_text, shown_name
+from sevenbar.drawing.skeleton import DrawnSphere, Skeleton
+from sevenbar.drawing.space import Box, Space, box_round, draw_axes, draw_frame
+from sevenbar.drawing.style import COUPLER, GROUND, INPUT, JOINT, OUTPUT, PATH, POINT_COLOURS, paler, stroke
+from sevenbar.drawing.view import View, wide_view
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.rigid import perpendicular, unit
 
-#: Colours of Okabe and Ito, told apart by colour-blind readers too.
-INPUT, OUTPUT, COUPLER, GROUND = "#0072B2", "#D55E00", "#009E73", "#808080"
-
-
-JOINT, PATH = "#9a9a9a", "#b5c7bd"
-
-
-POINT_COLOURS = ("#CC79A7", "#E69F00", "#56B4E9", "#000000")
-
-
-#: The thinnest side of the drawn box, as a share of its longest.
-THINNEST_BOX = 0.4
 #: A path shorter than this share of the linkage's extent is none.
 SAME = 1e-6
+#: How much of the colour of a faint pose is white.
+FAINT = 0.72
+#: Half the width of the ground under a hinge, its depth, and the lengths of its strokes, as shares of the
+#: linkage's extent.
+FOOT, DEPTH, HATCH = 0.035, 0.055, 0.022
+#: How far the axes through the centre of a sphere reach, as a share of its radius.
+REACH = 1.3
+#: The same with their letters.
+LETTERED = 1.6
+#: Lines on a sphere: their distance [deg], and how many places each has.
+MERIDIANS, PLACES = 30.0, 121
+
+Bars = list[tuple[Any, tuple[int, ...]]]
 
 
-def stage(
-    axes: Any,
-    frame: Skeleton,
-    ends: tuple[str, str],
-    *,
-    around: Skeleton | None = None,
-    fill: float = 0.74,
-) -> None:
-    """Draws into 3D axes what stands still, the paths and the ground, and sets the view.
+def shown_places(frame: Skeleton) -> Floats:
+    """The places (n, 3) that a picture of all poses of a frame shows, with its sphere and its feet."""
+    places = [frame.places[:, frame.shown].reshape(-1, 3)]
+    if frame.sphere is not None:
+        reach = frame.sphere.radius * np.concatenate([REACH * np.eye(3), -np.eye(3)])
+        places.append(frame.sphere.centre + reach)
+    return np.concatenate([*places, *(plate for plate, _ in _feet(frame))])
 
-    `ends` are the columns of input and output. The view shows all places of `around`, of the frame itself
-    where none is given.
+
+def stage(space: Space, frame: Skeleton, ends: tuple[str, str], *, around: Skeleton | None = None) -> None:
+    """Draws what stands still: the paths, the sphere, rails and ground.
+
+    `ends` are the columns of input and output. The frame of the axes is drawn by `box_of`, before or after.
     """
     whole = around or frame
-    feet = _feet(whole)
-    places = [whole.places.reshape(-1, 3), *(plate for plate, _ in feet)]
-    prepare_view(axes, np.concatenate(places), frame.linkage.length_unit, fill)
+    if frame.sphere is not None:
+        _draw_sphere(space, frame.sphere)
     if len(frame.places) > 1:
         for place, colour in paths(frame, ends):
-            look = {"lw": 0.8, "zorder": 1} if colour == PATH else {"lw": 1.2, "alpha": 0.85, "zorder": 2}
-            axes.plot(*frame.places[:, place].T, color=colour, **look)
+            if place not in frame.far:
+                look = {"lw": 0.8, "zorder": 1} if colour == PATH else {"lw": 1.2, "zorder": 2}
+                space.line(frame.places[:, place], color=colour, **look)
     ground = frame.pose(0)[list(frame.links[-1])]
-    axes.plot(*ground.T, color=GROUND, lw=4, alpha=0.6, zorder=2, solid_capstyle="round")
-    for plate, (stem, *strokes) in feet:
-        face = Poly3DCollection([plate], facecolors="#e4e4e4", edgecolors=GROUND, lw=0.8, zorder=3)
-        axes.add_collection3d(face)
-        for line in strokes:
-            axes.plot(*line.T, color=GROUND, lw=0.8, zorder=3)
-        axes.plot(*stem.T, color=GROUND, lw=2.2, zorder=3)
+    space.line(ground, color=paler(GROUND, 0.35), lw=3.4, zorder=2, solid_capstyle="round")
+    rails = _ground_rails(frame)
+    for rail in rails.values():
+        space.line(rail, color=GROUND, lw=2.0, zorder=2.5, solid_capstyle="round")
+    if space.view.planar:
+        _flat_feet(space, whole, rails)
+        return
+    for plate, (stem, *strokes) in _feet(whole):
+        space.face(plate, "#e4e4e4", GROUND, 0.8, 2.2)
+        space.strokes(strokes, GROUND, 0.8, 2.2)
+        space.line(stem, color=GROUND, lw=2.2, zorder=2.3)
+
+
+def box_of(frame: Skeleton, view: View) -> Box:
+    """What shows all of a frame in a view."""
+    outline, sphere = None, frame.sphere
+    if sphere is not None and not view.flat:
+        # a disc as it is seen, the ends of the axes, and what stands out of it
+        turns = np.linspace(0, math.tau, PLACES)
+        disc = np.stack([np.cos(turns), np.sin(turns)], axis=1) @ view.screen
+        ways = sphere.radius * np.concatenate([disc, LETTERED * np.eye(3)])
+        outline = np.concatenate([sphere.centre + ways, frame.places[:, frame.shown].reshape(-1, 3)])
+        outline = outline[np.isfinite(outline).all(axis=1)]
+    return box_round(shown_places(frame), view, outline)
+
+
+def draw_box(space: Space, frame: Skeleton, box: Box) -> None:
+    """Draws the frame of the axes with their names and units, once they have their place on the page."""
+    sphere = frame.sphere
+    if sphere is not None and not space.view.flat:
+        draw_axes(space, sphere.centre, sphere.radius, REACH * sphere.radius)
+        return
+    # on a sphere of any radius, lengths are shares of it
+    draw_frame(space, box, frame.linkage.length_unit if sphere is None or not sphere.free else "radius")
+
+
+def _ground_rails(frame: Skeleton) -> dict[int, Floats]:
+    """The ends (2, 3) of rails on the ground, by the joint."""
+    still = (0, len(frame.joints) - 1)
+    pose = frame.pose(0)
+    return {i: pose[list(ends)] for i, word, ends in frame.marks if word == "rail" and i in still}
 
 
 def _feet(frame: Skeleton) -> list[tuple[Floats, list[Floats]]]:
     """The ground where an axis stands still: plates (4, 3) on the far side, or below; stems and hatches."""
     pose, size = frame.pose(0), 0.05 * frame.span
+    rails = _ground_rails(frame)
     feet = []
     for joint, place in ((0, frame.links[-1][-1]), (len(frame.joints) - 1, frame.links[-1][0])):
         axes = [ends for i, word, ends in frame.marks if i == joint and word in ("cylinder", "arm")]
-        if not axes:
+        if not axes or joint in rails:
             continue
         start, end = pose[list(axes[-1 if joint else 0])]
         centre, side = pose[place], unit(end - start)
-        away = float(side @ (centre - np.nanmean(frame.places, axis=(0, 1))))
+        away = float(side @ (centre - np.nanmean(frame.places[:, : frame.solid], axis=(0, 1))))
         side = side * math.copysign(1.0, away if abs(away) > 0.1 * frame.span else -side[2] or 1.0)
         u, foot = perpendicular(side), centre + 1.7 * size * side
         v = np.cross(side, u)
@@ -84,6 +122,64 @@ def _feet(frame: Skeleton) -> list[tuple[Floats, list[Floats]]]:
         strokes = [np.stack([p * u - v, (p + 0.4) * u - v + 0.4 * side]) for p in np.linspace(-1, 0.6, 6)]
         feet.append((plate, [np.stack([centre, foot]), *(foot + size * line for line in strokes)]))
     return feet
+
+
+def _flat_feet(space: Space, frame: Skeleton, rails: dict[int, Floats]) -> None:
+    """The ground of a planar loop, as it is drawn on paper: triangles under hinges, hatches along rails."""
+    pose, size = frame.pose(0), frame.span
+    right, up = space.view.screen
+    middle = np.nanmean(frame.places[:, : frame.solid], axis=(0, 1))
+    for joint, place in ((0, frame.links[-1][-1]), (len(frame.joints) - 1, frame.links[-1][0])):
+        if joint in rails:
+            start, end = rails[joint]
+            along = unit(end - start)
+            normal = (along @ right) * up - (along @ up) * right
+            # below, or to the left of one that is upright
+            side = -normal * math.copysign(1.0, normal @ up + 1e-6 * (normal @ right))
+            # clear of the block that slides on it
+            line = np.stack([start, end]) + 0.62 * DEPTH * size * side
+            space.line(line, color=GROUND, lw=1.2, zorder=2.2)
+            _hatch(space, line, along, side, size)
+            continue
+        word = next((word for i, word, _ in frame.marks if i == joint and word != "axis"), "")
+        if word == "block":
+            continue
+        down = -up if (pose[place] - middle) @ up <= 0.15 * size else up
+        base = pose[place] + size * (DEPTH * down + FOOT * np.stack([-right, right]))
+        space.face(np.concatenate([pose[place][None], base]), "#ececec", GROUND, 1.0, 2.2)
+        line = base + 0.5 * FOOT * size * np.stack([-right, right])
+        space.line(line, color=GROUND, lw=1.2, zorder=2.2)
+        _hatch(space, line, right, down, size)
+
+
+def _hatch(space: Space, line: Floats, along: Floats, side: Floats, size: float) -> None:
+    """Short strokes behind a line that stands for the ground."""
+    length = float(np.linalg.norm(line[1] - line[0]))
+    count = max(4, round(length / (0.7 * HATCH * size)))
+    start = line[0] if (line[1] - line[0]) @ along > 0 else line[1]
+    stroke_ = HATCH * size * (side - along)
+    feet = [start + along * length * share for share in (np.arange(count) + 0.9) / count]
+    space.strokes([np.stack([foot, foot + stroke_]) for foot in feet], GROUND, 0.8, 2.2)
+
+
+def _draw_sphere(space: Space, sphere: DrawnSphere) -> None:
+    """The sphere of a spherical loop: its outline, and the front of its meridians and parallels."""
+    view = space.view
+    turns = np.linspace(0, math.tau, PLACES)
+    circle = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    outline = sphere.centre + sphere.radius * circle @ view.screen
+    space.face(outline, "#f4f6f8", "#b9c0c7", 0.9, 0.5)
+    rings = []
+    for angle in np.arange(-90 + MERIDIANS, 90, MERIDIANS):
+        high, wide = math.sin(math.radians(angle)), math.cos(math.radians(angle))
+        rings.append(np.column_stack([wide * circle, np.full(PLACES, high)]))
+    for angle in np.radians(np.arange(0, 180, MERIDIANS)):
+        rings.append(
+            np.column_stack([np.outer(circle[:, 0], [math.cos(angle), math.sin(angle)]), circle[:, 1]])
+        )
+    for ring in rings:
+        ring[ring @ view.towards < 0] = np.nan
+        space.line(sphere.centre + sphere.radius * ring, color="#dbe0e5", lw=0.6, zorder=0.6)
 
 
 def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
@@ -102,56 +198,9 @@ def paths(frame: Skeleton, ends: tuple[str, str]) -> list[tuple[int, str]]:
     return found
 
 
-def prepare_view(axes: Any, places: Floats, unit: str, fill: float = 0.74) -> None:
-    """Sets the view and the limits of 3D axes to show places (n, 3) [length] well, over a share `fill`."""
-    axes.computed_zorder = False
-    axes.view_init(*_wide_view(places))
-    axes.set_proj_type("ortho")
-    _equal_box(axes, places, unit, fill)
-    for scale in (axes.xaxis, axes.yaxis):  # the last ones would fall together in the corner
-        scale.get_major_locator().set_params(prune="both")
-
-
 def view(frame: Skeleton) -> tuple[float, float]:
     """Elevation and azimuth [deg] from which the whole motion of a frame is seen well."""
-    return _wide_view(frame.places.reshape(-1, 3))
-
-
-def _wide_view(places: Floats) -> tuple[float, float]:
-    """Elevation and azimuth [deg] from which places (n, 3) cover the most."""
-    azimuths = (np.arange(-180.0, 180.0, 90.0)[:, None] + [25.0, 45.0, 65.0]).ravel()
-    elevation, azimuth = (grid.ravel() for grid in np.meshgrid([20.0, 30.0, 45.0], azimuths))
-    kept = places[~np.isnan(places).any(axis=1)]
-    spread = (kept - kept.mean(axis=0)).T @ (kept - kept.mean(axis=0))
-    screens = [directions(*view) for view in zip(elevation, azimuth, strict=True)]
-    covered = np.array([np.sqrt(max(np.linalg.det(s @ spread @ s.T), 0.0)) for s in screens])
-    # among like views the usual one, x to the right and y away
-    unusual = (1 - np.cos(np.radians(azimuth + 60.0))) / 2 + np.abs(elevation - 30.0) / 100
-    best = int(np.argmax(covered / (covered.max() or 1.0) - 0.3 * unusual))
-    return float(elevation[best]), float(azimuth[best])
-
-
-def _equal_box(axes: Any, drawn: Floats, unit: str, fill: float = 0.74) -> None:
-    """Limits round everything drawn, a length unit as long along each axis, as large as the axes can hold."""
-    low, high = np.nanmin(drawn, axis=0), np.nanmax(drawn, axis=0)
-    extent = np.maximum(high - low, THINNEST_BOX * (high - low).max()) * 1.04
-    middle = (low + high) / 2
-    for index, name in enumerate("xyz"):
-        ends = (middle[index] - extent[index] / 2, middle[index] + extent[index] / 2)
-        getattr(axes, f"set_{name}lim3d")(*ends, view_margin=0)
-        scale = getattr(axes, f"{name}axis")
-        scale.set_major_locator(MaxNLocator(max(2, round(6 * extent[index] / extent.max()))))
-        # labels stand off by a share of the other two sides
-        stand_off = max(1.0, 0.9 * extent.max() / float(np.linalg.norm(np.delete(extent, index))))
-        scale.set_tick_params(labelsize=7.5, pad=10 * stand_off - 8)
-        scale.set_label_text(f"{name} [{unit}]")
-        scale.labelpad = 25 * stand_off - 21
-    right, above = directions(axes.elev, axes.azim)
-    seen = max(np.abs(right) @ extent, np.abs(above) @ extent * 1.06) / np.linalg.norm(extent)
-    axes.set_box_aspect(extent, zoom=fill / seen)
-
-
-Bars = list[tuple[Any, tuple[int, ...]]]
+    return wide_view(frame.places[:, frame.shown].reshape(-1, 3))
 
 
 def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[str]]:
@@ -168,12 +217,7 @@ def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[
 
 
 def bars(
-    axes: Any,
-    frame: Skeleton,
-    ends: tuple[str, str],
-    *,
-    ghost: bool = False,
-    scale: float = 1.0,
+    space: Space, frame: Skeleton, ends: tuple[str, str], *, ghost: bool = False, scale: float = 1.0
 ) -> Bars:
     """New artists for one pose, each with the places it joins: links, joints, points; `put` moves them.
 
@@ -181,111 +225,119 @@ def bars(
     """
     colours, joint_colours = link_colours(frame.linkage, ends)
     order, width = (3, 1.5) if ghost else (6, 4.0 * scale)
-    look = {"alpha": 0.25 if ghost else 1.0, "zorder": order, "solid_capstyle": "round"}
+    look = {"zorder": order, "solid_capstyle": "round"}
     made: Bars = []
+    nowhere = np.empty((0, 3))
 
     def add(places: tuple[int, ...], **style: Any) -> None:
-        line = Line3D([], [], [], **look | style)
-        axes.add_line(line)
-        made.append((line, places))
+        made.append((space.line(nowhere, **look | style), places))
 
     if not ghost:
         for stay in frame.stays:
-            add(stay, color=COUPLER, lw=width / 3)
+            if stay[1] not in frame.far:
+                add(stay, color=COUPLER, lw=width / 3)
     for places, colour in zip(frame.links[:-1], colours, strict=True):
-        outline = [] if ghost else [withStroke(linewidth=width + 1.4 * scale, foreground="#202020"), Normal()]
-        add(places, color=colour, lw=width, path_effects=outline)
+        ink = stroke() * (width + 1.4 * scale)
+        outline = [] if ghost else [withStroke(linewidth=ink, foreground="#202020"), Normal()]
+        add(places, color=paler(colour, FAINT) if ghost else colour, lw=width, path_effects=outline)
     if not ghost:
+        still = _ground_rails(frame)
+        riding = {joint for joint, word, _ in frame.marks if word == "rail"}
         for joint, word, joined in frame.marks:
-            add(joined, **_mark(word, joint_colours[joint], scale), zorder=order + (word != "axis"))
+            if (word == "rail" and joint in still) or (
+                word == "axis" and (joint in riding or space.view.planar)
+            ):
+                continue
+            colour = joint_colours[joint]
+            if space.view.flat and word in ("cylinder", "arm") and joint not in riding:
+                # seen along its axis, a cylinder is a ring
+                ring = {"ls": "", "marker": "o", "mfc": "white", "mew": 2.0, "ms": 8 * scale}
+                add((frame.joints[joint],), **ring, mec=_ring(colour), zorder=order + 1)
+            # a block is under the pin that it carries
+            above = {"axis": 0.0, "rail": 0.0, "block": -0.5}.get(word, 1.0)
+            add(joined, **_mark(word, colour, scale) | {"zorder": order + above})
     for place, colour in paths(frame, ends)[: len(frame.points)]:
-        add((place,), ls="", marker="o", color=colour, ms=3.0 if ghost else 7.0 * scale, zorder=order + 2)
+        if place not in frame.far:
+            look_of = paler(colour, FAINT) if ghost else colour
+            add(
+                (place,), ls="", marker="o", color=look_of, ms=3.0 if ghost else 6.5 * scale, zorder=order + 2
+            )
     return made
+
+
+def _ring(colour: str) -> str:
+    """The colour of a hinge's ring: that of its joint, dark where it has none of its own."""
+    return "#303030" if colour == JOINT else colour
 
 
 def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
     """The look of a joint's mark."""
-    outline = [withStroke(linewidth=9.6 * scale, foreground="#202020"), Normal()]
+
+    def outline(width: float) -> list[Any]:
+        return [withStroke(linewidth=width * scale * stroke(), foreground="#202020"), Normal()]
+
+    block = {"color": colour, "lw": 11 * scale, "solid_capstyle": "butt", "path_effects": outline(12.6)}
     return {
         "axis": {"color": "#404040", "lw": 0.9 * scale, "ls": (0, (7, 2, 1.5, 2))},
-        "cylinder": {"color": colour, "lw": 8 * scale, "solid_capstyle": "butt", "path_effects": outline},
+        "rail": {"color": "#5c6066", "lw": 1.6 * scale},
+        "cylinder": {
+            "color": colour,
+            "lw": 8 * scale,
+            "solid_capstyle": "butt",
+            "path_effects": outline(9.6),
+        },
         "thread": {"color": "white", "lw": 7 * scale, "ls": (0, (0.22, 0.22)), "dash_capstyle": "butt"},
         "arm": {"color": colour, "lw": 5 * scale, "solid_capstyle": "butt"},
         "plate": {"color": colour, "lw": 1.6 * scale},
-        "block": {"color": colour, "ls": "", "marker": "s", "ms": 9 * scale, "mec": "#202020", "mew": 0.8},
+        "block": block,
         "ball": {"color": "#f4f4f4", "ls": "", "marker": "o", "ms": 8 * scale, "mec": "#303030", "mew": 2.4},
     }[word]
 
 
-def put(made: Bars, pose: Floats) -> None:
-    """Moves the artists of `bars` to a pose, places (4 + k, 3)."""
+def put(space: Space, made: Bars, pose: Floats) -> None:
+    """Moves the artists of `bars` to a pose, places (k, 3)."""
     for artist, places in made:
-        artist.set_data_3d(*pose[list(places)].T)
+        space.put(artist, pose[list(places)])
 
 
-def label(axes: Any, frame: Skeleton, pose: Floats, places: Sequence[int]) -> None:
-    """Writes the names of places of a pose, each on its freest side; what falls together shares one label."""
-    screen = directions(axes.elev, axes.azim)
-    seen = pose @ screen.T
-    lines = frame.lines(pose, screen)
-    named: dict[int, list[str]] = {}
-    for i in (place for place in places if frame.names[place]):
-        near = [k for k in named if np.linalg.norm(seen[k] - seen[i]) < 0.03 * frame.span]
-        named.setdefault(near[0] if near else i, []).append(frame.names[i])
-    turns = np.linspace(0, math.tau, 24, endpoint=False)
-    for i, names in named.items():
-        spots = seen[i] + 0.06 * frame.span * np.stack([np.cos(turns), np.sin(turns)], axis=1)
-        best = turns[int(np.argmax([min(_distance(spot, line) for line in lines) for spot in spots]))]
-        place = pose[i] + 0.045 * frame.span * np.array([math.cos(best), math.sin(best)]) @ screen
-        side = "center" if abs(math.cos(best)) < 0.5 else "left" if math.cos(best) > 0 else "right"
-        halo = [withStroke(linewidth=2.5, foreground="white")]
-        axes.text(
-            *place,
-            ", ".join(dict.fromkeys(names)),
-            fontsize=11,
-            ha=side,
-            va="center",
-            zorder=9,
-            path_effects=halo,
-        )
-
-
-def directions(elevation: float, azimuth: float) -> Floats:
-    """The directions, unit vectors (2, 3), seen as right and up from an elevation and an azimuth [deg]."""
-    up, round_ = math.radians(elevation), math.radians(azimuth)
-    above = [-math.sin(up) * math.cos(round_), -math.sin(up) * math.sin(round_), math.cos(up)]
-    return np.array([[-math.sin(round_), math.cos(round_), 0.0], above])
-
-
-def _distance(spot: Floats, line: Floats) -> float:
-    along = line[1] - line[0]
-    share = np.clip((spot - line[0]) @ along / ((along @ along) or 1.0), 0, 1)
-    return float(np.linalg.norm(spot - line[0] - share * along))
-
-
-def keys(frame: Skeleton, ends: tuple[str, str]) -> list[Line2D]:
+def keys(frame: Skeleton, ends: tuple[str, str], seen: View) -> list[Line2D]:
     """The legend's entries: the links, the kinds of joints, and the paths where there are several poses."""
     colours, _ = link_colours(frame.linkage, ends)
-    links = [(INPUT, f"input: {short(ends[0], 24)}"), (OUTPUT, f"output: {short(ends[1], 24)}")]
+    links = [(INPUT, f"input: {shown_name(ends[0], 24)}"), (OUTPUT, f"output: {shown_name(ends[1], 24)}")]
     if COUPLER in colours:
         links.append((COUPLER, "coupler" if colours.count(COUPLER) == 1 else "other moving links"))
-    found = [Line2D([], [], color=colour, lw=5, label=name) for colour, name in links]
-    found.append(Line2D([], [], color=GROUND, lw=4, alpha=0.6, label="ground"))
+    thick = stroke()
+    found = [Line2D([], [], color=colour, lw=5 * thick, label=name) for colour, name in links]
+    found.append(Line2D([], [], color=paler(GROUND, 0.35), lw=4 * thick, label="ground"))
     for letter, kind in KINDS.items():
         if letter in frame.linkage.kind:
-            mark = kind.shape
             style = {
                 "cylinder": {"marker": "s", "ms": 7},
+                "block": {"marker": "s", "ms": 9, "mec": "#202020", "mew": 0.8},
                 "thread": {"marker": "s", "ms": 6, "mfc": "white", "mew": 2.4},
                 "plate": {"marker": "D", "ms": 7, "mfc": "white", "mew": 1.6},
-            }
-            look = style.get(mark) or ({"marker": "P", "ms": 8} if mark == "arm" else _mark(mark, JOINT))
-            found.append(Line2D([], [], **{"color": JOINT, "ls": ""} | look, label=kind.legend))
+                "arm": {"marker": "P", "ms": 8},
+                "ball": _mark("ball", JOINT),
+            }[kind.shape]
+            if seen.planar and kind.shape == "cylinder":
+                style = {"marker": "o", "ms": 7, "mfc": "white", "mew": 2.0, "mec": "#303030"}
+            look = {"color": JOINT, "ls": ""} | style
+            look = {k: v * thick if k in ("ms", "mew") else v for k, v in look.items()}
+            found.append(Line2D([], [], **look, label=kind.legend))
+    if frame.sphere is not None and not frame.sphere.free:
+        radius = amount_text(frame.sphere.radius, frame.linkage.length_unit)
+        look = {"color": "#f4f6f8", "mec": "#b9c0c7", "ms": 8 * thick}
+        found.append(Line2D([], [], ls="", marker="o", **look, label=f"sphere, radius {radius}"))
     names = {}
     for place, colour in paths(frame, ends) if len(frame.places) > 1 else ():
         line = frame.places[:, place]
         extent = np.ptp(line[~np.isnan(line).any(axis=1)], axis=0).max()
         if place in frame.points or extent > SAME * frame.span:
-            name = "paths of the joints" if colour == PATH else f"path of {frame.names[place]}"
-            names[name] = Line2D([], [], color=colour, lw=0.8 if colour == PATH else 1.4, label=name)
+            word = "joint " if frame.names[place].isdecimal() and place not in frame.points else ""
+            name = "paths of the joints" if colour == PATH else f"path of {word}{frame.names[place]}"
+            if place in frame.far:
+                name = f"{frame.names[place]} is far off, not shown"
+            names[name] = Line2D(
+                [], [], color=colour, lw=(0.8 if colour == PATH else 1.4) * thick, label=name
+            )
     return found + list(names.values())

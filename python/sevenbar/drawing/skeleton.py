@@ -10,15 +10,34 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.names import joint_label, short
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop, Point
 from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.plane_and_sphere import sphere_of
 from sevenbar.kinematics.poses import at_row, frames_along, frames_of, joint_frames, walk
 
-#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate reaches past what slides
-#: on it, as shares of the linkage's extent.
-AXIS, CYLINDER, PLATE = 0.075, 0.032, 0.04
+#: Half the length of a joint's drawn axis and of its cylinder, and how far a plate and a rail reach past what
+#: slides on them, as shares of the linkage's extent.
+AXIS, CYLINDER, BLOCK, PLATE, RAIL = 0.075, 0.032, 0.04, 0.04, 0.1
+
+#: A point farther from the linkage than so many of its extents is left outside the picture.
+FARTHEST = 3.0
+#: A spherical loop is drawn on the sphere of its farthest point if that is so many times larger than its own.
+LARGER = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnSphere:
+    """The sphere on which a spherical loop is drawn: its centre (3,) and radius [length].
+
+    `free`: nothing of the description gives a length, so that the radius is 1 by choice.
+    """
+
+    centre: Floats
+    radius: float
+    free: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +47,8 @@ class Skeleton:
     `places` (n, k, 3), `names` of each; `links` holds the places along each link, the ground's last; `marks`
     what is drawn of each joint: its number, a word and the places it joins. `joints` are the places of the
     joints, `points` those of the named points, `stays` the places that tie each point to its link. `extent`
-    [length] is what the sizes of the marks are shares of. `reach` is how far joints slide across their axes,
-    least and most (2,) by the joint's number.
+    [length] is what the sizes of the marks are shares of. `reach` is how far joints slide, least and most, by
+    the joint's number: across its axis (2,), or along it (1,). `sphere` is that of a spherical loop.
     """
 
     linkage: Loop
@@ -42,6 +61,7 @@ class Skeleton:
     stays: tuple[tuple[int, int, int], ...]
     extent: float
     reach: Mapping[int, tuple[Floats, Floats]]
+    sphere: DrawnSphere | None = None
 
     def pose(self, row: float) -> Floats:
         """The places (k, 3) at a row, between two rows on the straight line between them."""
@@ -62,17 +82,35 @@ class Skeleton:
         """The joints between moving links, whose paths are drawn."""
         return self.joints[1:-1]
 
-    def lines(self, pose: Floats, screen: Floats) -> list[Floats]:
-        """The lines (2, 2) of a pose, as seen on the screen, that labels should keep off."""
-        seen = pose @ screen.T
+    @property
+    def lines(self) -> list[tuple[int, int]]:
+        """Pairs of places with a line between, that labels should keep off."""
         ends = [pair for link in self.links for pair in pairwise(link)]
-        ends += [(places[0], places[-1]) for _, _, places in self.marks]
-        return [seen[list(pair)] for pair in ends]
+        ends += [(places[0], places[-1]) for _, word, places in self.marks if word != "axis"]
+        return ends + [pair for stay in self.stays for pair in pairwise(stay)]
+
+    @cached_property
+    def far(self) -> frozenset[int]:
+        """The named points that are too far off to be in one picture with the linkage."""
+        solid = self.places[:, : self.solid]
+        middle = np.nanmean(solid, axis=(0, 1))
+        most = FARTHEST * _extent(solid)
+        return frozenset(
+            place
+            for place in self.points
+            if np.nanmax(np.abs(self.places[:, place] - middle), initial=0.0) > most > 0
+        )
+
+    @property
+    def shown(self) -> list[int]:
+        """The places that a picture shows: all but points that are far off."""
+        return [place for place in range(len(self.names)) if place not in self.far]
 
     @cached_property
     def span(self) -> float:
-        """The largest extent along x, y or z [length]."""
-        return _extent(self.places)
+        """The largest extent along x, y or z [length] of what a picture shows, rails aside."""
+        rails = {end for _, word, ends in self.marks if word == "rail" for end in ends}
+        return _extent(self.places[:, [place for place in self.shown if place not in rails]])
 
 
 def skeleton_of(
@@ -89,25 +127,32 @@ def skeleton_of(
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
     spread = _extent(origins)
     in_rows = linkage.form == "rows"
-    spherical = not spread > 1e-9
+    at = [linkage.point_frames[point.link - 1] @ (*point.at, 1.0) for point in points]
+    carried = [
+        (after[:, point.link - 1] @ place if point.link < count else np.broadcast_to(place, (rows, 4)))[:, :3]
+        for point, place in zip(points, at, strict=True)
+    ]
+    sphere = like.sphere if like else _sphere(linkage, carried)
     places: list[Floats] = []
 
     def add(place: Floats) -> int:
         places.append(np.broadcast_to(place, (rows, 3)))
         return len(places) - 1
 
-    # a loop whose axes meet where all frames lie is shown on a sphere round that place
-    radius = 1.0 if spherical else 0.0
-    span = like.extent if like else 1.6 if spherical else spread
+    span = like.extent if like else 1.6 * sphere.radius if sphere else spread
     feet: list[tuple[int, int]] = []
     marks: list[tuple[int, str, tuple[int, ...]]] = []
     reach: dict[int, tuple[Floats, Floats]] = {}
     links: list[tuple[int, ...]] = []
     for i, joint in enumerate(linkage.joints):
         first, second = before[:, i, :3, 2], after[:, i, :3, 2]
-        near = before[:, i, :3, 3] + radius * first
-        far = after[:, i, :3, 3] + radius * second
+        near, far = before[:, i, :3, 3], after[:, i, :3, 3]
+        if sphere:
+            near, far = _on_sphere(sphere, near, first), _on_sphere(sphere, far, second)
         feet.append((add(near), add(far)))
+        last = i == count - 1
+        # what slides; the other side has the rail, of the last joint the ground
+        slider, way = (near, first) if last else (far, second)
 
         def along(middle: Floats, axis: Floats, half: float, to: Floats | None = None) -> tuple[int, int]:
             end = middle if to is None else to
@@ -128,36 +173,45 @@ def skeleton_of(
             marks.append((i, "axis", along(near + across @ ((low + high) / 2), first, AXIS)))
             marks.append((i, "axis", along(far, second, AXIS)))
             marks.append((i, shape, tuple(add(near + across @ np.array(corner)) for corner in corners)))
-            marks.append((i, "block", (feet[i][1],)))
+            marks.append((i, "block", along(far, second, BLOCK)))
             continue
+        if joint.row.rides:
+            slid = ((far - near) * first).sum(axis=1)
+            low, high = np.nanmin(slid, initial=0.0)[None], np.nanmax(slid, initial=0.0)[None]
+            low, high = reach[i] = like.reach[i] if like else (low, high)
+            start, end = low - RAIL * span, high + RAIL * span
+            rail = (near + start * first, near + end * first)
+            if last:
+                rail = (far - end * second, far - start * second)
+            marks.append((i, "rail", (add(rail[0]), add(rail[1]))))
         if shape != "ball":
             marks.append((i, "axis", along(near, first, AXIS, far)))
         if joint.row.has_cross:
             marks.append((i, "axis", along(far, second, AXIS)))
             marks += [(i, shape, along(near, first, CYLINDER)), (i, shape, along(far, second, CYLINDER))]
         elif shape in ("cylinder", "thread"):
-            cylinder = along(far, second, CYLINDER)
+            cylinder = along(slider, way, CYLINDER)
             marks.append((i, "cylinder", cylinder))
             marks += [(i, shape, cylinder)] if shape == "thread" else []
+        elif shape == "block":
+            marks.append((i, shape, along(slider, way, BLOCK)))
         else:
             marks.append((i, shape, (feet[i][1],)))
     for i in range(count):
         start, end = feet[i][1], feet[(i + 1) % count][0]
         inner: tuple[int, ...] = ()
-        if spherical:
-            centre = before[:, 0, :3, 3]
-            inner = tuple(add(place) for place in _arc_between(centre, places[start], places[end]))
+        if sphere:
+            inner = tuple(add(place) for place in _arc_between(sphere, places[start], places[end]))
         elif in_rows:
             inner = _bend(after[:, i], places[start], places[end], add)
         links.append((start, *inner, end))
     solid = len(places)
     named = [""] * solid
-    letters = {1: "A", 2: "B"} if linkage.kind == "RSSR" else {}  # those of the paper
-    for i, joint in enumerate(linkage.joints):
-        named[feet[i][1]] = short(letters.get(i, joint.name), 24)
-    for point in points:
-        place = linkage.point_frames[point.link - 1] @ (*point.at, 1.0)
-        add((after[:, point.link - 1] @ place if point.link < count else place)[..., :3])
+    for i in range(count):
+        rides = i == count - 1 and linkage.joints[i].row.rides
+        named[feet[i][0 if rides else 1]] = joint_label(linkage, i)
+    for point, place in zip(points, carried, strict=True):
+        add(place)
         named.append(short(point.name, 24))
     own = tuple(range(solid, len(places)))
     return Skeleton(
@@ -174,6 +228,7 @@ def skeleton_of(
         ),
         extent=span,
         reach=reach,
+        sphere=sphere,
     )
 
 
@@ -193,12 +248,34 @@ def _bend(frame: Floats, start: Floats, end: Floats, add: Callable[[Floats], int
     return (add(corner),)
 
 
-def _arc_between(centre: Floats, start: Floats, end: Floats) -> list[Floats]:
-    """Places (n, 3) on the great circle from start to end, on a unit sphere."""
+def _sphere(linkage: Loop, named: Sequence[Floats]) -> DrawnSphere | None:
+    """The sphere on which a loop with the places (n, 3) of its points is drawn, if it is spherical."""
+    # a joint whose axes cross in the centre, universal or a ball, has no place on the sphere
+    found = sphere_of(linkage) if set(linkage.kind) == {"R"} else None
+    if found is None:
+        return None
+    free = not named and all(np.abs(frame[:3, 3]).max() <= 1e-9 for frame in linkage.links)
+    # a point keeps its distance from the centre, while a joint may be drawn anywhere on its axis
+    away = [np.nanmax(np.linalg.norm(places - found.centre, axis=1), initial=0.0) for places in named]
+    farthest = float(max(away, default=0.0))
+    return DrawnSphere(found.centre, farthest if farthest > LARGER * found.radius else found.radius, free)
+
+
+def _on_sphere(sphere: DrawnSphere, places: Floats, axes: Floats) -> Floats:
+    """Where axes (n, 3) through places (n, 3) leave the sphere, on the side of the places."""
+    side = ((places - sphere.centre) * axes).sum(axis=1, keepdims=True)
+    outward: Floats = np.where(side < -1e-9 * sphere.radius, -1.0, 1.0) * axes
+    return sphere.centre + sphere.radius * outward
+
+
+def _arc_between(sphere: DrawnSphere, start: Floats, end: Floats) -> list[Floats]:
+    """Places (n, 3) on the great circle of a sphere from start to end."""
     shares = np.linspace(0, 1, 14)[1:-1]
-    chords = [start + share * (end - start) - centre for share in shares]
-    lengths = [np.linalg.norm(chord, axis=1, keepdims=True) for chord in chords]
-    return [centre + chord / np.where(n > 1e-9, n, 1.0) for chord, n in zip(chords, lengths, strict=True)]
+    chords = [start + share * (end - start) - sphere.centre for share in shares]
+    lengths = [np.linalg.norm(chord, axis=1, keepdims=True) / sphere.radius for chord in chords]
+    return [
+        sphere.centre + chord / np.where(n > 1e-9, n, 1.0) for chord, n in zip(chords, lengths, strict=True)
+    ]
 
 
 def skeleton(motion: Motion, circuit: Circuit) -> Skeleton:
@@ -220,8 +297,3 @@ def places_of(q: Floats, frame: Skeleton) -> Floats:
 def one_pose(frame: Skeleton, row: int) -> Skeleton:
     """The places of one row alone."""
     return replace(frame, places=frame.places[row : row + 1])
-
-
-def short(text: str, width: int) -> str:
-    """The text, cut to so many letters."""
-    return text if len(text) <= width else text[: width - 1] + "…"

@@ -13,8 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import GROUND, JOINT, link_colours
+from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.skeleton import CYLINDER
+from sevenbar.drawing.style import GROUND, JOINT
 from sevenbar.export.pose import Pose, shortest_link, size_of
 from sevenbar.kinematics.rigid import inverse, perpendicular
 from sevenbar.kinematics.rigid import pose as matrix

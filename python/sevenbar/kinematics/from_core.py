@@ -22,8 +22,7 @@ from sevenbar.kinematics.circuits import (
     Trace,
     Words,
 )
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search
+from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search, Solvable
 
 _STATUS_WORDS = np.array(STATUSES)
 
@@ -74,7 +73,7 @@ def tally_from(course: _core.Course, size: float) -> Tally:
 def circuit_from(
     raw: _core.RawCircuit,
     *,
-    linkage: Loop,
+    linkage: Solvable,
     index: int,
     columns: tuple[int, int],
     speed: float,
@@ -128,7 +127,6 @@ def circuit_from(
         dead_centres=tuple(DeadCentre(*d) for d in raw.dead_centres),
         input_range=raw.input_range,
         output_range=raw.output_range,
-        transmission=_extremes(raw.transmission),
         velocity=velocity,
         acceleration=acceleration,
         jerk=jerk,
@@ -144,6 +142,8 @@ def circuit_from(
         _point=partial(point, order, status),
         _sensitivity=sensitivity,
         _frames=linkage.point_frames,
+        _answers=linkage.answers,
+        _transmission=_extremes(raw.transmission),
     )
 
 

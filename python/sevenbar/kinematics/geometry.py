@@ -16,7 +16,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z, column_names
 from sevenbar.kinematics.rigid import about, inverse, pose
-from sevenbar.text.printing import Printed
+from sevenbar.text.printing import Drawable
 
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, joints as drawn.
 Form = Literal["rssr", "rows", "drawn"]
@@ -101,7 +101,7 @@ class Drive:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Loop(Printed):
+class Loop(Drawable):
     """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground`.
 
     `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,

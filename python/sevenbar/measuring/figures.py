@@ -6,22 +6,24 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.names import quantity_label, short
+from sevenbar.drawing.style import COMPUTED as COMPUTED_COLOUR
+from sevenbar.drawing.style import OTHER, styled
+from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.measuring.calibrate import Calibration
 from sevenbar.measuring.compare import Comparison
 from sevenbar.measuring.measured import Ends
 
-COMPUTED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.6, "zorder": 2}
+COMPUTED: dict[str, Any] = {"color": COMPUTED_COLOUR, "lw": 1.6, "zorder": 2}
 NOMINAL: dict[str, Any] = {"color": "#8a8a8a", "lw": 1.3, "ls": (0, (4, 2)), "zorder": 1}
 MEASURED: dict[str, Any] = {
-    "color": CIRCUIT_COLOURS[0],
+    "color": OTHER,
     "ls": "",
     "marker": "o",
     "mfc": "none",
@@ -53,7 +55,7 @@ def unit(ends: Ends, quantity: str) -> str:
 
 def word(ends: Ends, quantity: str) -> str:
     """A quantity of the output by its name."""
-    if quantity == "angle":
+    if quantity in ("input", "angle"):
         return "angle" if turns(ends, quantity) else "position"
     return quantity
 
@@ -61,7 +63,7 @@ def word(ends: Ends, quantity: str) -> str:
 def comparison_figure(comparison: Comparison) -> Figure:
     """The computed curve with the measured points, and their differences, a column for each quantity."""
     ends = comparison.ends
-    with rc_context(STYLE):
+    with styled():
         figure, grid = _grid(len(comparison.outputs), (3.0, 1.4))
         for column, quantity in enumerate(comparison.outputs):
             x = shown(ends, "input", comparison.input)
@@ -81,7 +83,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
 def calibration_figure(calibration: Calibration) -> Figure:
     """Measured points on the calibrated and the nominal curve; below, the differences before and after."""
     ends = calibration.ends
-    with rc_context(STYLE):
+    with styled():
         figure, grid = _grid(len(calibration.outputs), (3.0, 1.2, 1.2))
         x = shown(ends, "input", calibration.input)
         order = np.argsort(x, kind="stable")
@@ -128,11 +130,11 @@ def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> N
     for axes, text in zip(below, differences, strict=True):
         axes.set_ylabel(f"{text} [{unit(ends, quantity)}]")
         axes.yaxis.set_major_locator(MaxNLocator(4))
-    below[-1].set_xlabel(f"input: {short(ends.input, 40)} [{unit(ends, 'input')}]")
+    below[-1].set_xlabel(quantity_label(ends.input, word(ends, "input"), unit(ends, "input")))
     for axes in column:
         axes.grid(lw=0.6)
         if turns(ends, "input"):
-            axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+            axes.xaxis.set_major_locator(DegreeLocator(9))
 
 
 def _finish(figure: Figure, grid: Any, title: str) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +22,28 @@ if TYPE_CHECKING:
 Places = Mapping[str, tuple[int, tuple[float, float, float]]]
 
 #: What can be drawn of a motion.
-KINDS = ("curves", "joints", "modes", "configuration", "point")
+KINDS = ("curves", "joints", "modes", "configuration", "point", "transmission", "axodes")
+#: Those that are drawn where none is named: axodes are for those who look for them.
+USUAL_KINDS = KINDS[:-1]
+
+
+@dataclass(frozen=True)
+class FigureLook:
+    """How figures are drawn: the view of pictures, the size of the page [inch], the style."""
+
+    view: str | tuple[float, float] | None = None
+    size: tuple[float, float] | None = None
+    style: str | None = None
+
+    @property
+    def of_curves(self) -> dict[str, Any]:
+        """The arguments of a figure without a picture of the linkage."""
+        return {"figsize": self.size, "style": self.style}
+
+    @property
+    def of_pictures(self) -> dict[str, Any]:
+        """The arguments of a figure with one."""
+        return {"view": self.view, **self.of_curves}
 
 
 def write_figures(
@@ -32,6 +54,7 @@ def write_figures(
     *,
     circuit: int = 0,
     figures: Sequence[str] = ("png",),
+    look: FigureLook | None = None,
     force: bool = False,
 ) -> list[Path]:
     """Writes figures of these kinds into a folder, all or none; returns their paths.
@@ -39,26 +62,39 @@ def write_figures(
     `kinds` of `KINDS`; `points` (link, at) by name, for the kind point. Raises `OutputError` where one of the
     files exists and `force` is not given.
     """
-    return figures_report(kinds, points, circuit, figures).write(motion, folder, force=force)
+    return figures_report(kinds, points, circuit, figures, look).write(motion, folder, force=force)
 
 
 def figures_report(
-    kinds: Sequence[str], points: Places, circuit: int, formats: Sequence[str]
+    kinds: Sequence[str],
+    points: Places,
+    circuit: int,
+    formats: Sequence[str],
+    look: FigureLook | None = None,
 ) -> Report[Motion]:
     """Figures alone, for who writes them: as `write_figures`."""
     return Report(
         lambda motion: "",  # noqa: ARG005
         lambda motion: {},  # noqa: ARG005
-        figures=lambda motion: _files(motion, kinds, points, circuit, formats),
+        figures=lambda motion: _files(motion, kinds, points, circuit, formats, look or FigureLook()),
     )
 
 
-def report_figures(motion: Motion, formats: Sequence[str]) -> Files[Motion]:
-    """Configuration and motion; unless of an RSSR, whose curves show all, also joints and points."""
+def report_figures(
+    motion: Motion,
+    formats: Sequence[str],
+    *,
+    circuit: int | None = None,
+    look: FigureLook | None = None,
+) -> Files[Motion]:
+    """Configuration and motion; also joints and points, save of an RSSR, whose curves show all.
+
+    Linkage and points are drawn on `circuit`, the first with a pose by default.
+    """
     if not motion.circuits:
         return {}
     general = motion.linkage.kind != "RSSR"
-    posed = posed_circuit(motion)
+    posed = posed_circuit(motion) if circuit is None else circuit
     kinds = ["curves", *(["joints"] if general else [])]
     if posed is not None:
         # a law that rests leaves no path
@@ -66,7 +102,7 @@ def report_figures(motion: Motion, formats: Sequence[str]) -> Files[Motion]:
         moves = np.unique(inputs[np.isfinite(inputs)]).size > 1
         kinds += ["configuration", *(["point"] if general and moves else [])]
     points = {point.name: (point.link, point.at) for point in motion.linkage.points}
-    return _files(motion, kinds, points, posed or 0, formats)
+    return _files(motion, kinds, points, posed or 0, formats, look or FigureLook())
 
 
 def posed_circuit(motion: Motion) -> int | None:
@@ -76,23 +112,32 @@ def posed_circuit(motion: Motion) -> int | None:
 
 
 def _files(
-    motion: Motion, kinds: Sequence[str], points: Places, circuit: int, formats: Sequence[str]
+    motion: Motion,
+    kinds: Sequence[str],
+    points: Places,
+    circuit: int,
+    formats: Sequence[str],
+    look: FigureLook,
 ) -> Files[Motion]:
     """What draws and writes each figure, by the file's name."""
     from sevenbar.drawing import plot
 
     def made() -> Iterator[tuple[str, Callable[[], Figure]]]:
         if "curves" in kinds:
-            yield "motion", lambda: plot.curves(motion)
+            yield "motion", lambda: plot.curves(motion, **look.of_curves)
         if "joints" in kinds:
-            yield "joints", lambda: plot.joints(motion)
+            yield "joints", lambda: plot.joints(motion, **look.of_curves)
+        if "transmission" in kinds:
+            yield "transmission", lambda: plot.transmission(motion, **look.of_curves)
+        if "axodes" in kinds:
+            yield "axodes", lambda: plot.axodes(motion, circuit=circuit, **look.of_pictures)
         if "configuration" in kinds:
-            yield "configuration", lambda: plot.configuration(motion, circuit)
+            yield "configuration", lambda: plot.configuration(motion, circuit, **look.of_pictures)
         if "point" in kinds:
             for name, point in points.items():
                 yield (
                     f"path_{_file_name(name)}",
-                    partial(plot.point_path, motion, point, circuit, name=name),
+                    partial(plot.point_path, motion, point, circuit, name=name, **look.of_pictures),
                 )
         if "modes" in kinds:
             chosen = chosen_circuit(motion, circuit)
@@ -102,7 +147,9 @@ def _files(
             modes = motion.linkage.assembly_modes(value, input=motion.input)
             yield (
                 "modes",
-                lambda: plot.modes_overview(motion.linkage, modes, input=motion.input, output=motion.output),
+                lambda: plot.modes_overview(
+                    motion.linkage, modes, input=motion.input, output=motion.output, **look.of_pictures
+                ),
             )
 
     files: dict[str, Write[Motion]] = {}

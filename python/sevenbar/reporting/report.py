@@ -20,7 +20,7 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
-from sevenbar.reporting.figures import posed_circuit, report_figures, write_figures
+from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
@@ -217,9 +217,13 @@ def _table(sheet: Sheet) -> Table:
 
 
 def motion_report(
-    figures: Sequence[str] = ("png",), drawn: Callable[[Motion], Motion] = lambda motion: motion
+    figures: Sequence[str] = ("png",),
+    drawn: Callable[[Motion], Motion] = lambda motion: motion,
+    *,
+    circuit: int | None = None,
+    look: FigureLook | None = None,
 ) -> Report[Motion]:
-    """How a motion is reported, with the figures in these formats.
+    """How a motion is reported, with the figures in these formats, of a circuit, drawn in a way.
 
     `drawn` gives the motion that the figures show, where it is another, such as one of fewer rows.
     """
@@ -231,7 +235,7 @@ def motion_report(
         text,
         as_dict,
         files,
-        lambda motion: report_figures(drawn(motion), figures),
+        lambda motion: report_figures(drawn(motion), figures, circuit=circuit, look=look),
         {"report.md": _write_markdown},
     )
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.circuits import Circuit, Extremes, Trace, Words
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
@@ -22,7 +23,7 @@ from sevenbar.reporting.summary import (
     speed_text,
     way_round,
 )
-from sevenbar.text.printing import lines, picture_of, text_of
+from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,6 +34,9 @@ OF_MOTION = (
     *("drive", "law", "motion type", "circuits", "input limits", "change point", "isolated pose"),
     *("completeness", "idle freedom", "redundant", "closure error"),
 )
+
+#: Functions of `sevenbar.plot` that draw a motion.
+OF_A_MOTION = ("curves", "configuration", "joints")
 
 #: Circuits of a motion that are printed one by one.
 MOST_CIRCUITS = 8
@@ -99,7 +103,7 @@ def _circuits(motion: Motion) -> list[tuple[str, str]]:
     """A line for each circuit: its type where they differ, its ranges; one line where all agree."""
     told = []
     for circuit in motion.circuits[:MOST_CIRCUITS]:
-        facts = circuit_facts(motion, circuit)
+        facts = circuit_facts(motion, circuit, ("motion type", "range of "))
         texts = [text for label, text in facts if label == "motion type"]
         ranges = [(label, text) for label, text in facts if label.startswith("range of ")]
         texts += [f"{label.removeprefix('range of ')} {text}" for label, text in ranges]
@@ -137,12 +141,18 @@ def _(circuit: Circuit) -> str:
             ("input dead centres", still("input")),
             ("output dead centres", still("output")),
             ("time ratio", "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"),
-            ("transmission angle", range_of(circuit.transmission, Shown("rad"))),
+            ("transmission angle", range_of(_known_transmission(circuit), Shown("rad"))),
             ("velocity", range_of(circuit.velocity)),
             ("acceleration", range_of(circuit.acceleration)),
             ("closure error", f"at most {closure_error([circuit]):.1e}"),
         ],
     )
+
+
+def _known_transmission(circuit: Circuit) -> Extremes | None:
+    """The transmission angle if it has been found: to print is not to solve."""
+    known: Extremes | None = vars(circuit).get("transmission", circuit._transmission)
+    return known
 
 
 @text_of.register(Trace)
@@ -185,6 +195,34 @@ def _extent(values: Floats) -> str:
     return f"{known.min() + 0.0:.6g} to {known.max() + 0.0:.6g}" if known.size else "no value"
 
 
+@figure_of.register(Linkage)
+def _(linkage: Linkage, *, kind: str = "configuration", **options: Any) -> Figure:
+    # curves and joints are of a motion: that over the whole range
+    if kind == "modes_overview":
+        from sevenbar.drawing.plot import modes_overview
+
+        return modes_overview(linkage, linkage.assembly_modes(0.0), **options)
+    return _figure(linkage.motion(), kind, options)
+
+
+@figure_of.register(Motion)
+def _(motion: Motion, *, kind: str = "curves", **options: Any) -> Figure:
+    return _figure(motion, kind, options)
+
+
+def _figure(motion: Motion, kind: str, options: dict[str, Any]) -> Figure:
+    """The figure of a motion that a function of `sevenbar.plot` draws."""
+    from sevenbar.drawing import plot
+
+    if kind not in OF_A_MOTION:
+        raise RequestError(
+            f"kind: {shown(kind)} is not a figure of a motion; {suggestion(kind, OF_A_MOTION)}"
+            f"give {', '.join(OF_A_MOTION)}"
+        )
+    figure: Figure = getattr(plot, kind)(motion, **options)
+    return figure
+
+
 def _axes() -> tuple[Figure, Axes]:
     from sevenbar.drawing.figure import new_figure
 
@@ -195,7 +233,7 @@ def _axes() -> tuple[Figure, Axes]:
 
 @picture_of.register(Linkage)
 def _(linkage: Linkage) -> Figure | None:
-    from sevenbar.drawing.paths import modes_overview
+    from sevenbar.drawing.configuration import modes_overview
 
     # only what closes at once: a loop with screws is searched for its modes
     if "H" in linkage.kind:
@@ -211,7 +249,7 @@ def _(linkage: Linkage) -> Figure | None:
 
 @picture_of.register(Motion)
 def _(motion: Motion) -> Figure | None:
-    from sevenbar.drawing.plot import panel, passes
+    from sevenbar.drawing.output_curves import panel, passes
 
     if not motion.circuits:
         return None

@@ -411,9 +411,18 @@ def _turns(count: int) -> str:
     return {1: "one turn", 2: "two turns"}.get(count, f"{count} turns")
 
 
-def _telling(motion: Motion, form: Literal["list", "table"]) -> list[tuple[_Quantity, list[Texts]]]:
-    """Each quantity with its cells, without those that say nothing, or that the facts hold already."""
-    quantities = [quantity for quantity in _quantities(motion) if quantity.only in ("", form)]
+def _telling(
+    motion: Motion, form: Literal["list", "table"], labels: tuple[str, ...] = ("",)
+) -> list[tuple[_Quantity, list[Texts]]]:
+    """Each quantity with its cells, without those that say nothing, or that the facts hold already.
+
+    Only those whose names begin with one of the `labels`, since some take time.
+    """
+    quantities = [
+        quantity
+        for quantity in _quantities(motion)
+        if quantity.only in ("", form) and quantity.name.startswith(labels)
+    ]
     found = [(quantity, [quantity.cells(circuit) for circuit in motion]) for quantity in quantities]
     told = f"range of {motion.input}"
     return [
@@ -424,9 +433,12 @@ def _telling(motion: Motion, form: Literal["list", "table"]) -> list[tuple[_Quan
     ]
 
 
-def circuit_facts(motion: Motion, circuit: Circuit) -> list[tuple[str, str]]:
-    """What the report tells of one circuit: names, and values each "@" the input where it is met."""
-    told = [(quantity, [cells[circuit.index]]) for quantity, cells in _telling(motion, "list")]
+def circuit_facts(motion: Motion, circuit: Circuit, labels: tuple[str, ...] = ("",)) -> list[tuple[str, str]]:
+    """What the report has of one circuit: names, and values each "@" the input where it is met.
+
+    Of all, those whose names begin with one of the `labels`.
+    """
+    told = [(quantity, [cells[circuit.index]]) for quantity, cells in _telling(motion, "list", labels)]
     return [(label, cells[0]) for label, cells in _lines(told) if cells[0] not in NOTHING]
 
 

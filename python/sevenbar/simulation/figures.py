@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, input_label, new_figure, shown_value, slides
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import input_label, new_figure, shown_value, slides
+from sevenbar.drawing.names import quantity_label, short, shown_name
+from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, OTHER, styled
+from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.simulation.agreement import Simulation
 
 #: Marks of the engine along a curve.
@@ -23,7 +24,7 @@ STRETCHES = 180
 #: A logarithmic panel ends at this part of its greatest difference, or at this number: below is rounding.
 SPAN, FLOOR = 1e-6, 1e-17
 
-_ENGINE, _THEORY = CIRCUIT_COLOURS[:2]
+_ENGINE, _THEORY = OTHER, COMPUTED
 
 
 def output_figure(run: Simulation) -> Figure:
@@ -36,7 +37,7 @@ def output_figure(run: Simulation) -> Figure:
         ("velocity", unit, "/s", run.engine.dq, run.theory.dq),
         ("acceleration", unit, "/s²", run.engine.ddq, run.theory.ddq),
     )
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(9.2, 7.2)
         figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
         grid = figure.subplots(3, 2, sharex=True)
@@ -44,7 +45,7 @@ def output_figure(run: Simulation) -> Figure:
             own, other = theory[:, column], engine[:, column]
             convert = np.degrees if shown == "deg" else np.asarray
             _compared(left, run, convert(own), convert(other))
-            left.set_ylabel(f"{short(motion.output, 24)} {word} [{shown}{per}]")
+            left.set_ylabel(quantity_label(motion.output, word, f"{shown}{per}"))
             right.plot(_across(run), other - own, color=_ENGINE, lw=0.9)
             right.set_ylabel(f"difference [{unit}{per}]")
             right.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=False)
@@ -57,7 +58,7 @@ def joints_figure(run: Simulation) -> Figure:
     """Every joint's value, theory and engine, and the size of the difference on a logarithmic scale."""
     linkage = run.linkage
     kinds = [kind for kind in ("turn", "slide") if kind in linkage.column_kinds]
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(9.2, 1.6 + 3.4 * len(kinds))
         figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
         grid = figure.subplots(len(kinds), 2, sharex=True, squeeze=False)
@@ -71,12 +72,14 @@ def joints_figure(run: Simulation) -> Figure:
                 colour = CIRCUIT_COLOURS[column % len(CIRCUIT_COLOURS)]
                 own, other = run.theory.q[:, column], run.engine.q[:, column]
                 _compared(left, run, convert(own), convert(other), colour)
-                _logarithmic(right, run, np.abs(other - own), colour, short(name, 20))
+                _logarithmic(right, run, np.abs(other - own), colour, shown_name(name, 20))
             left.set_ylabel(f"{'turns' if kind == 'turn' else 'slides'} [{shown}]")
             right.set_ylabel(f"size of the difference [{unit}]")
         _finish(figure, run)
         keys = [
-            Line2D([], [], color=CIRCUIT_COLOURS[c % len(CIRCUIT_COLOURS)], lw=1.5, label=short(name, 20))
+            Line2D(
+                [], [], color=CIRCUIT_COLOURS[c % len(CIRCUIT_COLOURS)], lw=1.5, label=shown_name(name, 20)
+            )
             for c, name in enumerate(linkage.columns)
         ]
         keys += _keys(run, "0.35")[:2]
@@ -88,7 +91,7 @@ def points_figure(run: Simulation) -> Figure:
     """Speed and acceleration of the named points, and how far the engine's points are off."""
     unit = run.linkage.length_unit
     rows = (("position", ""), ("velocity", "/s"), ("acceleration", "/s²"))
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(9.2, 7.4)
         figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
         grid = figure.subplots(3, 2, sharex=True)
@@ -98,7 +101,7 @@ def points_figure(run: Simulation) -> Figure:
                 own, other = getattr(theory, what), getattr(engine, what)
                 origin = own[0] if what == "position" else np.zeros(3)
                 _compared(left, run, _length(own - origin), _length(other - origin), colour)
-                _logarithmic(right, run, _length(other - own), colour, short(name, 20))
+                _logarithmic(right, run, _length(other - own), colour, shown_name(name, 20))
             label = {
                 "position": "distance from the start",
                 "velocity": "speed",
@@ -155,7 +158,7 @@ def _finish(figure: Figure, run: Simulation) -> None:
         axes.set_axisbelow(True)
         axes.set_xlim(float(np.nanmin(across)), float(np.nanmax(across)))
         if not slides(motion, motion.input):
-            axes.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 1.5, 3, 4.5, 6, 9, 10]))
+            axes.xaxis.set_major_locator(DegreeLocator(6))
         if axes.get_yscale() == "log":
             values = np.concatenate([np.asarray(line.get_ydata(), dtype=np.float64) for line in axes.lines])
             highest, lowest = float(np.nanmax(values)), float(np.nanmin(values))
@@ -163,7 +166,7 @@ def _finish(figure: Figure, run: Simulation) -> None:
     for axes in figure.axes[-2:]:
         axes.set_xlabel(input_label(motion))
     unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
-    which = f"circuit {run.course.circuit.index}, {short(motion.input, 24)} at {motion.speed:g} {unit}/s"
+    which = f"circuit {run.course.circuit.index}, {shown_name(motion.input, 24)} at {motion.speed:g} {unit}/s"
     figure.suptitle(
         f"{short(motion.linkage.name, 60)}: Sevenbar and {run.record.engine} {run.record.version}\n"
         f"{which}, step {run.course.step:.3g} s",

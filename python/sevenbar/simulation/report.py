@@ -14,7 +14,7 @@ import numpy.typing as npt
 from rich.console import Console, Group, RenderableType
 from rich.text import Text
 
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.names import short
 from sevenbar.kinematics.columns import joint_column, point_column
 from sevenbar.reporting.files import (
     Report,

@@ -19,8 +19,9 @@ from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
 from sevenbar.design.maps.lettering import LINE, RASTER, names, take
 from sevenbar.design.maps.plane import Kind
-from sevenbar.drawing.figure import STYLE, new_figure
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.names import short
+from sevenbar.drawing.style import STYLE
 from sevenbar.errors import RequestError, shown, suggestion
 
 #: Sheets of paper, width and height [inch].
@@ -73,14 +74,19 @@ def sheet(size: str) -> tuple[float, float]:
     return known
 
 
-def draw(of: Map, heights: Heights | None = None, *, size: str = "A4") -> Figure:
-    """The map on a sheet, with the contours of a measure where one is given."""
+def draw(
+    of: Map, heights: Heights | None = None, *, size: str = "A4", side: bool = True, title: bool = True
+) -> Figure:
+    """The map on a sheet, with the contours of a measure where one is given.
+
+    `side`: with the column of the key and the numbers; `title`: with the title above.
+    """
     width, height = sheet(size)
     scale = (width / SIZES["A4"][0]) ** GROWTH
     with rc_context({**STYLE, "font.size": 9.5 * scale, "hatch.linewidth": 0.7 * scale}):
         figure = new_figure(width, height)
         margin = 0.62 * scale
-        wide = 2.75 * scale
+        wide = 2.75 * scale if side else 0.0
         axes = figure.add_axes(
             (
                 (margin + 0.2 * scale) / width,
@@ -96,8 +102,10 @@ def draw(of: Map, heights: Heights | None = None, *, size: str = "A4") -> Figure
             _contours(axes, heights, of, scale, taken)
         names(axes, of, scale, taken, (width, height))
         _frame(axes, of, scale)
-        _side(figure, axes, of, heights, scale)
-        _title(figure, axes, of, heights, scale)
+        if side:
+            _side(figure, axes, of, heights, scale)
+        if title:
+            _title(figure, axes, of, heights, scale)
     return figure
 
 
@@ -286,7 +294,7 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
         keys.append(patch)
     if heights is not None:
         unit = f" [{_unit(heights.unit)}]" if heights.unit else ""
-        keys.append(Line2D([], [], color=CONTOUR, lw=1.05 * scale, label=f"{heights.measure.name}{unit}"))
+        keys.append(Line2D([], [], color=CONTOUR, lw=1.05 * scale, label=f"{heights.measure.title}{unit}"))
     keys.append(Line2D([], [], color=LINE, lw=1.6 * scale, label="motion type changes"))
     if any(of.kinds[b.left].motion_type == of.kinds[b.right].motion_type for b in of.boundaries):
         keys.append(Line2D([], [], color=LINE, lw=1.0 * scale, ls=(0, (4, 2)), label="circuits join or part"))

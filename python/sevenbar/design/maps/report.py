@@ -151,7 +151,7 @@ def _row(of: Map, step: NearestChange) -> list[str]:
 
 
 def map_report(
-    measures: Sequence[str] = (), figures: Sequence[str] = ("png",), *, size: str = "A4"
+    measures: Sequence[str] = (), figures: Sequence[str] = ("png",), *, size: str = "A4", side: bool = True
 ) -> Report[MapFindings]:
     """How a map with contours of these measures is reported; a figure for the map and for each measure."""
     files: dict[str, Write[MapFindings]] = {
@@ -161,12 +161,12 @@ def map_report(
     if measures:
         files["contours.csv"] = _write_contours
     for place, stem in enumerate(("map", *measures)):
-        files |= figure_files(stem, figures, partial(_sheet, size, place))
+        files |= figure_files(stem, figures, partial(_sheet, size, side, place))
     return Report(text, as_dict, files)
 
 
-def _sheet(size: str, place: int, found: MapFindings) -> Figure:
-    return draw(found.map, found.heights[place - 1] if place else None, size=size)
+def _sheet(size: str, side: bool, place: int, found: MapFindings) -> Figure:
+    return draw(found.map, found.heights[place - 1] if place else None, size=size, side=side)
 
 
 def _write_boundaries(findings: MapFindings, path: Path) -> None:

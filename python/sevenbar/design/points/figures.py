@@ -7,7 +7,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -18,12 +17,15 @@ from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import ZERO, LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, LINE_STYLES, STYLE, input_label, new_figure, slides
-from sevenbar.drawing.scene import prepare_view
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import input_label, new_figure, slides
+from sevenbar.drawing.names import short
+from sevenbar.drawing.page import place_picture
+from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, OTHER, styled
+from sevenbar.drawing.ticks import DegreeLocator
+from sevenbar.drawing.view import view_of
 
 #: The point found, and what it is compared with.
-FOUND, BOUND = CIRCUIT_COLOURS[1], "#8a8a8a"
+FOUND, BOUND = COMPUTED, "#8a8a8a"
 
 #: Poles farther from the box than this part of its longest side are not drawn.
 FARTHEST = 0.75
@@ -35,7 +37,7 @@ MOST_LINES = 6
 def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figure:
     """The rate over the cycle of the file's points and of the new one, and the poles' path in the link."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(11.0, 5.0)
         axes = figure.add_axes((0.065, 0.12, 0.44, 0.70))
         across = _across(cycle, cycle.rates.input)
@@ -67,7 +69,6 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
 
 
 def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPoles, name: str) -> None:
-    axes: Any = figure.add_axes((0.52, 0.07, 0.48, 0.79), projection="3d")
     low, high = found.low, found.high
     corners = np.array(list(product(*zip(low, high, strict=True))))
     away = np.maximum(low - poles.at, poles.at - high).max(axis=1)
@@ -75,9 +76,13 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
     path = np.where(near[:, None], poles.at, np.nan)
     points = np.array([point.at for point in found.before[:MOST_LINES]]).reshape(-1, 3)
     shown = [corners, points[np.isfinite(points).all(axis=1)], path[near]]
-    prepare_view(axes, np.concatenate(shown), found.cycle.motion.linkage.length_unit, fill=0.8)
-    for letter, scale in zip("uvw", (axes.xaxis, axes.yaxis, axes.zaxis), strict=True):
-        scale.set_label_text(f"{letter} [{found.cycle.motion.linkage.length_unit}]")
+    places = np.concatenate(shown)
+    linkage = found.cycle.motion.linkage
+    width, height = figure.get_size_inches()
+    room = (0.54 * width, 0.55, 0.46 * width, 0.76 * height)
+    view = view_of("space", linkage, places)
+    space = place_picture(figure, places, room, linkage.length_unit, view, letters="uvw")
+    axes: Any = space.axes
     for a, b in product(corners, corners):
         if (a <= b).all() and np.count_nonzero(a != b) == 1:
             axes.plot(*np.stack([a, b]).T, color="#b8b8b8", lw=0.8)
@@ -91,22 +96,45 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
     part = "" if near.all() else f"; {np.count_nonzero(near)} of {len(near)} poles near the box"
     if not near.any():
         part = "; no pole near the box"
-    axes.set_title(f"(b) in the link: the box{part}", fontsize=10, y=0.99)
-    axes.legend(frameon=False, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=3)
+    middle = (room[0] + room[2] / 2) / width
+    figure.text(middle, 0.845, f"(b) in the link: the box{part}", fontsize=10, ha="center", va="bottom")
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(
+        handles,
+        labels,
+        frameon=False,
+        fontsize=8.5,
+        loc="lower center",
+        bbox_to_anchor=(middle, 0.0),
+        ncols=3,
+    )
 
 
 def nearest_figure(found: NearestPath, name: str) -> Figure:
     """The path of the point in space on the wanted places, and the distance of each from it."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(10.6, 4.9)
-        axes: Any = figure.add_axes((0.0, 0.07, 0.5, 0.79), projection="3d")
         path = cycle.rates.of("position", found.at)
-        prepare_view(axes, np.concatenate([path, found.wanted]), linkage.length_unit, fill=0.8)
-        axes.plot(*_closed(path, cycle).T, color=FOUND, lw=1.4, label=f"path of {short(name, 24)}")
-        axes.plot(*found.wanted.T, "o", color=CIRCUIT_COLOURS[0], mfc="none", ms=4, label="wanted")
-        axes.legend(frameon=False, fontsize=8.5, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2)
-        axes.set_title("(a) in space", fontsize=10, y=0.99)
+        both = np.concatenate([path, found.wanted])
+        width, height = figure.get_size_inches()
+        view = view_of(None, linkage, both)
+        room = (0.1, 0.3, 0.5 * width - 0.1, 0.82 * height - 0.3)
+        space = place_picture(figure, both, room, linkage.length_unit, view)
+        space.line(_closed(path, cycle), color=FOUND, lw=1.4, label=f"path of {short(name, 24)}")
+        space.line(found.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label="wanted")
+        handles, labels = space.axes.get_legend_handles_labels()
+        figure.legend(
+            handles,
+            labels,
+            frameon=False,
+            fontsize=8.5,
+            loc="lower center",
+            bbox_to_anchor=(0.27, 0.0),
+            ncols=2,
+        )
+        where = "(a) in its plane" if view.flat else "(a) in space"
+        figure.text(0.27, 0.835, where, fontsize=10, ha="center", va="bottom")
         below = figure.add_axes((0.59, 0.12, 0.39, 0.70))
         below.plot(np.arange(1, len(found.distances) + 1), found.distances, "o-", color=FOUND, ms=3, lw=1.0)
         below.grid(lw=0.6)
@@ -126,7 +154,7 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
 def inertia_figure(found: Inertia) -> Figure:
     """The torque of the input over the cycle, and the sizes of the inertia forces."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(7.0, 6.6)
         figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
         torque, force = figure.subplots(2, 1, sharex=True)
@@ -177,7 +205,7 @@ def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:
         ends = sorted([across[0], across[0] + math.copysign(math.degrees(cycle.turn), cycle.step)])
     axes.set_xlim(*ends)
     if not slides(cycle.motion, cycle.motion.input):
-        axes.xaxis.set_major_locator(MaxNLocator(8, steps=[1, 1.5, 3, 4.5, 6, 9, 10]))
+        axes.xaxis.set_major_locator(DegreeLocator(9))
     axes.set_xlabel(input_label(cycle.motion))
 
 

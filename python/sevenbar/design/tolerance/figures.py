@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import plain, told_name, unit_of
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.names import quantity_label, short
+from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.kinematics.circuits import Integers
 
 #: Bars beyond the first so many share one, and their height [inch].
 MOST_BARS, BAR = 14, 0.28
 
-LINEAR, EXACT, BAND = CIRCUIT_COLOURS[1], CIRCUIT_COLOURS[0], "#d6e6f2"
+LINEAR, EXACT, BAND = COMPUTED, OTHER, "#e2dff2"
 
 
 def shares_figure(linear: Linear) -> Figure:
@@ -31,7 +31,7 @@ def shares_figure(linear: Linear) -> Figure:
         rest = len(effects) - MOST_BARS + 1
         labels = [*labels[: MOST_BARS - 1], f"{rest} others together"]
         shares = [*shares[: MOST_BARS - 1], sum(shares[MOST_BARS - 1 :])]
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(6.4, 1.5 + BAR * len(labels))
         figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.06)
         axes = figure.subplots()
@@ -52,7 +52,7 @@ def shares_figure(linear: Linear) -> Figure:
 def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
     """How far the output may deviate along the cycle: worst case, 3 sigma, and what samples do."""
     passes = _passes(linear)
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(6.4 if len(passes) == 1 else 8.4, 4.6)
         figure.set_layout_engine("constrained", h_pad=0.04, w_pad=0.06)
         grid = figure.subplots(1, len(passes), sharey=True, squeeze=False)[0]
@@ -63,7 +63,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
             axes.set_axisbelow(True)
             axes.margins(x=0)
             if linear.found.input_turns:
-                axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+                axes.xaxis.set_major_locator(DegreeLocator(9))
             if name:
                 axes.set_title(name, fontsize=9)
         grid[0].set_ylabel(f"deviation, {told_name(linear)} [{unit_of(linear)}]")
@@ -77,8 +77,9 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
 
 def _input_label(linear: Linear) -> str:
     found = linear.found
-    unit = "deg" if found.input_turns else found.linkage.length_unit
-    return f"input: {short(found.input_name, 40)} [{unit}]"
+    if found.input_turns:
+        return quantity_label(found.input_name, "angle", "deg")
+    return quantity_label(found.input_name, "position", found.linkage.length_unit)
 
 
 def _passes(linear: Linear) -> list[tuple[str, Integers]]:

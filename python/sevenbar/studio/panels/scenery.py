@@ -6,8 +6,8 @@ import numpy as np
 import viser
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import CIRCUIT_COLOURS
 from sevenbar.drawing.skeleton import places_of
+from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
 from sevenbar.studio.panels.controls import Asked
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.session import Session
@@ -17,7 +17,6 @@ from sevenbar.studio.state.view import View, own_points
 POSITIONS = 8
 #: The longest arrow, as a share of the linkage's extent.
 LONGEST_ARROW = 0.35
-VELOCITY, ACCELERATION = "#0072B2", "#D55E00"
 
 NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at this input"
 

@@ -9,8 +9,10 @@ import numpy as np
 from viser import GridHandle, LineSegmentsHandle, SceneApi
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.scene import PATH, directions, paths, view
+from sevenbar.drawing.scene import paths, view
 from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.drawing.style import PATH
+from sevenbar.drawing.view import directions
 from sevenbar.kinematics.rigid import rotation_of
 from sevenbar.studio.pictures.batches import Batches, Labels
 from sevenbar.studio.pictures.poses import Colours, Poses, SolidPlan, poses, stretched

@@ -11,8 +11,10 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, input_label, shown_value, slides, told_range
-from sevenbar.drawing.plot import inputs_between, place_of
+from sevenbar.drawing.figure import input_label, shown_value, slides, told_range
+from sevenbar.drawing.output_curves import inputs_between, place_of
+from sevenbar.drawing.style import CIRCUIT_COLOURS
+from sevenbar.drawing.ticks import FLAT
 from sevenbar.kinematics.circuits import Extremes
 from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.state.view import View
@@ -37,9 +39,6 @@ from sevenbar.studio.svg.scale import Scale, scale
 
 #: What stands along the axis below.
 Over = Literal["input", "time"]
-
-#: A curve that varies less than this share of its natural size is drawn flat: what is left is rounding.
-FLAT = 1e-6
 
 #: Larger values [any unit] count as none, lest the scale overflow.
 LARGEST = 1e200

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.names import short
 from sevenbar.studio.svg.scale import Scale
 
 GROUND, GRID, ZERO, INK, QUIET = "#ffffff", "#e8eaed", "#b4b9c0", "#2b3038", "#6b727c"

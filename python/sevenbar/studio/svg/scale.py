@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from itertools import chain, count
 from typing import Final
 
-#: Steps [deg] that people read angles by, from 5 deg on.
-DEGREE_STEPS: Final = (5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0)
+from sevenbar.drawing.ticks import DEGREE_STEPS
 
 #: Numbers outside this range are written by a power of ten at the axis.
 PLAIN: Final = (1e-2, 1e5)

@@ -6,19 +6,20 @@ import math
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.design.synthesis.candidates import Candidate
 from sevenbar.design.synthesis.closure import outputs, row_of, transmissions
 from sevenbar.design.synthesis.function.wish import Wish
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.names import short
+from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.drawing.ticks import DegreeLocator
 
-GENERATED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.8, "zorder": 2}
-WANTED: dict[str, Any] = {"color": CIRCUIT_COLOURS[0], "lw": 1.3, "ls": (0, (4, 2.5)), "zorder": 3}
-POINTS: dict[str, Any] = {"color": CIRCUIT_COLOURS[0], "ls": "", "marker": "o", "mfc": "white", "zorder": 4}
+GENERATED: dict[str, Any] = {"color": COMPUTED, "lw": 1.8, "zorder": 2}
+WANTED: dict[str, Any] = {"color": OTHER, "lw": 1.3, "ls": (0, (4, 2.5)), "zorder": 3}
+POINTS: dict[str, Any] = {"color": OTHER, "ls": "", "marker": "o", "mfc": "white", "zorder": 4}
 
 #: Pairs of angles beyond which they are small dots.
 MANY = 40
@@ -38,7 +39,7 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
     # both sides on the same turn
     near = np.interp(at, inputs, readings) - errors
     turn = 360.0 * np.round((near[0] - math.degrees(wish.output[0])) / 360.0)
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(6.4, 6.0)
         figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
         top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
@@ -60,7 +61,7 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
         below.set_xlabel("input reading [deg]")
         for axes in (top, below):
             axes.grid(lw=0.6)
-            axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+            axes.xaxis.set_major_locator(DegreeLocator(9))
         if np.abs(errors).max() < 1e-9:
             below.set_ylim(-1.0, 1.0)
         below.yaxis.set_major_locator(MaxNLocator(5))
@@ -91,7 +92,7 @@ def swing_figure(candidate: Candidate) -> Figure:
     angles = np.degrees(np.unwrap(outputs(row, inputs, int(np.argmin(apart)))[0]))
     angles -= 360.0 * np.round(angles.mean() / 360.0)
     across = np.degrees(inputs)
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(6.4, 6.0)
         figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
         top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
@@ -102,12 +103,12 @@ def swing_figure(candidate: Candidate) -> Figure:
             top.plot(figures[name], np.interp(figures[name], across, angles), ms=5.0, **POINTS)
         below.plot(across, np.degrees(np.arcsin(np.sqrt(transmissions(row, inputs)[0]))), **GENERATED)
         below.set_ylim(0.0, 90.0)
-        below.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 1.5, 3, 10]))
+        below.yaxis.set_major_locator(DegreeLocator(4))
         top.set_ylabel("output: rocker [deg]")
         below.set_ylabel("transmission\nangle [deg]")
         below.set_xlabel("input: crank [deg]")
         below.set_xlim(0.0, 360.0)
-        below.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
+        below.xaxis.set_major_locator(DegreeLocator(9))
         for axes in (top, below):
             axes.grid(lw=0.6)
         figure.align_ylabels()

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -15,14 +14,16 @@ from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate
 from sevenbar.design.synthesis.path.check import made
 from sevenbar.design.synthesis.path.task import PathTask
-from sevenbar.drawing.figure import CIRCUIT_COLOURS, STYLE, new_figure
-from sevenbar.drawing.scene import prepare_view
-from sevenbar.drawing.skeleton import short
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.names import short
+from sevenbar.drawing.page import place_picture
+from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.drawing.view import view_of
 
-USED: dict[str, Any] = {"color": CIRCUIT_COLOURS[1], "lw": 1.8, "zorder": 2, "label": "path, used part"}
+USED: dict[str, Any] = {"color": COMPUTED, "lw": 1.8, "zorder": 2, "label": "path, used part"}
 WHOLE: dict[str, Any] = {"color": "#a8a8a8", "lw": 1.1, "zorder": 1, "label": "rest of its circuit"}
 WANTED: dict[str, Any] = {
-    "color": CIRCUIT_COLOURS[0],
+    "color": OTHER,
     "ls": "",
     "marker": "o",
     "mfc": "none",
@@ -88,15 +89,17 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
     path = drawn(task, candidate)
     unit = task.draft.linkage.length_unit
     errors = candidate.claim.errors
-    with rc_context(STYLE):
+    with styled():
         figure = new_figure(10.4, 7.6)
-        space: Any = figure.add_axes((0.015, 0.33, 0.47, 0.55), projection="3d")
         seen = np.concatenate([task.wanted, path.used])
         near = _near(path.whole, seen)
-        prepare_view(space, np.concatenate([seen, near[np.isfinite(near).all(axis=1)]]), unit, fill=0.8)
+        every = np.concatenate([seen, near[np.isfinite(near).all(axis=1)]])
+        width, height = figure.get_size_inches()
+        room = (0.015 * width, 0.35 * height, 0.47 * width, 0.53 * height)
+        space = place_picture(figure, every, room, unit, view_of("space", task.draft.linkage, every))
         for line, look in ((near, WHOLE), (path.used, USED), (task.wanted, WANTED)):
-            space.plot(*line.T, **look)
-        space.set_title("(a) in space", fontsize=10, y=1.0)
+            space.line(line, **look)
+        figure.text(0.25, 0.885, "(a) in space", fontsize=10, ha="center", va="bottom")
         sides = (
             ("b", 0, 1, (0.565, 0.605, 0.18, 0.27)),
             ("c", 0, 2, (0.565, 0.19, 0.18, 0.27)),
@@ -122,7 +125,7 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
             f"root mean square {candidate.error_rms:.3g} {unit}",
             fontsize=10,
         )
-        handles, labels = space.get_legend_handles_labels()
+        handles, labels = space.axes.get_legend_handles_labels()
         figure.legend(handles[::-1], labels[::-1], loc="center", bbox_to_anchor=(0.90, 0.325), frameon=False)
         figure.suptitle(
             f"{short(candidate.name, 70)}: {candidate.motion_type}, circuit {candidate.circuit}", fontsize=11

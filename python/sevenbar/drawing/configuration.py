@@ -1,0 +1,199 @@
+"""Pictures of a linkage that stands still: in several positions of a circuit, in all assembly modes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+
+from sevenbar.drawing.figure import given_axes, new_figure, slides, title_of, title_text
+from sevenbar.drawing.lettering import write_names
+from sevenbar.drawing.names import short, shown_name
+from sevenbar.drawing.page import (
+    EDGE,
+    own_axes,
+    picture_height,
+    prepare,
+    prepare_given,
+    set_height,
+    write_legend,
+    write_title,
+)
+from sevenbar.drawing.scene import bars, box_of, keys, put, shown_places, stage
+from sevenbar.drawing.skeleton import Skeleton, one_pose, skeleton, skeleton_of
+from sevenbar.drawing.space import Space
+from sevenbar.drawing.style import letters, page_size, styled
+from sevenbar.drawing.view import Asked, view_of
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Modes, Motion, chosen_circuit
+from sevenbar.kinematics.poses import frames_of, walk
+
+#: Width [inch] of a picture, of one mode in a row of two, and in a row of more.
+WIDTH, MODE, SMALL_MODE = 6.4, 3.7, 2.9
+#: Marks and lines of small pictures.
+SMALLER = 0.7
+
+
+def configuration(
+    motion: Motion,
+    circuit: int = 0,
+    positions: int | None = None,
+    *,
+    ax: Any = None,
+    view: Asked = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """The linkage in several positions spread over a circuit: one strong, the others faint.
+
+    A planar loop is drawn in its plane, a spherical one on its sphere, any other in space. `circuit` is its
+    index in `motion.circuits`, `positions` how many poses (1 to 100; six for up to four joints, else three).
+    Lengths are in the linkage's unit, equal along all axes.
+
+    `ax`: axes of matplotlib to draw in, without title and legend; made with projection="3d" for a view in
+    space. `view`: one of `VIEWS` ("plane", "space", "xy", "xz", "yz", "iso"), or elevation and azimuth [deg].
+    `figsize`: width and height [inch]. `style`: one of `STYLES` ("screen", "paper", "ieee"). `title`: False
+    for none, or a text. Raises `RequestError` where there is no such circuit, view, style or size.
+
+        >>> import sevenbar as sb
+        >>> figure = configuration(sb.load("bennett").motion())
+        >>> figure.axes[0].get_zlabel()
+        'z [mm]'
+
+    Source: Sun and Zhou, Figure 3.
+    """
+    chosen = chosen_circuit(motion, circuit)
+    if positions is None:
+        positions = 6 if len(motion.linkage.joints) < 5 else 3
+    if (
+        isinstance(positions, bool)
+        or not isinstance(positions, (int, np.integer))
+        or not 1 <= positions <= 100
+    ):
+        raise RequestError(f"positions: {shown(positions)} is not a count; give 1 to 100")
+    frame = skeleton(motion, chosen)
+    poses = [frame.pose(row) for row in _spread(motion, chosen, frame, int(positions))]
+    ends = motion.input, motion.output
+    with styled(style):
+        if ax is not None:
+            (ax,) = given_axes(ax, 1, "or none")
+        seen = view_of(view, motion.linkage, shown_places(frame), ax)
+        if ax is None:
+            figure = new_figure(*page_size(style, figsize, (WIDTH, WIDTH), wide=False))
+            which = f"circuit {chosen.index}, {len(poses)} position{'s' * (len(poses) > 1)}"
+            top = write_title(figure, title_text(title, f"{title_of(motion)}\n{which}"))
+            foot = write_legend(figure, keys(frame, ends, seen) if legend else [])
+            width, height = figure.get_size_inches()
+            if figsize is None:
+                height = top + foot + picture_height(seen, box_of(frame, seen), width)
+                set_height(figure, height)
+            space = Space(own_axes(figure, seen), seen)
+            prepare(space, frame, (0.0, foot, width, height - top - foot))
+            within: Bbox | None = Bbox.from_extents(
+                0, foot * figure.dpi, figure.bbox.width, (height - top) * figure.dpi
+            )
+        else:
+            figure, space, within = ax.figure.figure, Space(ax, seen), None
+            prepare_given(space, frame)
+        stage(space, frame, ends)
+        for pose in poses[1:]:
+            put(space, bars(space, frame, ends, ghost=True), pose)
+        put(space, bars(space, frame, ends), poses[0])
+        write_names(space, frame, poses[0][None], range(len(frame.names)), within=within)
+    return figure
+
+
+def _spread(motion: Motion, circuit: Circuit, frame: Skeleton, positions: int) -> list[int]:
+    """Rows with a pose, evenly spread by the travel of both angles, a rocking circuit's off its ends."""
+    path = walk(circuit)
+    solved = np.flatnonzero(~np.isnan(frame.places[:, : frame.solid]).any(axis=(1, 2)))
+    ends = ((motion.input, path.input[solved]), (motion.output, path.output[solved]))
+    # of a slide its whole range counts as much as half a turn
+    scaled = [v * math.pi / (np.ptp(v) or 1.0) if slides(motion, column) else v for column, v in ends]
+    steps = np.hypot(*(np.diff(values) for values in scaled))
+    travel = np.concatenate([[0.0], np.cumsum(steps)])
+    # many a loop lies flat, or folded, at zero
+    wanted = (np.arange(positions) + 0.35) / positions * travel[-1]
+    return [int(solved[np.argmin(np.abs(travel - place))]) for place in wanted]
+
+
+def modes_overview(
+    linkage: Loop,
+    modes: Modes,
+    *,
+    input: str | None = None,
+    output: str | None = None,
+    ax: Any = None,
+    view: Asked = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """All assembly modes at one input, side by side, from one side and to one scale.
+
+    `input` and `output` name the columns that are coloured; the drive's where none is given. `ax`: axes to
+    draw in, one for each mode. The rest is as for `configuration`. Raises `RequestError` where there is no
+    mode.
+    """
+    count = len(modes)
+    if count == 0:
+        raise RequestError("modes: the loop closes at no mode, so there is nothing to draw")
+    first = linkage.column(linkage.drive.joint if input is None else input, "input")
+    second = linkage.other_column(first) if output is None else linkage.column(output, "output")
+    slide = linkage.column_kinds[first] == "slide"
+    value = f"{modes.input:.6g} {linkage.length_unit}" if slide else f"{math.degrees(modes.input):.6g}°"
+    ends = linkage.columns[first], linkage.columns[second]
+    poses = skeleton_of(linkage, frames_of(linkage, modes.q))
+    across = min(count, 2 if count < 5 else 4)
+    down = math.ceil(count / across)
+    with styled(style):
+        given = None if ax is None else given_axes(ax, count, "one for each mode")
+        seen = view_of(view, linkage, shown_places(poses), given[0] if given else None)
+        box = box_of(poses, seen)
+        if given:
+            for axes, index in zip(given, range(count), strict=True):
+                space = Space(axes, seen)
+                prepare_given(space, poses)
+                _draw_mode(space, poses, index, ends, 1.0)
+                if title:
+                    axes.set_title(f"mode {index}")
+            return given[0].figure.figure  # type: ignore[no-any-return]
+        usual = across * (MODE if across < 3 else SMALL_MODE)
+        usual = max(usual, 5.0)
+        figure = new_figure(*page_size(style, figsize, (usual, usual), wide=across > 1))
+        word = "mode" if count == 1 else "modes"
+        named = f"{short(linkage.name, 60)}: {count} assembly {word}\nat {shown_name(ends[0])} = {value}"
+        top = write_title(figure, title_text(title, named))
+        foot = write_legend(figure, keys(one_pose(poses, 0), ends, seen) if legend else [])
+        width, height = figure.get_size_inches()
+        heading = 0.026 * letters()
+        if figsize is None:
+            height = top + foot + down * (heading + picture_height(seen, box, width / across))
+            set_height(figure, height)
+        side = width / across, (height - top - foot) / down
+        for index in range(count):
+            row, column = divmod(index, across)
+            left, bottom = column * side[0], height - top - (row + 1) * side[1]
+            # the last row in the middle
+            left += (across - min(across, count - row * across)) * side[0] / 2
+            space = Space(own_axes(figure, seen), seen)
+            prepare(space, poses, (left, bottom, side[0], side[1] - heading))
+            _draw_mode(space, poses, index, ends, SMALLER if across > 2 else 0.85)
+            space.heading(f"mode {index}", left + side[0] / 2, bottom + side[1] - heading + EDGE / 2)
+    return figure
+
+
+def _draw_mode(space: Space, poses: Skeleton, index: int, ends: tuple[str, str], scale: float) -> None:
+    one = one_pose(poses, index)
+    stage(space, one, ends, around=poses)
+    put(space, bars(space, one, ends, scale=scale), one.pose(0))
+    write_names(space, one, one.places, range(len(one.names)))

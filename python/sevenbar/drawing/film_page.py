@@ -1,0 +1,169 @@
+"""A film as one HTML page that needs nothing else: the linkage on a canvas, its curves with a cursor each."""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import column_label, shown_value
+from sevenbar.drawing.names import quantity_label
+from sevenbar.drawing.output_curves import QUANTITIES, passes
+from sevenbar.drawing.scene import SAME, link_colours, paths
+from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.drawing.style import CIRCUIT_COLOURS, GROUND, PATH
+from sevenbar.drawing.view import View
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.motion import Motion
+from sevenbar.kinematics.poses import walk
+
+#: Digits that places [share of the extent] and values keep.
+DIGITS = 5
+
+
+def film_page(
+    motion: Motion,
+    circuit: Circuit,
+    frame: Skeleton,
+    view: View,
+    rows: Floats,
+    *,
+    fps: float,
+    title: str,
+) -> str:
+    """The HTML of a film with a picture at each of `rows` (n,) of the walk, shown at `fps` [1/s]."""
+    found = json.dumps(
+        {
+            "fps": fps,
+            "linkage": _linkage(motion, frame, view, rows),
+            "curves": _curves(motion, circuit, rows),
+            "reading": _reading(circuit, rows),
+        },
+        allow_nan=False,
+        separators=(",", ":"),
+    )
+    heading = escape(title or motion.linkage.name).replace("\n", "<br>")
+    page = files("sevenbar.drawing").joinpath("film.html").read_text(encoding="utf-8")
+    # a closing tag within a name would end the script
+    found = found.replace("</", "<\\/")
+    return (
+        page.replace("@TITLE@", escape(motion.linkage.name))
+        .replace("@HEADING@", heading)
+        .replace("@FILM@", found)
+    )
+
+
+def _linkage(motion: Motion, frame: Skeleton, view: View, rows: Floats) -> dict[str, Any]:
+    """What is drawn of the linkage: places in each picture as shares of the extent, and what joins them."""
+    ends = motion.input, motion.output
+    shown = frame.places[:, frame.shown].reshape(-1, 3)
+    shown = shown[np.isfinite(shown).all(axis=1)]
+    centre, size = (shown.min(axis=0) + shown.max(axis=0)) / 2, frame.span or 1.0
+    poses = np.stack([frame.pose(float(row)) for row in rows])
+    links, joints = link_colours(frame.linkage, ends)
+    riding = {joint for joint, word, _ in frame.marks if word == "rail"}
+    hidden = {"axis"} if view.planar else set()
+    marks = [
+        {"joint": joint, "word": word, "at": list(places), "colour": joints[joint]}
+        for joint, word, places in frame.marks
+        if word not in hidden and not (word == "axis" and joint in riding)
+    ]
+    traces = [
+        {
+            "colour": colour,
+            "thin": colour == PATH,
+            "at": _plain((frame.places[:, place] - centre) / size),
+        }
+        for place, colour in paths(frame, ends)
+        if place not in frame.far and np.nanmax(np.ptp(frame.places[:, place], axis=0)) > SAME * size
+    ]
+    points = {place: colour for place, colour in paths(frame, ends) if place in frame.points}
+    sphere = frame.sphere
+    return {
+        "poses": _plain((poses - centre) / size),
+        "links": [
+            {"at": list(places), "colour": colour}
+            for places, colour in zip(frame.links, [*links, GROUND], strict=True)
+        ],
+        "marks": marks,
+        "stays": [list(stay) for stay in frame.stays if stay[1] not in frame.far],
+        "points": [
+            {"at": place, "colour": colour} for place, colour in points.items() if place not in frame.far
+        ],
+        "names": _names(frame),
+        "paths": traces,
+        "joints": list(frame.joints),
+        "sphere": None
+        if sphere is None
+        else {"at": _plain((sphere.centre - centre) / size), "radius": round(sphere.radius / size, DIGITS)},
+        "view": _plain(np.vstack([view.screen, view.towards])),
+        "flat": view.flat,
+    }
+
+
+def _names(frame: Skeleton) -> list[dict[str, Any]]:
+    """The names of places; those that are always together are one."""
+    named: dict[int, list[str]] = {}
+    for place, name in enumerate(frame.names):
+        if not name or place in frame.far:
+            continue
+        near = (
+            k
+            for k in named
+            if np.nanmax(np.abs(frame.places[:, k] - frame.places[:, place])) < SAME * frame.span
+        )
+        own = named.setdefault(next(near, place), [])
+        own += [name] * (name not in own)
+    return [{"at": place, "text": ", ".join(names)} for place, names in named.items()]
+
+
+def _curves(motion: Motion, circuit: Circuit, rows: Floats) -> list[dict[str, Any]]:
+    """The output's curves over the input, and where the film is on them in each picture."""
+    own = [line for line in passes(motion) if line.circuit is circuit]
+    path = walk(circuit)
+    length = motion.linkage.length_unit
+    made = []
+    for order, quantity in enumerate(QUANTITIES):
+        suffix = ("", "/s", "/s²")[order]
+        if circuit.output_turns:
+            label = quantity_label(motion.output, quantity, f"rad{suffix}" if order else "deg")
+        else:
+            label = quantity_label(motion.output, "position" if not order else quantity, f"{length}{suffix}")
+        lines = [{"x": _plain(line.input), "y": _plain(getattr(line, quantity))} for line in own]
+        values = np.full(len(path.time), np.nan)
+        for line, part in zip(own, path.passes, strict=True):
+            values[part] = getattr(line, quantity)
+        count = np.arange(len(path.time))
+        made.append(
+            {
+                "name": label,
+                "lines": lines,
+                "turns": bool(circuit.output_turns and not order),
+                "across": column_label(motion, motion.input),
+                "acrossTurns": bool(circuit.input_turns),
+                "x": _plain(np.interp(rows, count, shown_value(motion, motion.input, path.input))),
+                "y": _plain(np.interp(rows, count, values)),
+                "colour": CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)],
+                "cut": bool(order and circuit.turns_back),
+            }
+        )
+    return made
+
+
+def _reading(circuit: Circuit, rows: Floats) -> list[float | None]:
+    """The time [s] of each picture."""
+    path = walk(circuit)
+    found: list[float | None] = _plain(np.interp(rows, np.arange(len(path.time)), path.time))
+    return found
+
+
+def _plain(values: Floats) -> Any:
+    """Values as lists, rounded; null for those that are none."""
+    if values.ndim > 1:
+        return [_plain(part) for part in values]
+    # significant digits, as small rates count, too
+    return [float(f"{value:.7g}") if np.isfinite(value) else None for value in values.tolist()]

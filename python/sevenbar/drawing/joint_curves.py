@@ -1,0 +1,143 @@
+"""Curves of all joints over the input: a panel a joint, a line a circuit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import (
+    column_label,
+    given_axes,
+    headline,
+    input_label,
+    key_below,
+    new_figure,
+    shown_value,
+    slides,
+    tidy,
+    title_of,
+)
+from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, page_size, stroke, styled
+from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
+from sevenbar.errors import RequestError, no_joint
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.motion import Motion, chosen_circuit
+from sevenbar.kinematics.poses import along, walk
+
+#: Circuits whose curves lie on each other: how much wider each is than the one on it.
+WIDER = 2.0
+#: Curves nearer than this share of their natural size lie on each other.
+TOGETHER = 1e-6
+
+
+def joints(
+    motion: Motion,
+    *,
+    columns: Sequence[str] | None = None,
+    ax: Any = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """Every joint's angle [deg] or slide [length] against the input: a panel a joint, a colour a circuit.
+
+    Angles run on over 180 degrees. Where circuits coincide, the lower number is drawn as a broad line under
+    the other. `columns` names those that are drawn, all but the input by default; `ax`: axes to draw in, one
+    for each. The rest is as for `configuration`. Raises `RequestError` where the motion has no circuit.
+    """
+    chosen_circuit(motion, 0)
+    linkage = motion.linkage
+    for name in columns or ():
+        if name not in linkage.columns:
+            raise RequestError(f"columns: {no_joint(name, linkage.columns)}")
+    drawn = [name for name in linkage.columns if name != motion.input] if columns is None else list(columns)
+    if not drawn:
+        raise RequestError("columns: none given; leave it out to draw all")
+    with styled(style):
+        if ax is not None:
+            panels = given_axes(ax, len(drawn), "one for each column")
+            figure: Figure = panels[0].figure.figure
+        else:
+            across = _across(len(drawn))
+            down = math.ceil(len(drawn) / across)
+            usual = 3.4 * across + 0.4, 2.0 * down + 1.0
+            figure = new_figure(*page_size(style, figsize, usual, wide=across > 1))
+            figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+            grid = figure.subplots(down, across, sharex=True, squeeze=False)
+            panels = list(grid.flat)[: len(drawn)]
+            for axes in list(grid.flat)[len(drawn) :]:
+                axes.remove()
+        for axes, name in zip(panels, drawn, strict=True):
+            _panel(axes, motion, name)
+        if ax is not None:
+            return figure
+        for place, axes in enumerate(panels):
+            last = place + across >= len(drawn)
+            axes.tick_params(labelbottom=last)
+            axes.set_xlabel(input_label(motion) if last else "")
+        headline(figure, title, title_of(motion))
+        if legend:
+            lines = [Line2D([], [], **_look(c, 0), label=f"circuit {c.index}") for c in motion]
+            key_below(figure, lines)
+        tidy(figure)
+    return figure
+
+
+def _across(count: int) -> int:
+    """Columns of a grid of panels: few empty places, and as high as wide."""
+    return min(
+        (1, 2, 3, 4), key=lambda n: (-count % n) + abs(math.ceil(count / n) - 1.3 * n) + 9 * (n > count)
+    )
+
+
+def _panel(axes: Axes, motion: Motion, name: str) -> None:
+    """The curves of one column of all circuits."""
+    axes.grid(True)
+    axes.set_axisbelow(True)
+    turns = not slides(motion, name)
+    natural = NATURAL_ANGLE if turns else motion.circuits[0].size
+    index = motion.linkage.columns.index(name)
+    lines: list[tuple[Circuit, Floats, Floats]] = []
+    for circuit in motion:
+        across = shown_value(motion, motion.input, walk(circuit).input)
+        values = shown_value(motion, name, along(motion.linkage, circuit, index))
+        lines.append((circuit, across, settle(values, natural)))
+    for place, (circuit, across, values) in enumerate(lines):
+        above = sum(
+            other.shape == values.shape
+            and np.allclose(other, values, rtol=0, atol=TOGETHER * natural, equal_nan=True)
+            and np.allclose(places, across, rtol=0, atol=TOGETHER * NATURAL_ANGLE, equal_nan=True)
+            for _, places, other in lines[place + 1 :]
+        )
+        axes.plot(across, values, **_look(circuit, above))
+    if turns:
+        axes.yaxis.set_major_locator(DegreeLocator(6))
+    else:
+        axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+    widen(axes.yaxis, natural)
+    inputs = np.concatenate([across for _, across, _ in lines])
+    # a law may leave every range, or have one row
+    inputs = inputs[np.isfinite(inputs)]
+    if inputs.size and np.ptp(inputs) > 0:
+        axes.set_xlim(inputs.min(), inputs.max())
+    if not slides(motion, motion.input):
+        axes.xaxis.set_major_locator(DegreeLocator(6))
+    axes.set_xlabel(input_label(motion))
+    axes.set_ylabel(column_label(motion, name))
+
+
+def _look(circuit: Circuit, above: int) -> dict[str, Any]:
+    """The line of a circuit with so many others on it."""
+    count = len(CIRCUIT_COLOURS)
+    dashes = LINE_STYLES[(circuit.index + circuit.index // count) % len(LINE_STYLES)]
+    width = (1.5 + WIDER * min(above, 3)) * stroke()
+    return {"color": CIRCUIT_COLOURS[circuit.index % count], "ls": "-" if above else dashes, "lw": width}

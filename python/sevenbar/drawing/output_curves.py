@@ -1,0 +1,320 @@
+"""Curves of the output of a motion over the input or time (Figures 3 and 4 of the paper)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import (
+    circuits_text,
+    given_axes,
+    headline,
+    input_label,
+    key_below,
+    new_figure,
+    note,
+    shown_value,
+    slides,
+    tidy,
+    title_of,
+    told_range,
+)
+from sevenbar.drawing.names import quantity_label
+from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_size, stroke, styled
+from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.motion import Motion, chosen_circuit
+from sevenbar.kinematics.poses import walk
+
+#: Marks in the curves' legend.
+EXTREME, LIMIT, CHANGE_POINT = "extreme", "input limit", "change point"
+
+#: The rows of the output's curves.
+QUANTITIES = ("angle", "velocity", "acceleration")
+
+#: Curves nearer than this [deg, or share of the size] on all rows are one.
+SAME_CURVE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnPass:
+    """A pass of a circuit as drawn: `input`, `angle` [deg, or length], `time` [s], the two rates; (n,)."""
+
+    circuit: Circuit
+    label: str
+    style: dict[str, Any]
+    input: Floats
+    time: Floats
+    angle: Floats
+    velocity: Floats
+    acceleration: Floats
+
+
+def passes(motion: Motion) -> list[DrawnPass]:
+    """Every pass of every circuit; where the input goes back, the velocity is turned as it is in time."""
+    made: list[DrawnPass] = []
+    rate = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max(initial=0.0))
+    for circuit in motion.circuits:
+        path = walk(circuit)
+        size = circuit.size or 1.0
+        quick = rate if circuit.input_turns else rate / size
+        natural = 1.0 if circuit.output_turns else size
+        velocity = settle(path.velocities(circuit.dq[:, circuit.output_column]), natural * quick)
+        acceleration = settle(circuit.ddq[path.rows, circuit.output_column], natural * quick**2)
+        angle = settle(
+            shown_value(motion, motion.output, path.output), NATURAL_ANGLE if circuit.output_turns else size
+        )
+        for branch, part in enumerate(path.passes):
+            label = f"circuit {circuit.index}"
+            if len(path.passes) > 1:
+                label += f", branch {branch}"
+                if motion.law is None:
+                    rise = path.input[part][-1] - path.input[part][0]
+                    label += ": input rising" if rise > 0 else ": input falling"
+            colour = CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)]
+            style = {
+                "color": colour,
+                "ls": LINE_STYLES[(len(made) + len(made) // 8) % len(LINE_STYLES)],
+                "lw": 1.6 * stroke(),
+            }
+            places = shown_value(motion, motion.input, path.input[part]), path.time[part]
+            made.append(
+                DrawnPass(circuit, label, style, *places, angle[part], velocity[part], acceleration[part])
+            )
+    return made
+
+
+def drawn_once(motion: Motion, drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
+    """The passes without those that lie on another: one line, whose label names all its circuits."""
+    near = SAME_CURVE * (drawn[0].circuit.size if drawn and slides(motion, motion.output) else 1.0)
+    groups: list[list[DrawnPass]] = []
+    for line in drawn:
+        for group in groups:
+            first = group[0]
+            if (
+                first.circuit is not line.circuit
+                and first.angle.shape == line.angle.shape
+                and all(
+                    np.allclose(getattr(first, name), getattr(line, name), rtol=0, atol=near, equal_nan=True)
+                    for name in ("input", "time", "angle")
+                )
+            ):
+                group.append(line)
+                break
+        else:
+            groups.append([line])
+    made = []
+    for place, group in enumerate(groups):
+        alone, _, branch = group[0].label.partition(",")
+        label = alone if len(group) == 1 else circuits_text([line.circuit.index for line in group])
+        style = group[0].style
+        if len(groups) < len(drawn):
+            style = style | {"ls": LINE_STYLES[(place + place // 8) % len(LINE_STYLES)]}
+        made.append(replace(group[0], label=label + ("," + branch if branch else ""), style=style))
+    return made
+
+
+def curves(
+    motion: Motion,
+    against: Literal["both", "input", "time"] = "both",
+    *,
+    quantities: Sequence[str] = QUANTITIES,
+    ax: Any = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """Output angle [deg], velocity [rad/s] and acceleration [rad/s^2] of every circuit; of a slide lengths.
+
+    `against` "input" [deg] or "time" [s] draws one of the two; "both" puts time on a second scale above where
+    the input turns fully at constant speed, else in a second column. Where a rocking input goes back, the
+    sign of the velocity is turned. Circuits whose curves coincide are one line. `ax`: axes to draw in, one
+    for each of the `quantities`, over the input unless `against` is "time". The rest is as for
+    `configuration`. Raises `RequestError` where the motion has no circuit.
+
+        >>> import sevenbar as sb
+        >>> figure = curves(sb.load("rssr").motion(), against="input")
+        >>> [axes.get_ylabel() for axes in figure.axes]
+        ['rocker angle [deg]', 'rocker velocity [rad/s]', 'rocker acceleration [rad/s²]']
+
+    Source: Sun and Zhou, Figures 3 and 4.
+    """
+    chosen_circuit(motion, 0)
+    if against not in ("both", "input", "time"):
+        raise RequestError(f"against: {shown(against)} is not offered; give both, input or time")
+    for quantity in quantities:
+        if quantity not in QUANTITIES:
+            raise RequestError(
+                f"quantities: {shown(quantity)} is not drawn; give some of {', '.join(QUANTITIES)}"
+            )
+    turning = motion.law is None and all(circuit.goes_round for circuit in motion)
+    columns = (
+        [against] if against != "both" else ["input"] if turning or ax is not None else ["input", "time"]
+    )
+    with styled(style):
+        drawn = drawn_once(motion, passes(motion))
+        if ax is None:
+            tall = 0.6 + 2.4 * len(quantities)
+            wide = 6.4 if len(columns) == 1 else 9.8
+            figure = new_figure(*page_size(style, figsize, (wide, tall), wide=len(columns) > 1))
+            figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+            grid = figure.subplots(len(quantities), len(columns), sharex="col", sharey="row", squeeze=False)
+        else:
+            found = given_axes(ax, len(quantities), "one for each of the quantities")
+            grid, figure = np.array(found, dtype=object)[:, None], found[0].figure.figure
+        cut = False
+        for row, quantity in enumerate(quantities):
+            for column, over in enumerate(columns):
+                panel(grid[row, column], motion, drawn, quantity, over)
+            cut |= _cut(grid[row, 0], drawn, quantity)
+        if ax is not None:
+            return figure
+        for axes in grid.flat:
+            axes.label_outer()
+        if against == "both" and turning:
+            _time_above(grid[0, 0], motion, drawn[0])
+        figure.align_ylabels()
+        headline(figure, title, title_of(motion))
+        if legend:
+            key_below(figure, curve_keys(grid[:, 0], drawn), note(motion, cut))
+        tidy(figure)
+    return figure
+
+
+def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: str) -> None:
+    """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
+    axes.grid(True)
+    axes.set_axisbelow(True)
+    for line in drawn:
+        axes.plot(getattr(line, over), getattr(line, quantity), label=line.label, **line.style)
+    for circuit in motion.circuits:
+        own = [line for line in drawn if line.circuit is circuit]
+        extremes: Extremes | None = getattr(circuit, quantity)
+        if own and extremes is not None:
+            sides = ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at))
+            values = [
+                shown_value(motion, motion.output, value) if quantity == "angle" else value
+                for value, _ in sides
+            ]
+            if np.ptp(np.concatenate([getattr(line, quantity) for line in own])) == 0:
+                continue
+            period = math.inf if slides(motion, motion.input) else 360.0
+            lines = [(line.input, getattr(line, over), getattr(line, quantity)) for line in own]
+            places = [
+                place_of(lines, v, shown_value(motion, motion.input, at), period)
+                for v, (_, at) in zip(values, sides, strict=True)
+            ]
+            ring = {"ms": 4.5 * stroke(), "mfc": "white", "mec": own[0].style["color"], "mew": 1.2 * stroke()}
+            axes.plot(places, values, "o", ls="", label=EXTREME, zorder=4, **ring)
+    ends = np.concatenate([getattr(line, over) for line in drawn])
+    room = 0.02 * np.ptp(ends) if over == "input" and motion.limits.size else 0.0
+    if np.ptp(ends) > 0:
+        axes.set_xlim(ends.min() - room, ends.max() + room)
+    if over == "input":
+        if not slides(motion, motion.input):
+            axes.xaxis.set_major_locator(DegreeLocator(9))
+        for inputs, dashes, name in (
+            (motion.limits, "--", LIMIT),
+            (motion.change_point_inputs, ":", CHANGE_POINT),
+        ):
+            for place in inputs_between(motion, inputs, ends.min(), ends.max()):
+                axes.axvline(place, color=QUIET, lw=1.0 * stroke(), ls=dashes, zorder=1, label=name)
+    if quantity == "angle" and not slides(motion, motion.output):
+        axes.yaxis.set_major_locator(DegreeLocator(7))
+    else:
+        axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    widen(axes.yaxis, _natural(motion, quantity))
+    axes.set_xlabel(input_label(motion) if over == "input" else "time [s]")
+    axes.set_ylabel(_label(motion, quantity))
+
+
+def _natural(motion: Motion, quantity: str) -> float:
+    """The size of a large value of a quantity of the output, as it is drawn."""
+    circuit = motion.circuits[0]
+    rate = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max(initial=0.0))
+    rate = rate if circuit.input_turns else rate / (circuit.size or 1.0)
+    if quantity == "angle":
+        return NATURAL_ANGLE if circuit.output_turns else circuit.size
+    return (1.0 if circuit.output_turns else circuit.size) * rate ** QUANTITIES.index(quantity)
+
+
+def _label(motion: Motion, quantity: str) -> str:
+    suffix = {"angle": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
+    if slides(motion, motion.output):
+        word = "position" if quantity == "angle" else quantity
+        return quantity_label(motion.output, word, f"{motion.linkage.length_unit}{suffix}")
+    return quantity_label(motion.output, quantity, f"rad{suffix}" if suffix else "deg")
+
+
+def inputs_between(motion: Motion, inputs: Floats, low: float, high: float) -> Floats:
+    """The given inputs [rad, or length] as they are drawn, angles at every turn, within a range (m,)."""
+    lifted = inputs[None, :]
+    if not slides(motion, motion.input):
+        lifted = np.degrees(inputs) + 360.0 * np.arange(-4, 5)[:, None]
+    between: Floats = lifted[(lifted > low - 1e-6) & (lifted < high + 1e-6)]
+    return between
+
+
+def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: float, period: float) -> float:
+    """Where a panel's lines take a value at an input, known to whole periods; NaN where they do not.
+
+    Each line has its inputs, its places along the panel and its values, (n,).
+    """
+    found = [(math.inf, math.nan)]
+    for inputs, across, values in lines:
+        off = inputs - at
+        if math.isfinite(period):
+            off = (off + period / 2) % period - period / 2
+        for i in np.flatnonzero((off[:-1] * off[1:] <= 0) & (np.abs(off[:-1] - off[1:]) < period / 2)):
+            share = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.0
+            x, y = (v[i] + share * (v[i + 1] - v[i]) for v in (across, values))
+            found.append((abs(y - value), x))
+    return min(found)[1]
+
+
+def _cut(axes: Axes, drawn: Sequence[DrawnPass], quantity: str) -> bool:
+    """Cuts the range of rates that grow without bound at input dead centres; returns whether it did."""
+    ranges = [(line, told_range(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
+    spans = [span for _, span in ranges if span is not None]
+    if quantity == "angle" or not any(span is not None and line.circuit.turns_back for line, span in ranges):
+        return False
+    low, high = np.min(spans), np.max(spans)
+    axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
+    return True
+
+
+def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:
+    rate, start = math.degrees(motion.speed), line.input[0]
+
+    def time(angle: Any) -> Any:
+        return (angle - start) / rate
+
+    def angle(time: Any) -> Any:
+        return start + time * rate
+
+    above = axes.secondary_xaxis("top", functions=(time, angle))
+    above.set_xlabel("time [s]")
+
+
+def curve_keys(panels: Iterable[Axes], drawn: Sequence[DrawnPass]) -> list[Line2D]:
+    """One legend entry for each pass and for each kind of mark."""
+    lines = {str(line.get_label()): line for axes in panels for line in axes.lines}
+    if EXTREME in lines:  # drawn in each circuit's colour
+        ring: dict[str, Any] = {"ms": 4.5 * stroke(), "mfc": "white", "mec": "#404040"}
+        lines[EXTREME] = Line2D([], [], ls="", marker="o", label=EXTREME, **ring)
+    return [
+        lines[label]
+        for label in (*(line.label for line in drawn), EXTREME, LIMIT, CHANGE_POINT)
+        if label in lines
+    ]

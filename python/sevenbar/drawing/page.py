@@ -1,0 +1,157 @@
+"""How a figure with pictures of a linkage is laid out: title, pictures, legend, no empty paper between."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing import style
+from sevenbar.drawing.scene import box_of, draw_box
+from sevenbar.drawing.skeleton import Skeleton
+from sevenbar.drawing.space import Box, Space, box_round, draw_frame, fit, measuring, seen_size, set_limits
+from sevenbar.drawing.view import View
+
+#: Room [inch], for letters of 9 points: round the page; beside a picture for numbers and names of its axes,
+#: left, right, below, above.
+EDGE, BESIDE_FLAT, BESIDE_SOLID = 0.08, (0.62, 0.16, 0.46, 0.12), (0.5, 0.5, 0.42, 0.26)
+#: A picture is so high at least and at most, as shares of its width.
+LOWEST, HIGHEST = 0.3, 1.15
+#: Share of the caller's axes that the box of three dimensions fills.
+FILL = 0.72
+#: Columns of a legend.
+MOST_COLUMNS = 6
+
+#: A rectangle of the page [inch]: left, bottom, width, height.
+Rectangle = tuple[float, float, float, float]
+
+
+def beside(view: View) -> Floats:
+    """Room [inch] that the labels round a picture need: left, right, below, above."""
+    return np.array(BESIDE_FLAT if view.flat else BESIDE_SOLID) * style.letters() / 9.0
+
+
+def write_title(figure: Figure, text: str) -> float:
+    """Writes a title at the top of the page; returns the height [inch] that it takes."""
+    if not text:
+        return EDGE / 2
+    height = float(figure.get_figheight())
+    title = figure.suptitle(text, y=1 - EDGE / height, va="top")
+    return title.get_window_extent(measuring(figure)).height / figure.dpi + 1.8 * EDGE
+
+
+def write_legend(
+    figure: Figure, handles: Sequence[Any], *, centre: float | None = None, width: float | None = None
+) -> float:
+    """Writes a legend at the foot of the page, in as few lines as fit; returns its height [inch].
+
+    `centre` and `width` [inch] are those of the part of the page that is its own, all of it by default.
+    """
+    if not handles:
+        return EDGE / 2
+    page = figure.get_size_inches()
+    place = ((page[0] / 2 if centre is None else centre) / page[0], EDGE / 2 / page[1])
+    made = None
+    for columns in range(min(len(handles), MOST_COLUMNS), 0, -1):
+        # no more columns than equal lines need
+        lines = -(-len(handles) // columns)
+        made = legend_of(figure, handles, -(-len(handles) // lines), place)
+        size = made.get_window_extent(measuring(figure))
+        if columns == 1 or size.width / figure.dpi <= (width or page[0]) - EDGE:
+            break
+        made.remove()
+    assert made is not None
+    return float(size.height / figure.dpi) + 1.5 * EDGE
+
+
+def legend_of(figure: Any, handles: Sequence[Any], columns: int, place: tuple[float, float]) -> Legend:
+    """A legend without frame whose lower middle is at a place of the page [shares]."""
+    made: Legend = figure.legend(
+        handles=list(handles), loc="lower center", bbox_to_anchor=place, ncols=columns, frameon=False,
+        borderaxespad=0.0, columnspacing=1.4,
+    )  # fmt: skip
+    return made
+
+
+def set_height(figure: Figure, height: float) -> None:
+    """Gives the page another height [inch], title and legend keeping their distance from its edges."""
+    figure.set_figheight(height)
+    title = figure._suptitle  # type: ignore[attr-defined]
+    if title is not None:
+        title.set_y(1 - EDGE / height)
+    for legend in figure.legends:
+        (x, _), _ = legend.get_bbox_to_anchor().transformed(figure.transFigure.inverted()).get_points()
+        legend.set_bbox_to_anchor((x, EDGE / 2 / height), figure.transFigure)
+
+
+def own_axes(figure: Figure, view: View) -> Any:
+    """New axes on a figure, of the kind that a view needs; `fit_picture` places them."""
+    if view.flat:
+        return figure.add_axes((0.1, 0.1, 0.8, 0.8))
+    return figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+
+
+def picture_height(view: View, box: Box, width: float) -> float:
+    """The height [inch] of a picture with its labels that is so wide [inch] with them."""
+    left, right, below, above = beside(view)
+    wide, tall = seen_size(view, box)
+    inner = width - left - right
+    return float(np.clip(inner * tall / (wide or 1.0), LOWEST * inner, HIGHEST * inner) + below + above)
+
+
+def fit_picture(space: Space, box: Box, room: Rectangle, *, bare: bool = False) -> None:
+    """Places axes on the page so that their box and its labels fill a rectangle; `bare`: without labels."""
+    left, right, below, above = (0.1, 0.1, 0.1, 0.1) if bare else beside(space.view)
+    inner = (room[0] + left, room[1] + below, room[2] - left - right, room[3] - below - above)
+    fit(space, box, inner)
+    space.axes.apply_aspect()
+
+
+def prepare(space: Space, frame: Skeleton, room: Rectangle) -> None:
+    """Limits, place on the page and frame of the axes, for all that a picture of a frame shows."""
+    box = box_of(frame, space.view)
+    set_limits(space, box)
+    fit_picture(space, box, room)
+    draw_box(space, frame, box)
+
+
+def prepare_given(space: Space, frame: Skeleton) -> None:
+    """The same for the caller's axes, which keep their place."""
+    box = box_of(frame, space.view)
+    set_limits(space, box)
+    fill_given(space, box)
+    draw_box(space, frame, box)
+
+
+def prepare_box(space: Space, box: Box, unit: str, room: Rectangle | None, *, letters: str = "xyz") -> None:
+    """The same for a box of any places; the caller's axes, which keep their place, have no `room`."""
+    set_limits(space, box)
+    if room is None:
+        fill_given(space, box)
+    else:
+        fit_picture(space, box, room)
+    draw_frame(space, box, unit, letters=letters)
+
+
+def fill_given(space: Space, box: Box) -> None:
+    """Makes the box as large as the caller's axes can hold with its labels."""
+    axes, view = space.axes, space.view
+    axes.apply_aspect()
+    if view.flat:
+        return
+    seen = np.ptp(space.pixels(box.outline), axis=0) / (axes.bbox.width, axes.bbox.height)
+    axes.set_box_aspect(box.high - box.low, zoom=FILL / float(seen.max()))
+    axes.apply_aspect()
+
+
+def place_picture(
+    figure: Figure, places: Floats, room: Rectangle, unit: str, view: View, *, letters: str = "xyz"
+) -> Space:
+    """New axes that show places (n, 3) in a rectangle of the page; `letters` name the axes of space."""
+    space = Space(own_axes(figure, view), view)
+    prepare_box(space, box_round(places, view), unit, room, letters=letters)
+    return space

@@ -1,0 +1,157 @@
+"""Letters of figures keep apart: no text lies on another or leaves the page, for every linkage and every kind of figure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+import sevenbar as sb
+from sevenbar.description.gallery import names
+from sevenbar.drawing import animate as animation
+from sevenbar.drawing import plot
+from sevenbar.drawing.figure import new_figure
+
+#: What a text may lie on another, or beyond the page [pixels at 100 dpi]: boxes have room round their letters.
+ROOM = 1.5
+
+SLIDER_CRANK = [
+    {"name": "crank", "kind": "R", "at": (0, 0, 0), "axis": (0, 0, 1)},
+    {"name": "crank pin", "kind": "R", "at": (40, 0, 0), "axis": (0, 0, 1)},
+    {"name": "wrist pin", "kind": "R", "at": (180, 0, 0), "axis": (0, 0, 1)},
+    {"name": "slider", "kind": "P", "at": (180, 0, 0), "axis": (1, 0, 0)},
+]
+SPHERICAL = [
+    {"name": "in", "kind": "R", "at": (1, 0, 0), "axis": (1, 0, 0)},
+    {"name": "a", "kind": "R", "at": (0.8, 0.6, 0), "axis": (0.8, 0.6, 0)},
+    {"name": "b", "kind": "R", "at": (0, 0.6, 0.8), "axis": (0, 0.6, 0.8)},
+    {"name": "out", "kind": "R", "at": (0, 0, 1), "axis": (0, 0, 1)},
+]
+DRAWN: dict[str, Callable[[], sb.Linkage]] = {
+    "slider-crank": lambda: sb.from_axes(SLIDER_CRANK, name="Slider-crank"),
+    "spherical, point far off": lambda: sb.from_axes(
+        SPHERICAL, points=[{"name": "P", "link": 2, "at": (60, 40, 30)}]
+    ),
+}
+FAST = ("planar_4r", "spherical_4r", "rssr", "seven_r", "bennett")
+
+
+def linkage_of(name: str) -> sb.Linkage:
+    return DRAWN[name]() if name in DRAWN else sb.load(name)
+
+
+def middle_modes(motion: sb.Motion) -> Any:
+    ends = motion.circuits[0].pass_range(0) or (0.3, 0.3)
+    return motion.linkage.assembly_modes(sum(ends) / 2)
+
+
+#: Every kind of figure of a motion.
+KINDS: dict[str, Callable[[sb.Motion], Figure]] = {
+    "configuration": lambda m: plot.configuration(m),
+    "configuration, paper": lambda m: plot.configuration(m, style="paper"),
+    "curves": lambda m: plot.curves(m),
+    "curves, paper": lambda m: plot.curves(m, style="paper"),
+    "joints": lambda m: plot.joints(m),
+    "modes": lambda m: plot.modes_overview(m.linkage, middle_modes(m)),
+    "point": lambda m: plot.point_path(m, (1, (10.0, 20.0, 30.0))),
+    "axodes": lambda m: plot.axodes(m),
+}
+
+
+def drawn_texts(figure: Figure, monkeypatch: pytest.MonkeyPatch) -> list[Text]:
+    """The texts that are drawn, those of ticks among them."""
+    found: list[Text] = []
+    draw = Text.draw
+
+    def record(self: Text, renderer: Any) -> None:
+        if self.get_visible() and self.get_text().strip():
+            found.append(self)
+        draw(self, renderer)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Text, "draw", record)
+        figure.canvas.draw()
+    return found
+
+
+def collisions(figure: Figure, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The texts that lie on another, and those that leave the page, in words."""
+    texts = drawn_texts(figure, monkeypatch)
+    assert texts
+    boxes = [(text.get_text(), text.get_window_extent()) for text in texts]
+    wrong = []
+    width, height = figure.bbox.width, figure.bbox.height
+    for text, box in boxes:
+        if box.x0 < -ROOM or box.y0 < -ROOM or box.x1 > width + ROOM or box.y1 > height + ROOM:
+            wrong.append(f"{text!r} leaves the page: {np.round(box.extents)} of {width:g} x {height:g}")
+    for (one, a), (other, b) in combinations(boxes, 2):
+        across, up = min(a.x1, b.x1) - max(a.x0, b.x0), min(a.y1, b.y1) - max(a.y0, b.y0)
+        if across > ROOM and up > ROOM:
+            wrong.append(f"{one!r} lies on {other!r} by {across:.1f} x {up:.1f}")
+    return wrong
+
+
+@pytest.fixture(scope="module")
+def motions() -> dict[str, sb.Motion]:
+    return {}
+
+
+def cases() -> list[Any]:
+    """Every linkage with every kind of figure; most are slow."""
+    return [
+        pytest.param(name, kind, marks=() if name in FAST[:2] else pytest.mark.slow)
+        for name in (*names(), *DRAWN)
+        for kind in KINDS
+    ]
+
+
+@pytest.mark.parametrize(("name", "kind"), cases())
+def test_no_text_of_a_figure_lies_on_another_or_leaves_the_page(
+    motions: dict[str, sb.Motion], name: str, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    motion = motions.setdefault(name, linkage_of(name).motion(samples=48))
+    assert collisions(KINDS[kind](motion), monkeypatch) == []
+
+
+def test_texts_that_collide_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    figure = new_figure(6.0, 4.0)
+    figure.text(0.5, 0.5, "one")
+    figure.text(0.51, 0.5, "another")
+    figure.text(0.99, 0.2, "beyond")
+    found = collisions(figure, monkeypatch)
+    assert [line.split()[0] for line in found] == ["'beyond'", "'one'"]
+
+
+@pytest.mark.parametrize("name", ["planar_4r", pytest.param("seven_r", marks=pytest.mark.slow)])
+def test_names_in_a_film_stay_near_their_joints_and_on_the_page(
+    name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    motion = linkage_of(name).motion(samples=48)
+    seen: list[list[tuple[str, Any]]] = []
+    draw = Text.draw
+
+    def record(self: Text, renderer: Any) -> None:
+        if hasattr(self, "xyann") and self.get_text() in labels:
+            seen[-1].append((self.get_text(), self.get_window_extent(renderer)))
+        draw(self, renderer)
+
+    frame = animation.skeleton(motion, motion.circuits[0])
+    labels = {name for name in frame.names if name}
+    # every joint has its name, the inner ones, too
+    assert len(labels) == len(motion.linkage.joints) + len(motion.linkage.added_points)
+    seen.append([])
+    with monkeypatch.context() as patch:
+        patch.setattr(Text, "draw", record)
+        animation.animate(motion, tmp_path / "a.gif", frames=6, progress=lambda *_: seen.append([]))
+    for picture in seen[:-1]:
+        for text, box in picture:
+            assert box.x0 > -ROOM, text
+            assert box.y0 > -ROOM, text
+            assert math.isfinite(box.width), text
