@@ -18,7 +18,7 @@ PAGES = {
     "studio": "studio.md",
     "compare": "measured.md",
     "calibrate": "measured.md",
-    "axes": "theory_measures.md",
+    "axodes": "theory_measures.md",
     "simulate": "simulation.md",
     "export": "export.md",
     "sweep": "sweep.md",

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.errors import DescriptionError, Problem, shown, ends_here
+from sevenbar.errors import DescriptionError, Problem, ends_here, shown
 from sevenbar.kinematics.linkage import Linkage
 
 #: A linkage has some dozen numbers; a larger file [bytes] or a longer line [characters] is something else,

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.proportions import disproportions
-from sevenbar.errors import DescriptionError, Problem, shown, ends_here
+from sevenbar.errors import DescriptionError, Problem, ends_here, shown
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.errors import RequestError, shown, ends_here
+from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.rigid import axial, pose

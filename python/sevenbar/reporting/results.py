@@ -118,8 +118,11 @@ def _circuits(motion: Motion) -> list[tuple[str, str]]:
 def _(circuit: Circuit) -> str:
     place, result = (Shown("rad" if turns else "") for turns in (circuit.input_turns, circuit.output_turns))
 
-    def extent(ends: tuple[float, float] | None, show: Shown) -> str:
-        return "full turns" if ends is None else f"{show(ends[0])} to {show(ends[1])}"
+    def extent(ends: tuple[float, float] | None, show: Shown, *, as_limits: bool = False) -> str:
+        if ends is None:
+            return "full turns"
+        low, high, *word = show.range(*ends) if as_limits else map(show, ends)
+        return " ".join([f"{low} to {high}", *word])
 
     def still(kind: str) -> str:
         places = [place(d.input, whole=True) for d in circuit.dead_centres if d.kind == kind]
@@ -136,7 +139,7 @@ def _(circuit: Circuit) -> str:
         [
             ("rows", f"{len(circuit.time)}: {_counts(circuit.status)}"),
             ("columns", ", ".join(circuit.columns)),
-            (circuit.columns[circuit.input_column], extent(circuit.input_range, place)),
+            (circuit.columns[circuit.input_column], extent(circuit.input_range, place, as_limits=True)),
             (circuit.columns[circuit.output_column], extent(circuit.output_range, result)),
             ("input dead centres", still("input")),
             ("output dead centres", still("output")),

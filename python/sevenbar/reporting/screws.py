@@ -23,23 +23,26 @@ from sevenbar.reporting.summary import speed_text
 ROUNDING = 1e-12
 
 #: The file with every row.
-TABLE = "axes.csv"
+TABLE = "axodes.csv"
 
 
-def axes_report(links: Sequence[int], relative_to: int | None) -> Report[Motion]:
+def axodes_report(links: Sequence[int], relative_to: int | None) -> Report[Motion]:
     """How the screw axes of some links of a motion are reported, against the ground or one link."""
     as_dict = partial(_as_dict, links, relative_to)
-    files = {"axes.json": json_file(as_dict), TABLE: columns_file(partial(axes_columns, links, relative_to))}
+    files = {
+        "axodes.json": json_file(as_dict),
+        TABLE: columns_file(partial(axode_columns, links, relative_to)),
+    }
     return Report(partial(_text, links, relative_to), as_dict, files)
 
 
-def axes_columns(
+def axode_columns(
     links: Sequence[int], relative_to: int | None, motion: Motion
 ) -> dict[str, npt.NDArray[np.generic]]:
     """Every row of every circuit: the input, the screw axis of each link, of a planar loop all centres.
 
     >>> import sevenbar as sb
-    >>> columns = axes_columns([2], None, sb.load("planar_4r").motion(24))
+    >>> columns = axode_columns([2], None, sb.load("planar_4r").motion(24))
     >>> list(columns)[:6]
     ['circuit', 'branch', 'sample', 'theta_1_deg', 'link2_status', 'link2_point_x_mm']
     """

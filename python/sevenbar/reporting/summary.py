@@ -11,6 +11,7 @@ import numpy as np
 
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Modes, Motion, Solvable
 from sevenbar.reporting.how_found import how_found
@@ -21,6 +22,12 @@ MOST_COLUMNS = 2
 
 #: Dead centres told in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
+
+#: Limits of the input that are listed.
+MOST_LIMITS = 8
+
+#: What a linkage is called that was made without a name.
+UNNAMED = "linkage"
 
 #: Characters between two columns in print.
 GAP = 2
@@ -38,6 +45,9 @@ NOTHING = ("-", "none")
 
 
 Texts = tuple[str, ...]
+
+#: What stands between the ends of a range.
+RANGE = " to "
 
 
 @dataclass(frozen=True)
@@ -73,7 +83,7 @@ def summary(motion: Motion, room: int = 100) -> Summary:
         sheets += _compared(motion, room)
     elif motion.circuits:
         sheets += _side_by_side(motion)
-    return Summary(linkage.name, tuple(facts_of(motion)), tuple(sheets))
+    return Summary(heading(linkage), tuple(facts_of(motion)), tuple(sheets))
 
 
 def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
@@ -126,8 +136,12 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts = [("loop", joints_text(linkage))]
     if numbers := dimensions_text(linkage):
         facts.append(("dimensions", numbers))
+    if bar := motion.four_bar:
+        facts.append(("links", _links_text(bar, linkage.length_unit)))
+        facts.append(("Grashof", _grashof_text(bar, linkage.length_unit)))
     speed = motion.speed if motion.law is None else None
-    facts.append(("drive", drive_text(motion.input, speed, _units(motion)[0], motion.output)))
+    unit, written = _units(motion)[0], motion.speed_written
+    facts.append(("drive", drive_text(motion.input, speed, unit, motion.output, written=written)))
     if motion.law is not None:
         t = motion.law.t
         rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
@@ -137,8 +151,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         facts.append(("", told))
     facts.append(("circuits", _circuit_count(motion)))
     if motion.circuits or motion.limits.size:
-        show = Shown(_units(motion)[0])
-        facts.append(("input limits", "  ".join(show(x) for x in motion.limits) or _no_limits(motion)))
+        facts.append(("input limits", _limits_text(motion)))
     facts.extend(_change_points(motion))
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
     if motion.completeness != "closed-form":
@@ -150,6 +163,56 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
     return facts
+
+
+def heading(linkage: Loop) -> str:
+    """The name of a linkage, or what it is where a call in Python gave it none."""
+    if linkage.name != UNNAMED:
+        return linkage.name
+    letters = linkage.kind if len(set(linkage.kind)) > 1 else f"{len(linkage.kind)}{linkage.kind[0]}"
+    return f"{letters} linkage"
+
+
+def _links_text(bar: FourBar, unit: str) -> str:
+    """The links of a four-bar by their names, arcs in degrees."""
+    if bar.kind == "spherical":
+        return "  ".join(f"{name} {_degrees(arc)}" for name, arc in bar.links.items())
+    told = "  ".join(f"{name} {length:.6g}" for name, length in bar.links.items())
+    return told + (f"  offset {bar.offset:.6g}" if bar.offset is not None else "") + f"  [{unit}]"
+
+
+def _grashof_text(bar: FourBar, unit: str) -> str:
+    """The sum of the links by Grashof's rule, the class, and the joints that turn fully."""
+    names = [bar.shortest, *(name for name in bar.links if name not in (bar.shortest, bar.longest))]
+
+    def shown(value: float) -> str:
+        return _degrees(value) if bar.kind == "spherical" else f"{value:.6g}"
+
+    short, long = shown(bar.links[bar.shortest]), shown(bar.links[bar.longest])
+    if bar.offset is not None:
+        total = f"s + e - l = {short} + {shown(bar.offset)} - {long}"
+        where = "in line" if bar.offset == 0 else "offset"
+        kinds = {"Grashof": "Grashof", "non-Grashof": "no joint turns fully"}
+        kind = f"{where}, {kinds.get(bar.grashof, bar.grashof)}"
+    else:
+        p, q = (shown(bar.links[name]) for name in names[1:])
+        total = f"s + l - (p + q) = {short} + {long} - ({p} + {q})"
+        kind = {
+            "crank-rocker": "Grashof crank-rocker",
+            "double-crank": "Grashof double-crank",
+            "double-rocker": "Grashof double-rocker",
+        }.get(bar.grashof, bar.grashof)
+    ends = "" if bar.kind == "spherical" else f" {unit}"
+    turning = f": {' and '.join(bar.turning)} turn fully" if bar.turning else ""
+    return f"{total} = {shown(bar.excess)}{ends}; {kind}{turning}"
+
+
+def _limits_text(motion: Motion) -> str:
+    """The input's limits; of many no more than their number, since the tables have them by circuit."""
+    if motion.limits.size > MOST_LIMITS:
+        return f"{motion.limits.size}, by circuit in the table below"
+    show = Shown(_units(motion)[0])
+    return "  ".join(show(x) for x in motion.limits) or _no_limits(motion)
 
 
 def joints_text(linkage: Loop) -> str:
@@ -223,7 +286,10 @@ def _dimension_sheet(linkage: Loop) -> Sheet:
         ground = " (ground)" if place == len(linkage.joints) else ""
         rows.append((f"{place}", f"{joint.kind} {joint.name}{ground}", *cells))
     heads = ("link", "joint before it", *(columns[key] for key in kept))
-    return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1})
+    last, count = linkage.joints[-1], len(linkage.joints)
+    moves = "turns" if last.row.moving_key == "angle" else "slides"
+    note = f"{last.name} {moves} the ground (link {count}) against link {count - 1}"
+    return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1}, note)
 
 
 def meaning(motion: Motion) -> str:
@@ -308,6 +374,11 @@ class _Quantity:
     only: Literal["", "list", "table"] = ""
     spare: bool = False
 
+    def line(self, cell: Texts) -> str:
+        """Its texts on one line; a word after the ends of a range is no end."""
+        ends = 2 if self.between == RANGE else len(cell)
+        return " ".join([self.between.join(cell[:ends]), *cell[ends:]])
+
     def label(self, end: str = "") -> str:
         return " ".join(word for word in (self.name, end, self.unit) if word)
 
@@ -316,7 +387,10 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     """All that is told of circuits, in order."""
     first, second = motion.input, motion.output
     in_unit, out_unit = _units(motion)
-    place, result = Shown(in_unit), Shown(out_unit)
+    place, result = (Shown("rad" if unit == "rad" else "") for unit in (in_unit, out_unit))
+    # of a slide the unit is in the label: a line is not broken between a number and its unit
+    in_label, out_label = ("" if unit == "rad" else f"[{unit}]" for unit in (in_unit, out_unit))
+    in_head, out_head = (f"\n{label}" if label else "" for label in (in_label, out_label))
 
     def ends(extremes: Extremes | None, show: Callable[[float], str], otherwise: str) -> Texts:
         if extremes is None:
@@ -333,7 +407,10 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         extent = circuit.output_range if end else circuit.input_range
         if extent is not None and words_of(circuit.motion_type)[end] == "spindle":
             return ("without end",)
-        return ("full turns",) if extent is None else (show(extent[0]), show(extent[1]))
+        if extent is None:
+            return ("full turns",)
+        # the input is given as its limits are
+        return show.range(*extent) if end == 0 else (show(extent[0]), show(extent[1]))
 
     def way(circuit: Circuit) -> Texts:
         words = (circuit.motion_type,) if motion.motion_type == "mixed" else ()
@@ -362,7 +439,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         told, others = f"dead centres of the {end}", f"{other}dead centres of the {end}"
         head = f"{other}dead\ncentres of\nthe {end}"
         return [
-            _Quantity(told, "", lambda c: _dead_centres(c, end, place), only="list"),
+            _Quantity(told, "", lambda c: _dead_centres(c, end, place), in_label, only="list"),
             _Quantity(others, head, lambda c: _dead_centres(c, end, place, within=True), only="table"),
         ]
 
@@ -371,14 +448,24 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         _Quantity("motion type", "motion type", way),
         _Quantity(
             f"range of {first}",
-            f"range of\n{first}",
+            f"range of\n{first}{in_head}",
             lambda c: range_of(c, 0, place),
-            between=" to ",
+            in_label,
+            between=RANGE,
         ),
         *stands_still("input"),
-        _Quantity(f"range of {second}", "", lambda c: range_of(c, 1, result), between=" to ", only="list"),
-        _Quantity(f"range of {second}", f"range of\n{second} @ {first}", reach, between=" to ", only="table"),
-        _Quantity(f"swing of {second}", "", swing, only="list"),
+        _Quantity(
+            f"range of {second}", "", lambda c: range_of(c, 1, result), out_label, between=RANGE, only="list"
+        ),
+        _Quantity(
+            f"range of {second}",
+            f"range of\n{second} @ {first}{out_head}",
+            reach,
+            out_label,
+            between=RANGE,
+            only="table",
+        ),
+        _Quantity(f"swing of {second}", "", swing, out_label, only="list"),
         *stands_still("output"),
         _Quantity("time ratio", "time\nratio", time_ratio, spare=True),
         _Quantity(
@@ -450,7 +537,7 @@ def _lines(told: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Tex
             lines.append((quantity.label("min"), tuple(cell[0] for cell in cells)))
             lines.append((quantity.label("max"), tuple(cell[-1] for cell in cells)))
         else:
-            lines.append((quantity.label(), tuple(quantity.between.join(cell) for cell in cells)))
+            lines.append((quantity.label(), tuple(quantity.line(cell) for cell in cells)))
     return lines
 
 
@@ -470,9 +557,7 @@ def _side_by_side(motion: Motion) -> list[Sheet]:
 def _compared(motion: Motion, room: int) -> list[Sheet]:
     """What all circuits share, then one table: a row for each circuit, those that agree in one row."""
     told = _telling(motion, "table")
-    shared = [
-        (quantity.label(), (quantity.between.join(cells[0]),)) for quantity, cells in told if _same(cells)
-    ]
+    shared = [(quantity.label(), (quantity.line(cells[0]),)) for quantity, cells in told if _same(cells)]
     own = [(quantity, cells) for quantity, cells in told if not _same(cells)]
     sheets = [_list(motion, ["every circuit"], shared)] if shared else []
     if own:
@@ -513,7 +598,10 @@ def width_of(sheet: Sheet) -> int:
 
 
 def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts]], width: int = 0) -> Sheet:
-    where = f"value @ {'angle' if _units(motion)[0] == 'rad' else 'position'} of {motion.input}"
+    unit = _units(motion)[0]
+    where = f"value @ angle of {motion.input}"
+    if unit != "rad":
+        where = f"value @ position of {motion.input} [{unit}]"
     return Sheet((where.ljust(width), *names), tuple((label, *cells) for label, cells in lines))
 
 
@@ -528,6 +616,13 @@ class Shown:
         if self._unit != "rad":
             return f"{value:.6g} {self._unit}".rstrip()
         return _degrees(value, whole=whole)
+
+    def range(self, low: float, high: float) -> Texts:
+        """The ends of a range, angles in [0, 360), and a word where it goes through 0."""
+        if self._unit != "rad" or high - low > math.tau:
+            return self(low), self(high)
+        ends = self(low, whole=True), self(high, whole=True)
+        return ends if low % math.tau <= high % math.tau else (*ends, "through 0\u00b0")
 
     def same(self, a: float, b: float) -> bool:
         """Whether two values are one place, to the digits that are shown."""

@@ -1,4 +1,4 @@
-"""The command `sevenbar axes`."""
+"""The command `sevenbar axodes`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sevenbar.commands.options import Force, InputJoint, Json, OutputJoint, Samp
 from sevenbar.errors import RequestError
 
 
-def axes(
+def axodes(
     linkage: Source,
     link: Annotated[
         list[int] | None, typer.Option(help="A link, counted from 1; may be repeated; all moving ones.")
@@ -26,13 +26,13 @@ def axes(
     output: OutputJoint = None,
     speed: Speed = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for axes.csv, with every row, and axes.json.")
+        Path | None, typer.Option(help="Folder for axodes.csv, with every row, and axodes.json.")
     ] = None,
     force: Force = False,
     json: Json = False,
 ) -> None:
     """Screw axes of links on every row: axodes, in a plane centrodes and instant centres."""
-    from sevenbar.reporting.screws import axes_report
+    from sevenbar.reporting.screws import axodes_report
 
     loaded = sb.load(linkage)
     count = len(loaded.joints)
@@ -43,7 +43,7 @@ def axes(
             raise RequestError(f"--{name}: {value} is not a link; give 1 to {count}, the last is the ground")
     if against in links:
         raise RequestError(f"--relative-to: link {against} is one of --link; give another")
-    report = axes_report(links, relative_to)
+    report = axodes_report(links, relative_to)
     check_out(report, out, force=force)
     motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
     deliver(motion, report, out, json=json, force=force)
