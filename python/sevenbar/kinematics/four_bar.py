@@ -34,7 +34,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
         >>> found.excess, found.grashof, found.turning
         (-30.0, 'crank-rocker', ('theta_1', 'theta_2'))
 
-    Source: docs/theory_measures.md, (1) to (4).
+    Source: docs/theory_measures.md, (1) to (3).
     """
     parts = expanded(loop)
     columns = [loop.columns[c] for c in parts.columns]

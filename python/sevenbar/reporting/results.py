@@ -9,9 +9,11 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Circuit, Extremes, Trace, Words
+from sevenbar.kinematics.circuits import Circuit, Extremes, Sensitivity, Trace, Words
+from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
+from sevenbar.kinematics.screw_axes import ScrewAxes
 from sevenbar.reporting.summary import (
     COMPLETE,
     Shown,
@@ -19,6 +21,7 @@ from sevenbar.reporting.summary import (
     closure_error,
     dimensions_text,
     facts_of,
+    heading,
     joints_text,
     speed_text,
     way_round,
@@ -50,7 +53,7 @@ def _(linkage: Linkage) -> str:
     drive = linkage.drive
     speed = speed_text(linkage, drive.joint, drive.speed)
     return lines(
-        f"Linkage '{linkage.name}'",
+        f"Linkage '{heading(linkage)}'",
         [
             ("loop", joints_text(linkage)),
             ("dimensions", dimensions_text(linkage) or _rows(linkage)),
@@ -96,7 +99,7 @@ def _(motion: Motion) -> str:
             facts.append((label, text))
         if label == "circuits":
             facts += _circuits(motion)
-    return lines(f"Motion of '{motion.linkage.name}'", facts)
+    return lines(f"Motion of '{heading(motion.linkage)}'", facts)
 
 
 def _circuits(motion: Motion) -> list[tuple[str, str]]:
@@ -169,6 +172,63 @@ def _(trace: Trace) -> str:
             ("acceleration", _extent(np.linalg.norm(trace.acceleration, axis=1))),
         ],
     )
+
+
+@text_of.register(ScrewAxes)
+def _(axes: ScrewAxes) -> str:
+    return lines(
+        f"Screw axes of link {axes.link} against link {axes.relative_to}: {len(axes.status)} rows",
+        [
+            ("status", _counts(axes.status)),
+            ("pitch", _extent(axes.pitch)),
+            ("rate", _extent(axes.rate)),
+            ("slide rate", _extent(axes.slide_rate)),
+        ],
+    )
+
+
+@text_of.register(InstantCentre)
+def _(centre: InstantCentre) -> str:
+    first, second = centre.links
+    sides = zip("xy", centre.in_plane.T, strict=True)
+    return lines(
+        f"Instant centre of links {first} and {second}: {len(centre.status)} rows",
+        [("status", _counts(centre.status)), *((axis, _extent(values)) for axis, values in sides)],
+    )
+
+
+@text_of.register(InstantCentres)
+def _(found: InstantCentres) -> str:
+    return lines(
+        f"{len(found)} instant centres",
+        [(f"{a}-{b}", _counts(centre.status)) for (a, b), centre in found.centres.items()],
+    )
+
+
+@text_of.register(Sensitivity)
+def _(found: Sensitivity) -> str:
+    rows, columns, numbers = found.position.shape
+    # each number by what it moves most, its unit and the greatest derivative
+    most = [
+        f"{name} [{unit}]: " + (f"{column} {value:.3g}" if value else "moves nothing")
+        for name, unit, column, value in zip(found.names, found.units, *_moved_most(found), strict=True)
+    ]
+    return lines(
+        f"Sensitivity of {columns} columns by {numbers} numbers: {rows} rows",
+        [
+            ("status", _counts(found.status)),
+            ("greatest", "; ".join(most[:MOST_CIRCUITS]) + (" .." if len(most) > MOST_CIRCUITS else "")),
+            ("points", ", ".join(found.points)),
+            ("opening", ", ".join(found.opening)),
+        ],
+    )
+
+
+def _moved_most(found: Sensitivity) -> tuple[list[str], list[float]]:
+    """The column that each number moves most, and by how much for one of it; 0 where none is known."""
+    sizes = np.nan_to_num(np.abs(found.position)).max(axis=0, initial=0.0)
+    places = sizes.argmax(axis=0)
+    return [found.columns[place] for place in places], sizes.max(axis=0).tolist()
 
 
 @text_of.register(Output)

@@ -46,7 +46,7 @@ NOTHING = ("-", "none")
 
 Texts = tuple[str, ...]
 
-#: What stands between the ends of a range.
+#: Between the ends of a range.
 RANGE = " to "
 
 
@@ -177,8 +177,8 @@ def _links_text(bar: FourBar, unit: str) -> str:
     """The links of a four-bar by their names, arcs in degrees."""
     if bar.kind == "spherical":
         return "  ".join(f"{name} {_degrees(arc)}" for name, arc in bar.links.items())
-    told = "  ".join(f"{name} {length:.6g}" for name, length in bar.links.items())
-    return told + (f"  offset {bar.offset:.6g}" if bar.offset is not None else "") + f"  [{unit}]"
+    shown = "  ".join(f"{name} {length:.6g}" for name, length in bar.links.items())
+    return shown + (f"  offset {bar.offset:.6g}" if bar.offset is not None else "") + f"  [{unit}]"
 
 
 def _grashof_text(bar: FourBar, unit: str) -> str:
