@@ -14,9 +14,9 @@ from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
 from sevenbar.kinematics.screw_axes import ScrewAxes
+from sevenbar.reporting.shown import Shown
 from sevenbar.reporting.summary import (
     COMPLETE,
-    Shown,
     circuit_facts,
     closure_error,
     dimensions_text,

@@ -11,11 +11,12 @@ import numpy as np
 
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Modes, Motion, Solvable
+from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
+from sevenbar.reporting.shown import Shown, degrees, plain
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
@@ -137,8 +138,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if numbers := dimensions_text(linkage):
         facts.append(("dimensions", numbers))
     if bar := motion.four_bar:
-        facts.append(("links", _links_text(bar, linkage.length_unit)))
-        facts.append(("Grashof", _grashof_text(bar, linkage.length_unit)))
+        facts.append(("links", links_text(bar, linkage.length_unit)))
+        facts.append(("Grashof", grashof_text(bar, linkage.length_unit)))
     speed = motion.speed if motion.law is None else None
     unit, written = _units(motion)[0], motion.speed_written
     facts.append(("drive", drive_text(motion.input, speed, unit, motion.output, written=written)))
@@ -171,40 +172,6 @@ def heading(linkage: Loop) -> str:
         return linkage.name
     letters = linkage.kind if len(set(linkage.kind)) > 1 else f"{len(linkage.kind)}{linkage.kind[0]}"
     return f"{letters} linkage"
-
-
-def _links_text(bar: FourBar, unit: str) -> str:
-    """The links of a four-bar by their names, arcs in degrees."""
-    if bar.kind == "spherical":
-        return "  ".join(f"{name} {_degrees(arc)}" for name, arc in bar.links.items())
-    shown = "  ".join(f"{name} {length:.6g}" for name, length in bar.links.items())
-    return shown + (f"  offset {bar.offset:.6g}" if bar.offset is not None else "") + f"  [{unit}]"
-
-
-def _grashof_text(bar: FourBar, unit: str) -> str:
-    """The sum of the links by Grashof's rule, the class, and the joints that turn fully."""
-    names = [bar.shortest, *(name for name in bar.links if name not in (bar.shortest, bar.longest))]
-
-    def shown(value: float) -> str:
-        return _degrees(value) if bar.kind == "spherical" else f"{value:.6g}"
-
-    short, long = shown(bar.links[bar.shortest]), shown(bar.links[bar.longest])
-    if bar.offset is not None:
-        total = f"s + e - l = {short} + {shown(bar.offset)} - {long}"
-        where = "in line" if bar.offset == 0 else "offset"
-        kinds = {"Grashof": "Grashof", "non-Grashof": "no joint turns fully"}
-        kind = f"{where}, {kinds.get(bar.grashof, bar.grashof)}"
-    else:
-        p, q = (shown(bar.links[name]) for name in names[1:])
-        total = f"s + l - (p + q) = {short} + {long} - ({p} + {q})"
-        kind = {
-            "crank-rocker": "Grashof crank-rocker",
-            "double-crank": "Grashof double-crank",
-            "double-rocker": "Grashof double-rocker",
-        }.get(bar.grashof, bar.grashof)
-    ends = "" if bar.kind == "spherical" else f" {unit}"
-    turning = f": {' and '.join(bar.turning)} turn fully" if bar.turning else ""
-    return f"{total} = {shown(bar.excess)}{ends}; {kind}{turning}"
 
 
 def _limits_text(motion: Motion) -> str:
@@ -286,10 +253,7 @@ def _dimension_sheet(linkage: Loop) -> Sheet:
         ground = " (ground)" if place == len(linkage.joints) else ""
         rows.append((f"{place}", f"{joint.kind} {joint.name}{ground}", *cells))
     heads = ("link", "joint before it", *(columns[key] for key in kept))
-    last, count = linkage.joints[-1], len(linkage.joints)
-    moves = "turns" if last.row.moving_key == "angle" else "slides"
-    note = f"{last.name} {moves} the ground (link {count}) against link {count - 1}"
-    return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1}, note)
+    return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1})
 
 
 def meaning(motion: Motion) -> str:
@@ -400,8 +364,8 @@ def _quantities(motion: Motion) -> list[_Quantity]:
 
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
-            return ends(extremes, _plain, "no row within the range")
-        return ends(extremes, _plain, "change point" if circuit.goes_round else "no bound at limits")
+            return ends(extremes, plain, "no row within the range")
+        return ends(extremes, plain, "change point" if circuit.goes_round else "no bound at limits")
 
     def range_of(circuit: Circuit, end: int, show: Shown) -> Texts:
         extent = circuit.output_range if end else circuit.input_range
@@ -422,7 +386,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     def time_ratio(circuit: Circuit) -> Texts:
         # a ratio of angles, and of times at a constant speed
         return (
-            ("-",) if circuit.time_ratio is None or motion.law is not None else (_plain(circuit.time_ratio),)
+            ("-",) if circuit.time_ratio is None or motion.law is not None else (plain(circuit.time_ratio),)
         )
 
     def reach(circuit: Circuit) -> Texts:
@@ -471,13 +435,13 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         _Quantity(
             "transmission angle",
             f"transmission\nangle @ {first}",
-            lambda c: ends(c.transmission, _degrees, "-"),
+            lambda c: ends(c.transmission, degrees, "-"),
             ends=True,
         ),
         _Quantity(
             f"{second} {position}",
             "",
-            lambda c: ends(c.angle, _plain, "-"),
+            lambda c: ends(c.angle, plain, "-"),
             f"[{out_unit}]",
             ends=True,
             only="list",
@@ -603,40 +567,6 @@ def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts
     if unit != "rad":
         where = f"value @ position of {motion.input} [{unit}]"
     return Sheet((where.ljust(width), *names), tuple((label, *cells) for label, cells in lines))
-
-
-class Shown:
-    """How a joint's value is written: an angle in degrees, a slide in the length unit."""
-
-    def __init__(self, unit: str) -> None:
-        self._unit = unit
-
-    def __call__(self, value: float, *, whole: bool = False) -> str:
-        """The value with its unit; `whole` takes an angle into [0, 360)."""
-        if self._unit != "rad":
-            return f"{value:.6g} {self._unit}".rstrip()
-        return _degrees(value, whole=whole)
-
-    def range(self, low: float, high: float) -> Texts:
-        """The ends of a range, angles in [0, 360), and a word where it goes through 0."""
-        if self._unit != "rad" or high - low > math.tau:
-            return self(low), self(high)
-        ends = self(low, whole=True), self(high, whole=True)
-        return ends if low % math.tau <= high % math.tau else (*ends, "through 0\u00b0")
-
-    def same(self, a: float, b: float) -> bool:
-        """Whether two values are one place, to the digits that are shown."""
-        return self(a, whole=True) == self(b, whole=True)
-
-
-def _plain(value: float) -> str:
-    return f"{value:.6g}"
-
-
-def _degrees(angle: float, *, whole: bool = False) -> str:
-    # rounded first, so that neither -0.000 nor 360.000 is left
-    degrees = round(math.degrees(angle), 3)
-    return f"{(degrees % 360 if whole else degrees) + 0.0:.3f}\u00b0"
 
 
 def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = False) -> Texts:
