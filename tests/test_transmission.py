@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.kinematics.poses import frames_of
 from sevenbar.kinematics.transmission import coupling_of
 from textbook_loops import (
     four_bar_joints,
@@ -196,19 +197,37 @@ def test_of_a_spatial_slider_crank_it_is_that_of_the_rods_line_either_way():
 
 
 def test_through_a_ball_beside_other_joints_the_force_is_square_to_what_they_do():
-    found = sb.load("rscr")
-    names = found.columns
-    forward = coupling_of(found, 0, len(names) - 1)
-    assert forward is None  # the output is driven through a cylinder
-    for circuit in found.motion(72, input=names[-1], output=names[0]):
+    drawn = sb.load("rscr")
+    assert coupling_of(drawn, 0, len(drawn.columns) - 1) is None  # the output is driven through a cylinder
+    # the same loop from its other end: rocker, cylinder, ball, crank
+    joints = [dict(joint) for joint in reversed(drawn.description["joint"])]
+    found = linkage(joints)
+    ball_at = np.array([*joints[2]["at"], 1.0])
+    axis, foot = np.array(joints[3]["axis"], dtype=float), np.array(joints[3]["at"], dtype=float)
+
+    def place(q):
+        """The ball as a point of the link that the input and the cylinder carry, drawn with all at zero."""
+        return (frames_of(found, q[None])[0, 1] @ found.point_frames[1] @ ball_at)[:3]
+
+    defined = 0
+    for circuit in found.motion(24):
         angle = circuit.transmission_angle
-        assert angle is not None
-        # power: the force at the ball does no work on the passive joints, so where it is square to the
-        # output's way the input has a dead centre, and nowhere else
-        dead = [c for c in circuit.dead_centres if c.kind == "input"]
-        assert (circuit.transmission.lowest == 0.0) == bool(dead)
-        if not dead:
-            assert circuit.transmission.lowest > 1e-3
+        for row in np.flatnonzero(circuit.status == "ok")[::2]:
+            q = circuit.q[row]
+            here, step = place(q), 1e-5
+            ways = []
+            for column in (1, 2):
+                more, less = q.copy(), q.copy()
+                more[column] += step
+                less[column] -= step
+                ways.append((place(more) - place(less)) / (2 * step))
+            force, w = np.cross(*ways), np.cross(axis, here - foot)
+            sine = abs(force @ w) / np.linalg.norm(force) / np.linalg.norm(w)
+            assert np.sin(angle[row]) == pytest.approx(sine, abs=1e-8)
+            defined += 1
+        dead = any(centre.kind == "input" for centre in circuit.dead_centres)
+        assert (circuit.transmission.lowest == 0.0) == dead
+    assert defined > 8
 
 
 def test_loops_for_which_no_angle_is_defined_have_none():

@@ -35,8 +35,12 @@ from sevenbar.description.step_axes import PartAxis, axes_of_step
 from sevenbar.description.tables import from_table
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
 from sevenbar.kinematics.geometry import Drive, Joint, Point
+from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
+from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere
+from sevenbar.kinematics.screw_axes import ScrewAxes
 from sevenbar.text.printing import SAID_IN
 
 __all__ = [
@@ -46,15 +50,21 @@ __all__ = [
     "DeadCentre",
     "Drive",
     "Extremes",
+    "FourBar",
+    "InstantCentre",
+    "InstantCentres",
     "Joint",
     "Law",
     "Linkage",
     "Modes",
     "Motion",
+    "MotionPlane",
+    "MotionSphere",
     "OpenRange",
     "Output",
     "PartAxis",
     "Point",
+    "ScrewAxes",
     "Search",
     "Trace",
     "__version__",

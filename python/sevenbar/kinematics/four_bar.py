@@ -14,8 +14,8 @@ from sevenbar.kinematics.grashof import FourBar, four_bar, least, slider_crank
 from sevenbar.kinematics.plane_and_sphere import in_plane, sphere_of
 from sevenbar.kinematics.rigid import cross, inverse
 
-#: The links of a loop with four joints, from the one that carries input and output on.
-ROLES = ("ground", "input link", "coupler", "output link")
+#: The links of a loop with four joints, where the first and the last are input and output.
+ROLES = ("input link", "coupler", "output link", "ground")
 
 _Z = np.array([0.0, 0.0, 1.0])
 
@@ -24,7 +24,8 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     """The four-bar or slider-crank that a loop is, driven by a column and read at another; `None` for others.
 
     A loop is one where four of its joints move in its plane, all turning or one sliding, or where it has four
-    axes through one point. The link between input and output is called the ground.
+    axes through one point. Links are called by what
+    they do where input and output are at the ground, else by numbers.
 
         >>> import sevenbar as sb
         >>> found = four_bar_of(sb.load("planar_4r"), "theta_1", "theta_4")
@@ -33,7 +34,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
         >>> found.excess, found.grashof, found.turning
         (-30.0, 'crank-rocker', ('theta_1', 'theta_2'))
 
-    Source: docs/theory_measures.md, (1) to (4).
+    Source: docs/theory_measures.md, (1) to (3).
     """
     parts = expanded(loop)
     columns = [loop.columns[c] for c in parts.columns]
@@ -83,16 +84,9 @@ def _between(links: Sequence[Floats], last: Floats, moves: Sequence[int]) -> lis
 
 def _roles(names: Sequence[str], input: str, output: str) -> list[str]:
     """The names of the links after each of four joints."""
-    first, second = (names.index(name) if name in names else -1 for name in (input, output))
-    if first < 0 or second < 0 or (first - second) % 2 == 0:
-        # the ground is where the list of joints closes
-        return ["link 1", "link 2", "link 3", "ground"]
-    roles = [""] * 4
-    if (first - second) % 4 == 1:
-        # the link before the input is the ground
-        for k, role in enumerate(ROLES):
-            roles[(second + k) % 4] = role
-    else:
-        for k, role in enumerate(ROLES):
-            roles[(first - k) % 4] = role
-    return roles
+    # the ground is where the list of joints closes
+    if (input, output) == (names[0], names[-1]):
+        return list(ROLES)
+    if (output, input) == (names[0], names[-1]):
+        return [*ROLES[2::-1], ROLES[3]]
+    return ["link 1", "link 2", "link 3", "ground"]

@@ -206,6 +206,14 @@ class Loop(Drawable):
         drives = self.columns.index(self.drive.joint)
         return self.drive.speed if self.column_kinds[drives] == self.column_kinds[column] else 1.0
 
+    def speed_written(self, column: int) -> str:
+        """That speed as the description has it, "3000 rpm"; empty where it is a number, or none."""
+        drives = self.columns.index(self.drive.joint)
+        drive = self.description.get("drive", {})
+        written = drive.get("speed", "") if isinstance(drive, Mapping) else ""
+        same = self.column_kinds[drives] == self.column_kinds[column]
+        return written if isinstance(written, str) and same else ""
+
 
 def following_coupler(
     m: npt.ArrayLike, n: npt.ArrayLike, crank: npt.ArrayLike, rocker: npt.ArrayLike

@@ -89,6 +89,8 @@ def slider_crank(
     `names` are those of its three turning joints, `roles` of the two links between them.
     """
     s, l = sorted((first, second))  # noqa: E741
+    if offset <= EQUAL_SUMS * (s + l):
+        offset = 0.0
     shortest, longest = roles if first <= second else reversed(roles)
     excess = math.fsum((s, offset, -l))
     grashof: Literal["change point", "non-Grashof", "Grashof"]

@@ -2,7 +2,7 @@
 
 By the theorem of Aronhold and Kennedy the three centres of any three links lie on a line.
 
-Source: docs/theory_measures.md, (10); S. H. Aronhold (1872);
+Source: docs/theory_measures.md, (9) and (10); S. H. Aronhold (1872);
 A. B. W. Kennedy, "The mechanics of machinery" (1886).
 """
 

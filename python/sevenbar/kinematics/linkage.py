@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -278,9 +278,12 @@ class Linkage(Solvable):
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
         if self._has_closed_form(method):
-            return self._closed_form.motion(column, samples, rate, law)
-        self._refuse_unheld()
-        return self._general.motion(column, output_column, samples, rate, law)
+            found = self._closed_form.motion(column, samples, rate, law)
+        else:
+            self._refuse_unheld()
+            found = self._general.motion(column, output_column, samples, rate, law)
+        written = speed if speed is not None else self.speed_written(column)
+        return replace(found, speed_written=written) if isinstance(written, str) and written else found
 
     @ends_here
     def circuit(

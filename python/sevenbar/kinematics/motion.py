@@ -253,6 +253,8 @@ class Motion(Drawable):
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...]
     law: Law | None = None
+    #: The speed as it was written, "3000 rpm", where it was a text.
+    speed_written: str = ""
 
     @property
     def completeness(self) -> Literal["closed-form", "counted", "algebraic", "searched"]:

@@ -45,6 +45,9 @@ NODES = 16
 #: too many does no harm, as each is a pose on the circuit.
 NEARLY_REAL = 1e-4
 
+#: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
+AT_DEAD_CENTRE = 1e-7
+
 #: A loop with so many joints that move, in the plane or on the sphere.
 FOUR = 4
 
@@ -210,7 +213,10 @@ class _Search:
         way = walk(rows)
         found = [(math.atan2(abs(s), abs(c)), x) for s, c, x in zip(sine, cosine, rows.input, strict=True)]
         found += self.between(way, sine[way.rows])
-        found += [(0.0, centre.input) for centre in rows.dead_centres if centre.kind == "input"]
+        dead = [centre.input for centre in self.like.dead_centres if centre.kind == "input"]
+        if dead:
+            # near them rounding leaves a little
+            found = [one for one in found if one[0] > AT_DEAD_CENTRE] + [(0.0, x) for x in dead]
         kept = [(angle, x) for angle, x in found if math.isfinite(angle)]
         if not kept:
             return None

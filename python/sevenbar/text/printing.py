@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.errors import SevenbarError
+from sevenbar.errors import SevenbarError, ends_here
 
 #: Characters of a line.
 WIDTH = 100
@@ -60,6 +60,7 @@ class Printed:
 class Drawable(Printed):
     """A result with a figure of its own."""
 
+    @ends_here
     def plot(self, **options: Any) -> Any:
         """Its figure, a matplotlib Figure, as `sevenbar.plot` draws it with these options.
 
