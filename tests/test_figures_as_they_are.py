@@ -142,6 +142,23 @@ def test_names_and_numbers_are_written_as_people_write_them() -> None:
     assert amount_text(2e5, "in") == "200000 in"
 
 
+def test_a_fast_slide_is_drawn_in_metres() -> None:
+    motion = sb.from_axes(SLIDER_CRANK, speed="3000 rpm").motion(samples=72)
+    figure = plot.curves(motion, "input")
+    assert [axes.get_ylabel() for axes in figure.axes] == [
+        "slider position [mm]",
+        "slider velocity [m/s]",
+        "slider acceleration [m/s²]",
+    ]
+    circuit = motion.circuits[0]
+    for axes, rates in zip(figure.axes[1:], (circuit.dq, circuit.ddq), strict=True):
+        drawn = np.asarray(axes.lines[0].get_ydata())[:-1]
+        np.testing.assert_allclose(drawn, rates[:, circuit.output_column] / 1000, rtol=1e-12)
+        low, high = axes.get_ylim()
+        extremes = next(line for line in axes.lines if line.get_label() == "extreme").get_ydata()
+        assert low < min(extremes) <= max(extremes) < high
+
+
 def test_one_colour_has_one_meaning() -> None:
     assert not {INPUT, OUTPUT, COUPLER, GROUND} & set(CIRCUIT_COLOURS)
     assert len(set(CIRCUIT_COLOURS)) == len(CIRCUIT_COLOURS) == 8
