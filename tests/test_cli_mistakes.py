@@ -62,11 +62,11 @@ def folder(tmp_path):
         ),
         (
             ["rssr", "--out", "out", "--figures", ""],
-            "--figures: none given; give some of png, svg, pdf, or leave it out",
+            "--figures: none given; give some of png, svg, pdf, eps, or leave it out",
         ),
         (
             ["rssr", "--out", "out", "--figures", "svg,bmp"],
-            "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf",
+            "--figures: 'bmp' is not a figure format; allowed: png, svg, pdf, eps",
         ),
         (
             ["rssr", "--out", "taken"],

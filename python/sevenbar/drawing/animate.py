@@ -26,9 +26,9 @@ from sevenbar.drawing.lettering import write_names
 from sevenbar.drawing.names import shown_name
 from sevenbar.drawing.page import own_axes, prepare, write_legend, write_title
 from sevenbar.drawing.skeleton import Skeleton, skeleton
-from sevenbar.drawing.space import Space
+from sevenbar.drawing.space import ViewAxes
 from sevenbar.drawing.style import INK, checked_size, letters, page_size, stroke, styled
-from sevenbar.drawing.view import Asked, View, view_of
+from sevenbar.drawing.view import Asked, Projection, view_of
 from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
@@ -177,7 +177,7 @@ def _pictures(
     motion: Motion,
     circuit: Circuit,
     frame: Skeleton,
-    seen: View,
+    seen: Projection,
     frames: int,
     size: tuple[float, float],
     heading: str,
@@ -192,7 +192,7 @@ def _pictures(
     # two parts of the page: the linkage, and the curve of its output
     part = 0.6 * width
     foot = write_legend(figure, scene.keys(frame, ends, seen), centre=part / 2, width=part)
-    space = Space(own_axes(figure, seen), seen)
+    space = ViewAxes(own_axes(figure, seen), seen)
     prepare(space, frame, (0.0, foot, part, height - top - foot))
     scene.stage(space, frame, ends)
     curve, keys_height = figure.add_axes((0.1, 0.1, 0.1, 0.1)), 0.0

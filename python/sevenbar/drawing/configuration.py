@@ -25,7 +25,7 @@ from sevenbar.drawing.page import (
 )
 from sevenbar.drawing.scene import bars, box_of, keys, put, shown_places, stage
 from sevenbar.drawing.skeleton import Skeleton, one_pose, skeleton, skeleton_of
-from sevenbar.drawing.space import Space
+from sevenbar.drawing.space import ViewAxes
 from sevenbar.drawing.style import letters, page_size, styled
 from sevenbar.drawing.view import Asked, view_of
 from sevenbar.errors import RequestError, shown
@@ -95,13 +95,13 @@ def configuration(
             if figsize is None:
                 height = top + foot + picture_height(seen, box_of(frame, seen), width)
                 set_height(figure, height)
-            space = Space(own_axes(figure, seen), seen)
+            space = ViewAxes(own_axes(figure, seen), seen)
             prepare(space, frame, (0.0, foot, width, height - top - foot))
             within: Bbox | None = Bbox.from_extents(
                 0, foot * figure.dpi, figure.bbox.width, (height - top) * figure.dpi
             )
         else:
-            figure, space, within = ax.figure.figure, Space(ax, seen), None
+            figure, space, within = ax.figure.figure, ViewAxes(ax, seen), None
             prepare_given(space, frame)
         stage(space, frame, ends)
         for pose in poses[1:]:
@@ -161,7 +161,7 @@ def modes_overview(
         box = box_of(poses, seen)
         if given:
             for axes, index in zip(given, range(count), strict=True):
-                space = Space(axes, seen)
+                space = ViewAxes(axes, seen)
                 prepare_given(space, poses)
                 _draw_mode(space, poses, index, ends, 1.0)
                 if title:
@@ -185,14 +185,14 @@ def modes_overview(
             left, bottom = column * side[0], height - top - (row + 1) * side[1]
             # the last row in the middle
             left += (across - min(across, count - row * across)) * side[0] / 2
-            space = Space(own_axes(figure, seen), seen)
+            space = ViewAxes(own_axes(figure, seen), seen)
             prepare(space, poses, (left, bottom, side[0], side[1] - heading))
             _draw_mode(space, poses, index, ends, SMALLER if across > 2 else 0.85)
             space.heading(f"mode {index}", left + side[0] / 2, bottom + side[1] - heading + EDGE / 2)
     return figure
 
 
-def _draw_mode(space: Space, poses: Skeleton, index: int, ends: tuple[str, str], scale: float) -> None:
+def _draw_mode(space: ViewAxes, poses: Skeleton, index: int, ends: tuple[str, str], scale: float) -> None:
     one = one_pose(poses, index)
     stage(space, one, ends, around=poses)
     put(space, bars(space, one, ends, scale=scale), one.pose(0))

@@ -16,7 +16,7 @@ from sevenbar.drawing.output_curves import QUANTITIES, passes
 from sevenbar.drawing.scene import SAME, link_colours, paths
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.style import CIRCUIT_COLOURS, GROUND, PATH
-from sevenbar.drawing.view import View
+from sevenbar.drawing.view import Projection
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.poses import walk
@@ -29,7 +29,7 @@ def film_page(
     motion: Motion,
     circuit: Circuit,
     frame: Skeleton,
-    view: View,
+    view: Projection,
     rows: Floats,
     *,
     fps: float,
@@ -57,7 +57,7 @@ def film_page(
     )
 
 
-def _linkage(motion: Motion, frame: Skeleton, view: View, rows: Floats) -> dict[str, Any]:
+def _linkage(motion: Motion, frame: Skeleton, view: Projection, rows: Floats) -> dict[str, Any]:
     """What is drawn of the linkage: places in each picture as shares of the extent, and what joins them."""
     ends = motion.input, motion.output
     shown = frame.places[:, frame.shown].reshape(-1, 3)

@@ -34,7 +34,7 @@ from sevenbar.drawing.page import (
 )
 from sevenbar.drawing.scene import bars, put, shown_places, stage
 from sevenbar.drawing.skeleton import skeleton
-from sevenbar.drawing.space import Space, box_round
+from sevenbar.drawing.space import ViewAxes, box_round
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_size, stroke, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, view_of
@@ -197,10 +197,10 @@ def axodes(
             if figsize is None:
                 height = top + foot + picture_height(seen, box, width)
                 set_height(figure, height)
-            space = Space(own_axes(figure, seen), seen)
+            space = ViewAxes(own_axes(figure, seen), seen)
             prepare_box(space, box, motion.linkage.length_unit, (0.0, foot, width, height - top - foot))
         else:
-            figure, space = given.figure.figure, Space(given, seen)
+            figure, space = given.figure.figure, ViewAxes(given, seen)
             prepare_box(space, box, motion.linkage.length_unit, None)
         stage(space, frame, ends)
         put(space, bars(space, frame, ends, scale=0.8), frame.pose(first))

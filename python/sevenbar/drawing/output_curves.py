@@ -28,7 +28,7 @@ from sevenbar.drawing.figure import (
     title_of,
     told_range,
 )
-from sevenbar.drawing.names import quantity_label
+from sevenbar.drawing.names import handy_unit, quantity_label
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_size, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, shown
@@ -177,7 +177,7 @@ def curves(
         for row, quantity in enumerate(quantities):
             for column, over in enumerate(columns):
                 panel(grid[row, column], motion, drawn, quantity, over)
-            cut |= _cut(grid[row, 0], drawn, quantity)
+            cut |= _cut(grid[row, 0], motion, drawn, quantity)
         if ax is not None:
             return figure
         for axes in grid.flat:
@@ -196,8 +196,9 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
     """Draws one quantity of the passes over "input" or "time", with the input limits and the extremes."""
     axes.grid(True)
     axes.set_axisbelow(True)
+    factor, length = _unit_of(motion, drawn, quantity)
     for line in drawn:
-        axes.plot(getattr(line, over), getattr(line, quantity), label=line.label, **line.style)
+        axes.plot(getattr(line, over), factor * getattr(line, quantity), label=line.label, **line.style)
     for circuit in motion.circuits:
         own = [line for line in drawn if line.circuit is circuit]
         extremes: Extremes | None = getattr(circuit, quantity)
@@ -216,7 +217,7 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
                 for v, (_, at) in zip(values, sides, strict=True)
             ]
             ring = {"ms": 4.5 * stroke(), "mfc": "white", "mec": own[0].style["color"], "mew": 1.2 * stroke()}
-            axes.plot(places, values, "o", ls="", label=EXTREME, zorder=4, **ring)
+            axes.plot(places, factor * np.array(values), "o", ls="", label=EXTREME, zorder=4, **ring)
     ends = np.concatenate([getattr(line, over) for line in drawn])
     room = 0.02 * np.ptp(ends) if over == "input" and motion.limits.size else 0.0
     if np.ptp(ends) > 0:
@@ -234,9 +235,9 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
         axes.yaxis.set_major_locator(DegreeLocator(7))
     else:
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-    widen(axes.yaxis, _natural(motion, quantity))
+    widen(axes.yaxis, factor * _natural(motion, quantity))
     axes.set_xlabel(input_label(motion) if over == "input" else "time [s]")
-    axes.set_ylabel(_label(motion, quantity))
+    axes.set_ylabel(_label(motion, quantity, length))
 
 
 def _natural(motion: Motion, quantity: str) -> float:
@@ -249,11 +250,20 @@ def _natural(motion: Motion, quantity: str) -> float:
     return (1.0 if circuit.output_turns else circuit.size) * rate ** QUANTITIES.index(quantity)
 
 
-def _label(motion: Motion, quantity: str) -> str:
+def _unit_of(motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> tuple[float, str]:
+    """The factor and the length unit in which a slide's rate is drawn: metres for many millimetres."""
+    unit = motion.linkage.length_unit
+    if quantity == "angle" or not slides(motion, motion.output):
+        return 1.0, unit
+    ranges = [told_range(line.circuit, getattr(line, quantity), quantity) for line in drawn]
+    return handy_unit(unit, max((abs(end) for ends in ranges if ends for end in ends), default=0.0))
+
+
+def _label(motion: Motion, quantity: str, length: str) -> str:
     suffix = {"angle": "", "velocity": "/s", "acceleration": "/s²"}[quantity]
     if slides(motion, motion.output):
         word = "position" if quantity == "angle" else quantity
-        return quantity_label(motion.output, word, f"{motion.linkage.length_unit}{suffix}")
+        return quantity_label(motion.output, word, f"{length}{suffix}")
     return quantity_label(motion.output, quantity, f"rad{suffix}" if suffix else "deg")
 
 
@@ -283,13 +293,14 @@ def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: f
     return min(found)[1]
 
 
-def _cut(axes: Axes, drawn: Sequence[DrawnPass], quantity: str) -> bool:
+def _cut(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; returns whether it did."""
     ranges = [(line, told_range(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
     spans = [span for _, span in ranges if span is not None]
     if quantity == "angle" or not any(span is not None and line.circuit.turns_back for line, span in ranges):
         return False
-    low, high = np.min(spans), np.max(spans)
+    factor, _ = _unit_of(motion, drawn, quantity)
+    low, high = factor * np.min(spans), factor * np.max(spans)
     axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
     return True
 

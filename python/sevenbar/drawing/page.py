@@ -13,12 +13,12 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing import style
 from sevenbar.drawing.scene import box_of, draw_box
 from sevenbar.drawing.skeleton import Skeleton
-from sevenbar.drawing.space import Box, Space, box_round, draw_frame, fit, measuring, seen_size, set_limits
-from sevenbar.drawing.view import View
+from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_frame, fit, measuring, seen_size, set_limits
+from sevenbar.drawing.view import Projection
 
-#: Room [inch], for letters of 9 points: round the page; beside a picture for numbers and names of its axes,
-#: left, right, below, above.
-EDGE, BESIDE_FLAT, BESIDE_SOLID = 0.08, (0.62, 0.16, 0.46, 0.12), (0.5, 0.5, 0.42, 0.26)
+#: Room [inch], for letters of 9 points: round the page; at the sides of a picture, for numbers and names of
+#: its axes, left, right, below, above.
+EDGE, FLAT_MARGINS, SOLID_MARGINS = 0.08, (0.62, 0.16, 0.46, 0.12), (0.5, 0.5, 0.42, 0.26)
 #: A picture is so high at least and at most, as shares of its width.
 LOWEST, HIGHEST = 0.3, 1.15
 #: Share of the caller's axes that the box of three dimensions fills.
@@ -30,9 +30,9 @@ MOST_COLUMNS = 6
 Rectangle = tuple[float, float, float, float]
 
 
-def beside(view: View) -> Floats:
+def margins(view: Projection) -> Floats:
     """Room [inch] that the labels round a picture need: left, right, below, above."""
-    return np.array(BESIDE_FLAT if view.flat else BESIDE_SOLID) * style.letters() / 9.0
+    return np.array(FLAT_MARGINS if view.flat else SOLID_MARGINS) * style.letters() / 9.0
 
 
 def write_title(figure: Figure, text: str) -> float:
@@ -88,30 +88,30 @@ def set_height(figure: Figure, height: float) -> None:
         legend.set_bbox_to_anchor((x, EDGE / 2 / height), figure.transFigure)
 
 
-def own_axes(figure: Figure, view: View) -> Any:
+def own_axes(figure: Figure, view: Projection) -> Any:
     """New axes on a figure, of the kind that a view needs; `fit_picture` places them."""
     if view.flat:
         return figure.add_axes((0.1, 0.1, 0.8, 0.8))
     return figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
 
 
-def picture_height(view: View, box: Box, width: float) -> float:
+def picture_height(view: Projection, box: Box, width: float) -> float:
     """The height [inch] of a picture with its labels that is so wide [inch] with them."""
-    left, right, below, above = beside(view)
+    left, right, below, above = margins(view)
     wide, tall = seen_size(view, box)
     inner = width - left - right
     return float(np.clip(inner * tall / (wide or 1.0), LOWEST * inner, HIGHEST * inner) + below + above)
 
 
-def fit_picture(space: Space, box: Box, room: Rectangle, *, bare: bool = False) -> None:
+def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = False) -> None:
     """Places axes on the page so that their box and its labels fill a rectangle; `bare`: without labels."""
-    left, right, below, above = (0.1, 0.1, 0.1, 0.1) if bare else beside(space.view)
+    left, right, below, above = (0.1, 0.1, 0.1, 0.1) if bare else margins(space.view)
     inner = (room[0] + left, room[1] + below, room[2] - left - right, room[3] - below - above)
     fit(space, box, inner)
     space.axes.apply_aspect()
 
 
-def prepare(space: Space, frame: Skeleton, room: Rectangle) -> None:
+def prepare(space: ViewAxes, frame: Skeleton, room: Rectangle) -> None:
     """Limits, place on the page and frame of the axes, for all that a picture of a frame shows."""
     box = box_of(frame, space.view)
     set_limits(space, box)
@@ -119,7 +119,7 @@ def prepare(space: Space, frame: Skeleton, room: Rectangle) -> None:
     draw_box(space, frame, box)
 
 
-def prepare_given(space: Space, frame: Skeleton) -> None:
+def prepare_given(space: ViewAxes, frame: Skeleton) -> None:
     """The same for the caller's axes, which keep their place."""
     box = box_of(frame, space.view)
     set_limits(space, box)
@@ -127,7 +127,9 @@ def prepare_given(space: Space, frame: Skeleton) -> None:
     draw_box(space, frame, box)
 
 
-def prepare_box(space: Space, box: Box, unit: str, room: Rectangle | None, *, letters: str = "xyz") -> None:
+def prepare_box(
+    space: ViewAxes, box: Box, unit: str, room: Rectangle | None, *, letters: str = "xyz"
+) -> None:
     """The same for a box of any places; the caller's axes, which keep their place, have no `room`."""
     set_limits(space, box)
     if room is None:
@@ -137,7 +139,7 @@ def prepare_box(space: Space, box: Box, unit: str, room: Rectangle | None, *, le
     draw_frame(space, box, unit, letters=letters)
 
 
-def fill_given(space: Space, box: Box) -> None:
+def fill_given(space: ViewAxes, box: Box) -> None:
     """Makes the box as large as the caller's axes can hold with its labels."""
     axes, view = space.axes, space.view
     axes.apply_aspect()
@@ -149,9 +151,9 @@ def fill_given(space: Space, box: Box) -> None:
 
 
 def place_picture(
-    figure: Figure, places: Floats, room: Rectangle, unit: str, view: View, *, letters: str = "xyz"
-) -> Space:
+    figure: Figure, places: Floats, room: Rectangle, unit: str, view: Projection, *, letters: str = "xyz"
+) -> ViewAxes:
     """New axes that show places (n, 3) in a rectangle of the page; `letters` name the axes of space."""
-    space = Space(own_axes(figure, view), view)
+    space = ViewAxes(own_axes(figure, view), view)
     prepare_box(space, box_round(places, view), unit, room, letters=letters)
     return space

@@ -32,7 +32,7 @@ from sevenbar.drawing.page import (
     set_height,
     write_title,
 )
-from sevenbar.drawing.space import Space, box_round, draw_frame, set_limits
+from sevenbar.drawing.space import ViewAxes, box_round, draw_frame, set_limits
 from sevenbar.drawing.style import (
     ACCELERATION,
     INK,
@@ -44,7 +44,7 @@ from sevenbar.drawing.style import (
     styled,
 )
 from sevenbar.drawing.ticks import DegreeLocator
-from sevenbar.drawing.view import Asked, View, view_of
+from sevenbar.drawing.view import Asked, Projection, view_of
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits import Circuit, Integers, Trace
 from sevenbar.kinematics.motion import Motion, chosen_circuit
@@ -113,15 +113,15 @@ def point_path(
     with styled(style):
         given = None if ax is None else given_axes(ax, len(parts), "one for each part")
         first = next((axes for axes, part in zip(given or (), parts, strict=False) if part != "speed"), None)
-        looked = view_of(view, motion.linkage, seen, first)
-        box = box_round(seen, looked)
+        seen_as = view_of(view, motion.linkage, seen, first)
+        box = box_round(seen, seen_as)
         unit = motion.linkage.length_unit
         if given is not None:
             for axes, part in zip(given, parts, strict=True):
                 if part == "speed":
                     _speed(axes, motion, chosen, trace)
                 else:
-                    space = Space(axes, looked)
+                    space = ViewAxes(axes, seen_as)
                     set_limits(space, box)
                     fill_given(space, box)
                     draw_frame(space, box, unit)
@@ -137,14 +137,14 @@ def point_path(
         below = PANEL * letters() / 9.0 if "speed" in parts else 0.0
         across = width / max(len(pictures), 1)
         if figsize is None:
-            height = top + below + (picture_height(looked, box, across) + line if pictures else 0.0)
+            height = top + below + (picture_height(seen_as, box, across) + line if pictures else 0.0)
             set_height(figure, height)
         elif pictures:
             below = min(below, 0.35 * height)
         else:
             below = height - top
         for place, part in enumerate(pictures):
-            space = Space(own_axes(figure, looked), looked)
+            space = ViewAxes(own_axes(figure, seen_as), seen_as)
             room: Rectangle = (place * across, below, across, height - top - line - below)
             set_limits(space, box)
             fit_picture(space, box, room)
@@ -170,13 +170,13 @@ def _greatest(circuit: Circuit, largest: float, unit: str, part: str) -> str:
     return f"at most {amount_text(largest, unit, '/s' if part == 'velocity' else '/s²')}"
 
 
-def _arrows(space: Space, places: Floats, arrows: tuple[Integers, Floats, float], part: str) -> None:
+def _arrows(space: ViewAxes, places: Floats, arrows: tuple[Integers, Floats, float], part: str) -> None:
     """The path, and one of its rates as arrows on it."""
     space.line(places, color=INK, lw=1.3, zorder=3)
     rows, ways, _ = arrows
     if not len(rows):
         return
-    view: View = space.view
+    view: Projection = space.view
     colour = VELOCITY if part == "velocity" else ACCELERATION
     start, end = places[rows], places[rows] + ways
     strokes = [np.stack(pair) for pair in zip(start, end, strict=True)]

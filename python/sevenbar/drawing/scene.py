@@ -12,9 +12,9 @@ from matplotlib.patheffects import Normal, withStroke
 from sevenbar.arrays import Floats
 from sevenbar.drawing.names import amount_text, shown_name
 from sevenbar.drawing.skeleton import DrawnSphere, Skeleton
-from sevenbar.drawing.space import Box, Space, box_round, draw_axes, draw_frame
+from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_axes, draw_frame
 from sevenbar.drawing.style import COUPLER, GROUND, INPUT, JOINT, OUTPUT, PATH, POINT_COLOURS, paler, stroke
-from sevenbar.drawing.view import View, wide_view
+from sevenbar.drawing.view import Projection, wide_view
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.rigid import perpendicular, unit
@@ -45,7 +45,7 @@ def shown_places(frame: Skeleton) -> Floats:
     return np.concatenate([*places, *(plate for plate, _ in _feet(frame))])
 
 
-def stage(space: Space, frame: Skeleton, ends: tuple[str, str], *, around: Skeleton | None = None) -> None:
+def stage(space: ViewAxes, frame: Skeleton, ends: tuple[str, str], *, around: Skeleton | None = None) -> None:
     """Draws what stands still: the paths, the sphere, rails and ground.
 
     `ends` are the columns of input and output. The frame of the axes is drawn by `box_of`, before or after.
@@ -72,11 +72,11 @@ def stage(space: Space, frame: Skeleton, ends: tuple[str, str], *, around: Skele
         space.line(stem, color=GROUND, lw=2.2, zorder=2.3)
 
 
-def box_of(frame: Skeleton, view: View) -> Box:
+def box_of(frame: Skeleton, view: Projection) -> Box:
     """What shows all of a frame in a view."""
     outline, sphere = None, frame.sphere
     if sphere is not None and not view.flat:
-        # a disc as it is seen, the ends of the axes, and what stands out of it
+        # a disc as it is seen, the ends of the axes, and what is outside it
         turns = np.linspace(0, math.tau, PLACES)
         disc = np.stack([np.cos(turns), np.sin(turns)], axis=1) @ view.screen
         ways = sphere.radius * np.concatenate([disc, LETTERED * np.eye(3)])
@@ -85,7 +85,7 @@ def box_of(frame: Skeleton, view: View) -> Box:
     return box_round(shown_places(frame), view, outline)
 
 
-def draw_box(space: Space, frame: Skeleton, box: Box) -> None:
+def draw_box(space: ViewAxes, frame: Skeleton, box: Box) -> None:
     """Draws the frame of the axes with their names and units, once they have their place on the page."""
     sphere = frame.sphere
     if sphere is not None and not space.view.flat:
@@ -124,7 +124,7 @@ def _feet(frame: Skeleton) -> list[tuple[Floats, list[Floats]]]:
     return feet
 
 
-def _flat_feet(space: Space, frame: Skeleton, rails: dict[int, Floats]) -> None:
+def _flat_feet(space: ViewAxes, frame: Skeleton, rails: dict[int, Floats]) -> None:
     """The ground of a planar loop, as it is drawn on paper: triangles under hinges, hatches along rails."""
     pose, size = frame.pose(0), frame.span
     right, up = space.view.screen
@@ -152,7 +152,7 @@ def _flat_feet(space: Space, frame: Skeleton, rails: dict[int, Floats]) -> None:
         _hatch(space, line, right, down, size)
 
 
-def _hatch(space: Space, line: Floats, along: Floats, side: Floats, size: float) -> None:
+def _hatch(space: ViewAxes, line: Floats, along: Floats, side: Floats, size: float) -> None:
     """Short strokes behind a line that stands for the ground."""
     length = float(np.linalg.norm(line[1] - line[0]))
     count = max(4, round(length / (0.7 * HATCH * size)))
@@ -162,7 +162,7 @@ def _hatch(space: Space, line: Floats, along: Floats, side: Floats, size: float)
     space.strokes([np.stack([foot, foot + stroke_]) for foot in feet], GROUND, 0.8, 2.2)
 
 
-def _draw_sphere(space: Space, sphere: DrawnSphere) -> None:
+def _draw_sphere(space: ViewAxes, sphere: DrawnSphere) -> None:
     """The sphere of a spherical loop: its outline, and the front of its meridians and parallels."""
     view = space.view
     turns = np.linspace(0, math.tau, PLACES)
@@ -217,7 +217,7 @@ def link_colours(linkage: Loop, ends: tuple[str, str]) -> tuple[list[str], list[
 
 
 def bars(
-    space: Space, frame: Skeleton, ends: tuple[str, str], *, ghost: bool = False, scale: float = 1.0
+    space: ViewAxes, frame: Skeleton, ends: tuple[str, str], *, ghost: bool = False, scale: float = 1.0
 ) -> Bars:
     """New artists for one pose, each with the places it joins: links, joints, points; `put` moves them.
 
@@ -294,13 +294,13 @@ def _mark(word: str, colour: str, scale: float = 1.0) -> dict[str, Any]:
     }[word]
 
 
-def put(space: Space, made: Bars, pose: Floats) -> None:
+def put(space: ViewAxes, made: Bars, pose: Floats) -> None:
     """Moves the artists of `bars` to a pose, places (k, 3)."""
     for artist, places in made:
         space.put(artist, pose[list(places)])
 
 
-def keys(frame: Skeleton, ends: tuple[str, str], seen: View) -> list[Line2D]:
+def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2D]:
     """The legend's entries: the links, the kinds of joints, and the paths where there are several poses."""
     colours, _ = link_colours(frame.linkage, ends)
     links = [(INPUT, f"input: {shown_name(ends[0], 24)}"), (OUTPUT, f"output: {shown_name(ends[1], 24)}")]

@@ -20,7 +20,7 @@ from mpl_toolkits.mplot3d.art3d import Line3D, Line3DCollection, Poly3DCollectio
 from sevenbar.arrays import Floats
 from sevenbar.drawing import style
 from sevenbar.drawing.style import QUIET, stroke
-from sevenbar.drawing.view import View
+from sevenbar.drawing.view import Projection
 
 #: The thinnest side of the drawn box, as a share of its longest.
 THINNEST_BOX = 0.4
@@ -36,10 +36,10 @@ OFF, BEYOND = 4.0, 2.0
 PANE, EDGE, GRID = "#f3f3f5", "#9a9a9a", "#dedede"
 
 
-class Space:
+class ViewAxes:
     """Axes of matplotlib and the view they show; what is drawn is given by places (n, 3) [length]."""
 
-    def __init__(self, axes: Any, view: View) -> None:
+    def __init__(self, axes: Any, view: Projection) -> None:
         self.axes, self.view = axes, view
         #: boxes of texts [pixels] that others keep off
         self.taken: list[Bbox] = []
@@ -142,7 +142,7 @@ class Box:
     outline: Floats
 
 
-def box_round(places: Floats, view: View, outline: Floats | None = None) -> Box:
+def box_round(places: Floats, view: Projection, outline: Floats | None = None) -> Box:
     """The box that shows places (n, 3) in a view."""
     known = places[np.isfinite(places).all(axis=1)]
     seen = view.seen(known) if view.flat else known
@@ -158,7 +158,7 @@ def box_round(places: Floats, view: View, outline: Floats | None = None) -> Box:
     return Box(low, high, outline)
 
 
-def set_limits(space: Space, box: Box) -> None:
+def set_limits(space: ViewAxes, box: Box) -> None:
     """Gives the axes these limits, a length unit as long in all directions."""
     axes, view, low, high = space.axes, space.view, box.low, box.high
     if view.flat:
@@ -180,13 +180,13 @@ def corners_of(low: Floats, high: Floats) -> Floats:
     return np.array([[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)])
 
 
-def seen_size(view: View, box: Box) -> tuple[float, float]:
+def seen_size(view: Projection, box: Box) -> tuple[float, float]:
     """Width and height [length] at which a box is seen."""
     width, height = box.high - box.low if view.flat else np.ptp(box.outline @ view.screen.T, axis=0)
     return float(width), float(height)
 
 
-def fit(space: Space, box: Box, room: tuple[float, float, float, float]) -> None:
+def fit(space: ViewAxes, box: Box, room: tuple[float, float, float, float]) -> None:
     """Places the axes so that the box fills a rectangle of the page: left, bottom, width, height [inch]."""
     figure, axes = space.figure, space.axes
     page = np.array(figure.get_size_inches())
@@ -205,7 +205,7 @@ def fit(space: Space, box: Box, room: tuple[float, float, float, float]) -> None
     axes.apply_aspect()
 
 
-def draw_frame(space: Space, box: Box, unit: str, *, letters: str = "xyz") -> None:
+def draw_frame(space: ViewAxes, box: Box, unit: str, *, letters: str = "xyz") -> None:
     """The box behind what is drawn: panes, grid, numbers and names of the axes, without collisions."""
     axes, view, low, high = space.axes, space.view, box.low, box.high
     names = [f"{letter} [{unit}]" if unit else letter for letter in letters]
@@ -258,7 +258,7 @@ def draw_frame(space: Space, box: Box, unit: str, *, letters: str = "xyz") -> No
         _keep_word(space, names[axis], place, out, away, renderer, size=style.letters(), needed=True)
 
 
-def draw_axes(space: Space, centre: Floats, start: float, end: float) -> None:
+def draw_axes(space: ViewAxes, centre: Floats, start: float, end: float) -> None:
     """Instead of a box: the directions x, y, z from a centre, drawn from one distance to another [length]."""
     space.axes.set(xlabel="x", ylabel="y", zlabel="z")
     renderer = measuring(space.figure)
@@ -274,7 +274,7 @@ def draw_axes(space: Space, centre: Floats, start: float, end: float) -> None:
         _keep_word(space, letter, tip, out / length, OFF / 2, renderer, size=style.letters(), needed=True)
 
 
-def _edge(space: Space, axis: int, back: Floats, front: Floats) -> tuple[Floats, Floats]:
+def _edge(space: ViewAxes, axis: int, back: Floats, front: Floats) -> tuple[Floats, Floats]:
     """The edge of the box that has an axis' numbers: the lowest on the outline, or that at the left."""
     others = [k for k in range(3) if k != axis]
     found = []
@@ -288,7 +288,7 @@ def _edge(space: Space, axis: int, back: Floats, front: Floats) -> tuple[Floats,
     return min(found, key=lambda one: one[0])[1]
 
 
-def _panes(space: Space, back: Floats, front: Floats, ticks: list[list[float]]) -> None:
+def _panes(space: ViewAxes, back: Floats, front: Floats, ticks: list[list[float]]) -> None:
     """The three faces of the box behind what is drawn, with lines at the ticks."""
     grid = []
     for axis in range(3):
@@ -315,7 +315,7 @@ def _numbers(values: Sequence[float]) -> list[str]:
 
 
 def _keep_word(
-    space: Space, text: str, place: Floats, out: Floats, off: float, renderer: RendererAgg, *, size: float,
+    space: ViewAxes, text: str, place: Floats, out: Floats, off: float, renderer: RendererAgg, *, size: float,
     needed: bool = False,
 ) -> float:  # fmt: skip
     """Writes a word at a place, outward; leaves it out where it met another, unless `needed`.

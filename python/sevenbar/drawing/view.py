@@ -15,7 +15,7 @@ from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.plane_and_sphere import plane_of
 from sevenbar.kinematics.rigid import cross
 
-#: What people ask for: a name, or elevation and azimuth [deg].
+#: A view as it is requested: a name, or elevation and azimuth [deg].
 Asked = str | Sequence[float] | None
 
 #: Views along an axis: the axes to the right and up, by their numbers.
@@ -30,7 +30,7 @@ ELEVATIONS, AZIMUTHS = (20.0, 30.0, 45.0), (25.0, 45.0, 65.0)
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class Projection:
     """The directions (2, 3) seen as right and up, and what the drawn coordinates are counted from (3,).
 
     `flat`: drawn as x-y figure, whose axes have the names `letters`; else in three dimensions, seen from
@@ -47,7 +47,7 @@ class View:
 
     @property
     def towards(self) -> Floats:
-        """The direction (3,) towards whoever looks."""
+        """The direction (3,) from the linkage to the reader."""
         return np.asarray(cross(self.screen[0], self.screen[1]))
 
     def seen(self, places: Floats) -> Floats:
@@ -55,8 +55,8 @@ class View:
         return (places - self.origin) @ self.screen.T
 
 
-def view_of(asked: Asked, loop: Loop, places: Floats, axes: Any = None) -> View:
-    """The view that was asked for; of a planar loop in its plane, else one that shows places (n, 3) well.
+def view_of(asked: Asked, loop: Loop, places: Floats, axes: Any = None) -> Projection:
+    """The requested view; without one of a planar loop in its plane, else one that shows places (n, 3) well.
 
     `axes` are those of the caller, if any: three-dimensional ones show no flat view, flat ones no other.
     Raises `RequestError` for a view that does not exist, and where the axes cannot show it.
@@ -81,7 +81,7 @@ def view_of(asked: Asked, loop: Loop, places: Floats, axes: Any = None) -> View:
 
 
 def check_view(asked: Asked, key: str = "view") -> str | tuple[float, float] | None:
-    """A view as it is asked for, checked; raises `RequestError` for one that does not exist."""
+    """A requested view, checked; raises `RequestError` for one that does not exist."""
     if asked is None or (isinstance(asked, str) and asked in NAMED):
         return asked
     if not isinstance(asked, str):
@@ -98,7 +98,7 @@ def check_view(asked: Asked, key: str = "view") -> str | tuple[float, float] | N
     )
 
 
-def _view(asked: Asked, loop: Loop, places: Floats) -> View:
+def _view(asked: Asked, loop: Loop, places: Floats) -> Projection:
     chosen = check_view(asked)
     if chosen == "plane":
         plane = plane_of(loop)
@@ -108,14 +108,16 @@ def _view(asked: Asked, loop: Loop, places: Floats) -> View:
         named = _letter(plane.x), _letter(plane.y)
         known = all(named)
         letters = named if known else ("x in the plane", "y in the plane")
-        return View(screen, np.zeros(3) if known else plane.origin, flat=True, letters=letters, planar=True)
+        return Projection(
+            screen, np.zeros(3) if known else plane.origin, flat=True, letters=letters, planar=True
+        )
     if isinstance(chosen, str) and chosen in ALONG:
         right, up = ALONG[chosen]
-        return View(np.eye(3)[[right, up]], np.zeros(3), flat=True, letters=(chosen[0], chosen[1]))
+        return Projection(np.eye(3)[[right, up]], np.zeros(3), flat=True, letters=(chosen[0], chosen[1]))
     angles = ISOMETRIC if chosen == "iso" else chosen
     elevation, azimuth = wide_view(places) if angles is None or isinstance(angles, str) else angles
     screen = directions(elevation, azimuth)
-    return View(screen, np.zeros(3), flat=False, elevation=elevation, azimuth=azimuth)
+    return Projection(screen, np.zeros(3), flat=False, elevation=elevation, azimuth=azimuth)
 
 
 def _letter(way: Floats) -> str:

@@ -126,7 +126,7 @@ def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> N
     top, *below = column
     name = word(ends, quantity)
     # with several columns the quantity must stand at each
-    top.set_ylabel(f"{'output ' if quantity == 'angle' else ''}{name} [{unit(ends, quantity)}]")
+    top.set_ylabel(quantity_label(ends.output, name, unit(ends, quantity)))
     for axes, text in zip(below, differences, strict=True):
         axes.set_ylabel(f"{text} [{unit(ends, quantity)}]")
         axes.yaxis.set_major_locator(MaxNLocator(4))

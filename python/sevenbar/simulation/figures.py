@@ -73,6 +73,8 @@ def joints_figure(run: Simulation) -> Figure:
                 own, other = run.theory.q[:, column], run.engine.q[:, column]
                 _compared(left, run, convert(own), convert(other), colour)
                 _logarithmic(right, run, np.abs(other - own), colour, shown_name(name, 20))
+            if kind == "turn":
+                left.yaxis.set_major_locator(DegreeLocator(9))
             left.set_ylabel(f"{'turns' if kind == 'turn' else 'slides'} [{shown}]")
             right.set_ylabel(f"size of the difference [{unit}]")
         _finish(figure, run)

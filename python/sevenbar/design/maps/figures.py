@@ -354,7 +354,7 @@ def _facts(of: Map, heights: Heights | None) -> list[str]:
     if heights is not None:
         unit = _suffix(heights.unit)
         value = "none" if heights.here is None else f"{heights.here:.5g}{unit}"
-        lines.append(f"{heights.measure.name} = {value}")
+        lines.append(f"{heights.measure.title} = {value}")
     changes = [s for s in design.steps if s.value is not None and s.kind is not None]
     if changes:
         lines += ["", "changes at"]
