@@ -23,6 +23,7 @@ LINKAGES = (
     "sarrus",
     "screw_drill",
     "six_bar",
+    "swash_plate",
 )
 
 #: Part of the size by which dimensions are changed for differences, and what these are good for.
@@ -65,7 +66,8 @@ def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "link"),
-    [("rssr", 2), ("seven_r", 4), ("planar_4r", 2), ("rsur", 2), ("rssp", 2), ("six_bar", 3)],
+    [("rssr", 2), ("seven_r", 4), ("planar_4r", 2), ("rsur", 2), ("rssp", 2), ("six_bar", 3)]
+    + [("swash_plate", link) for link in (1, 2)],
 )
 def test_derivatives_by_dimensions_are_those_of_linkages_written_with_other_dimensions(name, link):
     size = sb.load(name).motion(12).circuits[0].size

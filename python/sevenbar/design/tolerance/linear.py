@@ -82,8 +82,8 @@ class Linear:
     @property
     def held(self) -> Held:
         """The dimensions without a tolerance."""
-        told = zip(self.found.dimensions, self.tolerances.widths, strict=True)
-        return held_of(self.found.draft, [dimension.name for dimension, width in told if width > 0])
+        own = zip(self.found.dimensions, self.tolerances.widths, strict=True)
+        return held_of(self.found.draft, [dimension.name for dimension, width in own if width > 0])
 
     @property
     def greatest(self) -> int:
