@@ -53,6 +53,7 @@ def text(findings: Findings) -> RenderableType:
     facts.add("errors", f"independent, {linear.distribution}{spread}")
     facts.add("worst case", _worst_text(worst))
     facts.add("", _corner_text(worst))
+    facts.add("", _tried_text(worst))
     row = int(np.argmax(linear.deviation))
     three = 3 * float(plain(linear, linear.deviation)[row])
     facts.add(
@@ -100,6 +101,10 @@ def as_dict(findings: Findings) -> dict[str, Any]:
             "linear": float(linear.worst[worst.at]),
             "at_input": float(linear.input[worst.at]),
             "corner": worst.corner,
+            "corner_low": worst.corner_low,
+            "corners": worst.corners,
+            "corners_tried": worst.tried,
+            "corners_that_do_not_close": worst.open,
             "exact_high": float(worst.high[worst.at]),
             "exact_low": float(worst.low[worst.at]),
         },
@@ -224,10 +229,24 @@ def _corner_text(worst: WorstCase) -> str:
     design = ", ".join(named) + (f" and {more} more" if more else "")
     high, low = (float(plain(linear, side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
-        return f"the corner design ({design}) or its opposite does not close there, so this is no bound"
+        return (
+            f"{worst.open} of the {worst.tried} corner designs tried, one with {design}, do not close there, "
+            "so this is no bound"
+        )
     share = 100 * worst.difference
     beside = f"{abs(share):.2g} % {'more' if share > 0 else 'less'} than linear"
-    return f"exactly {high:+.4g} with {design}; {low:+.4g} with the opposite errors: {beside}"
+    other = "the opposite errors" if worst.opposite else "other ends"
+    return f"exactly {high:+.4g} with {design}; {low:+.4g} with {other}: {beside}"
+
+
+def _tried_text(worst: WorstCase) -> str:
+    """Which corner designs were computed."""
+    if worst.tried == worst.corners:
+        return f"of all {worst.corners} designs with every dimension at an end of its tolerance"
+    return (
+        f"of the {worst.tried} designs that the derivatives name; the other {worst.corners - worst.tried:,} "
+        "with every dimension at an end of its tolerance were not tried"
+    )
 
 
 def _samples_text(exact: MonteCarlo) -> str:
