@@ -129,7 +129,7 @@ def least_acceleration_point(
 
     `box` is ((low, high), (low, high), (low, high)) [length] in the coordinates in which points are written:
     (u, v, w) in Denavit-Hartenberg rows, the link's frame for `[rssr]`, the drawn pose for drawn joints.
-    `branch` is the pass of a circuit that rocks, which needs a law.
+    `branch` is the pass of a circuit that rocks, which needs a law. `least_point` has other rates and means.
 
     Raises `RequestError` for a link, box or circuit that does not fit, `MissingExtraError` without Clarabel.
 
@@ -139,40 +139,6 @@ def least_acceleration_point(
         (77.183066, True)
     """
     return least_point(motion, link, box, of="acceleration", circuit=circuit, branch=branch)
-
-
-def least_velocity_point(
-    motion: Motion, link: int, box: npt.ArrayLike, *, circuit: int = 0, branch: int = 0
-) -> LeastPoint:
-    """The point whose greatest speed over the cycle is least; as `least_acceleration_point`."""
-    return least_point(motion, link, box, of="velocity", circuit=circuit, branch=branch)
-
-
-def least_jerk_point(
-    motion: Motion, link: int, box: npt.ArrayLike, *, circuit: int = 0, branch: int = 0
-) -> LeastPoint:
-    """The point whose greatest jerk over the cycle is least; as `least_acceleration_point`."""
-    return least_point(motion, link, box, of="jerk", circuit=circuit, branch=branch)
-
-
-def least_rms_point(
-    motion: Motion,
-    link: int,
-    box: npt.ArrayLike,
-    *,
-    of: Rate = "acceleration",
-    circuit: int = 0,
-    branch: int = 0,
-) -> LeastPoint:
-    """The point with the least root mean square by time of a rate; as `least_acceleration_point`.
-
-    >>> import sevenbar as sb
-    >>> motion = sb.load("seven_r").motion()
-    >>> box = [(-200, 200)] * 3
-    >>> bool(least_rms_point(motion, 4, box).value < least_acceleration_point(motion, 4, box).value)
-    True
-    """
-    return least_point(motion, link, box, of=of, measure="rms", circuit=circuit, branch=branch)
 
 
 def least_point(
@@ -186,9 +152,17 @@ def least_point(
     branch: int = 0,
     progress: Progress = silent,
 ) -> LeastPoint:
-    """The point of a box with the least greatest, or least root mean square, of a rate.
+    """The point of a box with the least greatest, or least root mean square by time, of a rate.
 
-    `progress` is called with (rounds done, at most how many, the best so far).
+    `progress` is called with (rounds done, at most how many, the best so far); the rest is as for
+    `least_acceleration_point`.
+
+        >>> import sevenbar as sb
+        >>> motion = sb.load("seven_r").motion()
+        >>> box = [(-200, 200)] * 3
+        >>> mean, greatest = (least_point(motion, 4, box, measure=word).value for word in ("rms", "greatest"))
+        >>> bool(mean < greatest)
+        True
     """
     if of not in ORDERS[1:]:
         raise RequestError(f"of: {shown(of)} is not offered; give velocity, acceleration or jerk")
