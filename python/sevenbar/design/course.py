@@ -7,7 +7,7 @@ from collections.abc import Callable
 #: Takes the steps done, of how many (0: not known), and the best so far in words.
 Progress = Callable[[int, int, str], object]
 
-#: What is said of a search that Ctrl+C ended, of so many steps.
+#: The remark about a search that Ctrl+C ended.
 UNFINISHED = "stopped after {done} of {total} steps; these are the best so far"
 
 
@@ -15,10 +15,10 @@ def silent(done: int, total: int, best: str) -> None:
     """Reports nothing."""
 
 
-class Course:
+class SearchCourse:
     """The steps of a search as they are done.
 
-    >>> course = Course(2, lambda *told: print(told))
+    >>> course = SearchCourse(2, lambda *step: print(step))
     (0, 2, '')
     >>> course.step("best 0.1 deg")
     (1, 2, 'best 0.1 deg')
@@ -53,5 +53,5 @@ class Course:
 
     @property
     def unfinished(self) -> str:
-        """What is said of a search that ended here."""
+        """The remark about a search that ended here."""
         return UNFINISHED.format(done=self.done, total=self.total)

@@ -123,7 +123,7 @@ def _holds_x(body: ast.AST) -> bool:
 
 
 def _parsed(text: str) -> ast.AST:
-    """A formula that was looked at."""
+    """A formula that was checked."""
     if len(text) > LONGEST:
         raise RequestError(f"y: {len(text)} characters are too long; give a function of at most {LONGEST}")
     # "90deg" is a product, and binds as a number does

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Course, Progress, silent
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import ConeSolution, least_greatest
 from sevenbar.design.points.cycle import ORDERS, Cycle, box_of, cycle_of
@@ -171,7 +171,7 @@ def least_point(
     low, high = box_of(box)
     cycle = cycle_of(motion, link, circuit, branch, order=of)
     refuse_idle_link(motion.linkage, cycle.link, "the motion of a point on it")
-    course = Course(1 if measure == "rms" else MOST_ROUNDS, progress)
+    course = SearchCourse(1 if measure == "rms" else MOST_ROUNDS, progress)
     index, centre, half = ORDERS.index(of), (low + high) / 2, (high - low) / 2
     constant, gradient = cycle.rates.constant[index], cycle.rates.gradient[index]
     around = np.linalg.norm(cycle.rates.of(of, centre), axis=1).max() + np.abs(gradient @ half).max()
@@ -210,7 +210,7 @@ def least_point(
 
 
 def _least_greatest(
-    cycle: Cycle, of: Rate, box: tuple[Floats, Floats], free: Floats, around: float, course: Course
+    cycle: Cycle, of: Rate, box: tuple[Floats, Floats], free: Floats, around: float, course: SearchCourse
 ) -> tuple[Floats, float, float, Floats, Floats, int, ConeSolution]:
     """Point, value, bound, inputs that decide, their weights, rounds, the cones' last solution."""
     index, (low, high) = ORDERS.index(of), box

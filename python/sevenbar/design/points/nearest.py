@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.design.course import Course, Progress, silent
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
@@ -183,7 +183,7 @@ def _untimed(cycle: Cycle, wanted: Floats, low: Floats, high: Floats, progress: 
     grid = np.stack(np.meshgrid(*np.linspace(low, high, STARTS).T, indexing="ij"), axis=-1).reshape(-1, 3)
     starts = np.unique(grid, axis=0)
     course, unit = (
-        Course(len(starts) + min(FOLLOWED, len(starts)), progress),
+        SearchCourse(len(starts) + min(FOLLOWED, len(starts)), progress),
         cycle.motion.linkage.length_unit,
     )
     ends: list[tuple[float, Floats]] = []

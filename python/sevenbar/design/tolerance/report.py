@@ -48,8 +48,8 @@ def text(findings: Findings) -> RenderableType:
     unit = "rad" if found.input_turns else found.linkage.length_unit
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
-    if held := linear.held.text:
-        facts.add("held", held)
+    if linear.held.left_to_the_program:
+        facts.add("held", linear.held.text)
     facts.add("errors", f"independent, {linear.distribution}{spread}")
     facts.add("worst case", _worst_text(worst))
     facts.add("", _corner_text(worst))
@@ -229,10 +229,7 @@ def _corner_text(worst: WorstCase) -> str:
     design = ", ".join(named) + (f" and {more} more" if more else "")
     high, low = (float(plain(linear, side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
-        return (
-            f"{worst.open} of the {worst.tried} corner designs tried, one with {design}, do not close there, "
-            "so this is no bound"
-        )
+        return f"does not close in {worst.open}, one of them with {design}, so this is no bound,"
     share = 100 * worst.difference
     beside = f"{abs(share):.2g} % {'more' if share > 0 else 'less'} than linear"
     other = "the opposite errors" if worst.opposite else "other ends"

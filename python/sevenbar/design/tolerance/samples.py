@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Course, Progress, silent
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
@@ -161,7 +161,7 @@ def monte_carlo(
     gap = np.zeros(changes.shape[1], dtype=bool)
     whole_turn = linear.found.circuit.goes_round
     block = max(1, BLOCK // len(linear.rows))
-    course = Course(len(exact), progress)
+    course = SearchCourse(len(exact), progress)
     for start in range(0, len(exact), block):
         part = slice(start, start + block)
         moved = changes[:, part].T

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Course, Progress, silent
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
@@ -123,7 +123,7 @@ def worst_case(
         given if isinstance(given, Linear) else linear_estimate(of, given, output=output, quantity=quantity)
     )
     changes, corners = corners_of(linear)
-    designs, course = ChangedDesigns(linear), Course(len(changes), progress)
+    designs, course = ChangedDesigns(linear), SearchCourse(len(changes), progress)
     deviations = np.empty((len(changes), len(linear.rows)))
     for start in range(0, len(changes), BLOCK):
         part = slice(start, start + BLOCK)

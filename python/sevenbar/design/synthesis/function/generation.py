@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.course import Course, Progress, silent
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -72,7 +72,7 @@ class Synthesis(Printed):
     seed: int
     #: The wanted function, `None` for another wish.
     wish: Wish | None = None
-    #: What is said of a search that was stopped; empty for one that ended by itself.
+    #: The remark about a search that was stopped; empty for one that ended by itself.
     unfinished: str = ""
 
     def required(self) -> tuple[Candidate, ...]:
@@ -175,7 +175,7 @@ def need_scipy() -> None:
 def _found(
     wish: Wish, limits: Limits, tolerance: float, count: int, seed: int, progress: Progress
 ) -> Synthesis:
-    course = Course(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
+    course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
     rows, zeros = starts(wish, seed)
     fit = Fit(wish, limits)
     chosen = _chosen(fit, rows, zeros, course.total - 1)

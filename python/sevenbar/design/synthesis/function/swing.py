@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Course, Progress, silent
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -172,7 +172,7 @@ def swing_generation(
         raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
     wanted_text = f"swing {math.degrees(swing):g} deg, time ratio {time_ratio:g}"
     wish = _Wish(swing, math.tau * time_ratio / (1 + time_ratio), limits)
-    course = Course(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
+    course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
     chosen, searched = _chosen(wish, course.total - 1, seed)
     course.step()
     kept: list[Candidate] = []

@@ -73,7 +73,7 @@ class Wish:
     zeros: tuple[float, float] | None = None
     #: The ranges of a function; `None` for pairs.
     dials: Dials | None = None
-    #: What may be a mistake in a wish that cannot be met; `None` where nothing looks like one.
+    #: What may be a mistake in a wish that cannot be met; `None` where nothing is.
     hint: str | None = None
 
     @property

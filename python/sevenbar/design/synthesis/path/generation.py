@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.draft import Draft
-from sevenbar.design.course import Course, Progress, silent
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Refusal,
@@ -113,7 +113,7 @@ def generated(
     Ctrl+C ends the search with what it has.
     """
     check_counts(count, starts, seed)
-    course = Course(starts + 1 + (LOOKED_AT + TAKEN) * count, progress)
+    course = SearchCourse(starts + 1 + (LOOKED_AT + TAKEN) * count, progress)
     kept: list[Candidate] = []
     unfinished = ""
     try:
@@ -128,7 +128,7 @@ def generated(
 
 
 def _search(
-    task: PathTask, count: int, starts: int, seed: int, course: Course, kept: list[Candidate]
+    task: PathTask, count: int, starts: int, seed: int, course: SearchCourse, kept: list[Candidate]
 ) -> None:
     """Adds the designs that pass the check to `kept`, one by one; `RequestError` where none does."""
     found = seeds(task, starts, seed, course.step)

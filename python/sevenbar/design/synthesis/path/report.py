@@ -32,7 +32,7 @@ class PathDesigns:
     candidates: Sequence[Candidate]
     source: str
     seed: int
-    #: What is said of a search that was stopped; empty for one that ended by itself.
+    #: The remark about a search that was stopped; empty for one that ended by itself.
     unfinished: str = ""
 
 
@@ -50,7 +50,7 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
         ),
         ("point", f"{task.point.name} on link {task.point.link}"),
         ("varied", f"{count} dimension{'s' * (count != 1)}: {names}"),
-        *([("held", task.held.text)] if task.held.text else []),
+        *([("held", task.held.text)] if task.held.left_to_the_program else []),
         ("ground", "anywhere in space" if task.place else "where the description has it"),
         ("limits", task.limits.text()),
     ]

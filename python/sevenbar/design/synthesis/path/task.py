@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.description.draft import Draft
-from sevenbar.description.held import Held, held_of
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.design.synthesis.path.point import PointLoop
@@ -75,7 +75,7 @@ class PathTask:
         return tuple(self.closure.dimensions[number] for number in self.varied)
 
     @property
-    def held(self) -> Held:
+    def held(self) -> HeldDimensions:
         """What does not change."""
         return held_of(self.draft, [dimension.name for dimension in self.dimensions])
 
