@@ -10,7 +10,7 @@ import typer
 from sevenbar.commands.deliver import check_out, command_line, deliver
 from sevenbar.commands.given import angle, angles, limits_of, numbers
 from sevenbar.commands.options import Figures, Force, Json, figure_formats
-from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.progress import end_of_work, progress_bar
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.expression import IN_DEGREES, calls_in
 from sevenbar.text.units import ANGLES
@@ -95,6 +95,7 @@ def function(
         # a search that found nothing says why
         found.required()
     deliver(found, report, out, json=json, force=force)
+    end_of_work(found.unfinished)
 
 
 def swing(
@@ -127,6 +128,7 @@ def swing(
         # a search that found nothing says why
         found.required()
     deliver(found, report, out, json=json, force=force)
+    end_of_work(found.unfinished)
 
 
 def refuse_degrees_twice(y: str, x: str) -> None:

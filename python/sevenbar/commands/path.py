@@ -21,7 +21,7 @@ from sevenbar.commands.options import (
     figure_formats,
     words,
 )
-from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.progress import end_of_work, progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.ranges import split_named, split_range
@@ -110,6 +110,7 @@ def path(
         json=json,
         force=force,
     )
+    end_of_work(found.unfinished)
 
 
 def missing_point(linkage: Linkage) -> str:

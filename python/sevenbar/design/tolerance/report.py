@@ -26,6 +26,9 @@ from sevenbar.reporting.page import Facts, drive_text, number_table
 #: Dimensions of a corner design that the page names; the JSON has all.
 MOST_NAMED = 8
 
+#: How corner designs are called.
+CORNERS = "designs with every dimension at an end of its tolerance"
+
 #: An effect relative to the greatest that is rounding.
 NO_EFFECT = 1e-9
 
@@ -53,7 +56,8 @@ def text(findings: Findings) -> RenderableType:
     facts.add("errors", f"independent, {linear.distribution}{spread}")
     facts.add("worst case", _worst_text(worst))
     facts.add("", _corner_text(worst))
-    facts.add("", _tried_text(worst))
+    if tried := _tried_text(worst):
+        facts.add("", tried)
     row = int(np.argmax(linear.deviation))
     three = 3 * float(plain(linear, linear.deviation)[row])
     facts.add(
@@ -229,7 +233,10 @@ def _corner_text(worst: WorstCase) -> str:
     design = ", ".join(named) + (f" and {more} more" if more else "")
     high, low = (float(plain(linear, side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
-        return f"does not close in {worst.open}, one of them with {design}, so this is no bound,"
+        return (
+            f"{worst.open} of {worst.tried} {CORNERS} do not close there, one of them with {design}, "
+            "so this is no bound"
+        )
     share = 100 * worst.difference
     beside = f"{abs(share):.2g} % {'more' if share > 0 else 'less'} than linear"
     other = "the opposite errors" if worst.opposite else "other ends"
@@ -237,13 +244,11 @@ def _corner_text(worst: WorstCase) -> str:
 
 
 def _tried_text(worst: WorstCase) -> str:
-    """Which corner designs were computed."""
-    if worst.tried == worst.corners:
-        return f"of all {worst.corners} designs with every dimension at an end of its tolerance"
-    return (
-        f"of the {worst.tried} designs that the derivatives name; the other {worst.corners - worst.tried:,} "
-        "with every dimension at an end of its tolerance were not tried"
-    )
+    """Which corner designs were computed; empty where that is shown already."""
+    if worst.tried < worst.corners:
+        rest = worst.corners - worst.tried
+        return f"of the {worst.tried} {CORNERS} that the derivatives name; the other {rest:,} were not tried"
+    return "" if worst.open else f"of all {worst.corners} {CORNERS}"
 
 
 def _samples_text(exact: MonteCarlo) -> str:
