@@ -267,7 +267,11 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
 
 @pytest.mark.parametrize(
     ("name", "count"),
-    [("text.expression", 3), ("design.synthesis.function.precision", 1), ("design.course", 3)],
+    [
+        ("text.formulas_of_x", 2),
+        ("design.synthesis.function.precision", 1),
+        ("design.course", 3),
+    ],
 )
 def test_examples_in_docstrings_give_what_they_show(name, count):
     module = importlib.import_module(f"sevenbar.{name}")

@@ -10,9 +10,10 @@ import typer
 from sevenbar.commands.deliver import check_out, command_line, deliver
 from sevenbar.commands.given import angle, angles, limits_of, numbers
 from sevenbar.commands.options import Figures, Force, Json, figure_formats
-from sevenbar.commands.progress import end_of_work, progress_bar
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.expression import IN_DEGREES, calls_in
+from sevenbar.text.formulas_of_x import IN_DEGREES, calls_in
 from sevenbar.text.units import ANGLES
 
 if TYPE_CHECKING:

@@ -21,7 +21,8 @@ from sevenbar.commands.options import (
     figure_formats,
     words,
 )
-from sevenbar.commands.progress import end_of_work, progress_bar
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.ranges import split_named, split_range

@@ -79,12 +79,6 @@ def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is writ
     shown.end(erase=False)
 
 
-def end_of_work(unfinished: str) -> None:
-    """Ends a command as Ctrl+C does, once what it had is delivered, where that is `unfinished`."""
-    if unfinished:
-        raise typer.Exit(STOPPED)
-
-
 def _bar(*, rate: bool) -> Progress:
     from rich.console import Console
     from rich.progress import (
