@@ -268,7 +268,6 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
 @pytest.mark.parametrize(
     ("name", "count"),
     [
-        ("text.formulas_of_x", 2),
         ("design.synthesis.function.precision", 1),
         ("design.course", 3),
     ],

@@ -13,7 +13,7 @@ from sevenbar.commands.options import Figures, Force, Json, figure_formats
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.formulas_of_x import IN_DEGREES, calls_in
+from sevenbar.text.expression import IN_DEGREES, calls_in
 from sevenbar.text.units import ANGLES
 
 if TYPE_CHECKING:

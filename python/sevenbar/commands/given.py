@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.joint_text import joint_value
-from sevenbar.text.formulas_of_x import number_of
+from sevenbar.text.expression import number_of
 from sevenbar.text.ranges import Place, split_range, three_numbers
 from sevenbar.text.units import amount, examples_of, sizes_of
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.synthesis.function.precision import FEWEST, FREE_ZEROS_MOST, chebyshev
 from sevenbar.errors import RequestError
-from sevenbar.text.formulas_of_x import greatest_angle
+from sevenbar.text.expression import greatest_angle
 from sevenbar.text.table import read_table
 
 #: Readings over the range at which a fit looks at the error: between them it rises by less than 1% of it.
