@@ -91,7 +91,7 @@ def measure_heights(
         >>> drawn = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": (300, 800)})
         >>> (swing,) = measure_heights(drawn, ["swing"])
         >>> swing.levels
-        (40.0, 60.0, 80.0, 100.0, 120.0, 140.0, 160.0, 180.0, 200.0)
+        (50.0, 100.0, 150.0, 200.0, 250.0)
     """
     chosen = with_contours(measures)
     _check_take(take)
