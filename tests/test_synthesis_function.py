@@ -265,10 +265,16 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
     np.testing.assert_allclose(fit.errors(turned, 1)[0], fit.errors(z, 1)[0], atol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["precision"])
-def test_examples_in_docstrings_give_what_they_show(name):
-    module = importlib.import_module(f"sevenbar.design.synthesis.function.{name}")
-    assert doctest.testmod(module) == (0, 1)
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        ("design.synthesis.function.precision", 1),
+        ("design.course", 3),
+    ],
+)
+def test_examples_in_docstrings_give_what_they_show(name, count):
+    module = importlib.import_module(f"sevenbar.{name}")
+    assert doctest.testmod(module) == (0, count)
 
 
 @pytest.mark.slow

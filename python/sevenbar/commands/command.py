@@ -35,7 +35,10 @@ EXAMPLES = {
         "sevenbar plot rssr --kind curves,point --link 2 --at 500,40,0 --figures svg -o figures",
     ),
     "axes": ("sevenbar axes machine.step -o axes.csv",),
-    "axodes": ("sevenbar axodes rssr --link 2", "sevenbar axodes planar_4r --link 2 --relative-to 1 -o axodes"),
+    "axodes": (
+        "sevenbar axodes rssr --link 2",
+        "sevenbar axodes planar_4r --link 2 --relative-to 1 -o axodes",
+    ),
     "gallery": ("sevenbar gallery", "sevenbar gallery rssr > mine.toml"),
     "studio": ("sevenbar studio seven_r", "sevenbar studio mine.toml --port 9000 --no-open"),
     "simulate": (

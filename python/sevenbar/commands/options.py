@@ -36,6 +36,10 @@ Source = Annotated[
         autocompletion=_known,
     ),
 ]
+Follow = Annotated[
+    list[str] | None,
+    typer.Option(help="A dimension that the file leaves out (L2), to follow from the others; else held."),
+]
 Samples = Annotated[
     int,
     typer.Option(

@@ -11,6 +11,7 @@ from sevenbar.commands.deliver import check_out, command_line, deliver
 from sevenbar.commands.given import limits_of, point_of
 from sevenbar.commands.options import (
     Figures,
+    Follow,
     Force,
     Json,
     PointLink,
@@ -21,7 +22,9 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.ranges import split_named, split_range
 
 
@@ -39,6 +42,7 @@ def path(
         list[str] | None,
         typer.Option(help="Bounds of a dimension, as in L1=100:400 or L1=10:40cm; may be repeated."),
     ] = None,
+    follow: Follow = None,
     place: Annotated[bool, typer.Option("--place", help="The linkage may stand anywhere in space.")] = False,
     timing: Annotated[
         bool, typer.Option("--timing", help="Reach each point at the input that the table has for it.")
@@ -81,7 +85,10 @@ def path(
         raise RequestError("--phase: inputs have no say without --timing; give both, or leave --phase out")
     asked = point_of(point, link, at)
     if asked is None:
-        raise RequestError("--point: missing; give --point NAME, or --link with --at")
+        raise RequestError(
+            f"--point: missing; {missing_point(draft.linkage)}, or a place on a link, as in "
+            "--link 2 --at 300,40,0"
+        )
     task = path_task(
         draft,
         points,
@@ -92,11 +99,25 @@ def path(
         phase=phase,
         place=place,
         limits=limits_of(transmission, size, motion_type, draft.linkage.length_unit),
+        follow=words(follow or []),
     )
     check_counts(designs, starts, seed)
-    with progress_bar("designing") as progress:
+    with progress_bar(f"searching paths of {draft.linkage.name}") as progress:
         found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
-    deliver(PathDesigns(task, found, str(wanted), seed), report, out, json=json, force=force)
+    deliver(
+        PathDesigns(task, found.candidates, str(wanted), seed, found.unfinished),
+        report,
+        out,
+        json=json,
+        force=force,
+    )
+    end_of_work(found.unfinished)
+
+
+def missing_point(linkage: Linkage) -> str:
+    """Which point to give where none is."""
+    names = [point.name for point in linkage.points if point.link < len(linkage.joints)]
+    return f"give --point {' or '.join(names)}" if names else "the file names none, so add one to it"
 
 
 def parsed_bounds(given: list[str]) -> dict[str, tuple[str, str]]:

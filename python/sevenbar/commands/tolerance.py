@@ -11,6 +11,7 @@ import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
+    Follow,
     Force,
     InputJoint,
     Json,
@@ -18,7 +19,9 @@ from sevenbar.commands.options import (
     Source,
     Speed,
     figure_formats,
+    words,
 )
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.units import amount, sizes_of
 
@@ -58,6 +61,7 @@ def tolerance(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    follow: Follow = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for tolerance.json, dimensions.csv, deviation.csv and the figures."),
@@ -83,15 +87,32 @@ def tolerance(
     report = tolerance_report(formats)
     check_out(report, out, force=force)
     found = sensitivities(
-        loaded, circuit=circuit, samples=samples, input=input_joint, output=output, speed=speed
+        loaded,
+        circuit=circuit,
+        samples=samples,
+        input=input_joint,
+        output=output,
+        speed=speed,
+        follow=words(follow or []),
     )
     if wanted is not None:
         error = _wanted(wanted, found.outputs[found.place(of, quantity)].unit)
         linear = tolerances_for(found, error, distribution=distribution, output=of, quantity=quantity)
     else:
         linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
-    exact = monte_carlo(found, linear, count, seed=seed) if count != 0 else None
-    deliver(Findings(linear, worst_case(found, linear), exact), report, out, json=json, force=force)
+    with progress_bar(f"designs within the tolerances of {loaded.name}") as progress:
+        # one bar for both
+        worst = worst_case(found, linear, progress=lambda done, total, _: progress(done, total + count))
+        tried, exact = worst.tried, None
+        if count != 0:
+            exact = monte_carlo(
+                found,
+                linear,
+                count,
+                seed=seed,
+                progress=lambda done, total, _: progress(tried + done, tried + total),
+            )
+    deliver(Findings(linear, worst, exact), report, out, json=json, force=force)
 
 
 def _wanted(text: str, unit: str) -> float:

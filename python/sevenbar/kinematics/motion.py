@@ -171,6 +171,11 @@ class Solvable(Loop, ABC):
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
 
+    @property
+    @abstractmethod
+    def idle_links(self) -> frozenset[int]:
+        """The links that take part in them, counted from 1."""
+
     @cached_property
     @abstractmethod
     def held(self) -> tuple[frozenset[int], list[int], int]:

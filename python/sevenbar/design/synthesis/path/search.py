@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.design.synthesis.path.match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
@@ -63,16 +63,16 @@ class Pass:
         return math.tau * self.circuit.turns if self.closed else 0.0
 
 
-def seeds(task: PathTask, count: int, seed: int, tell: Callable[[int], None] = lambda _: None) -> list[Seed]:
+def seeds(task: PathTask, count: int, seed: int, step: Callable[[], None]) -> list[Seed]:
     """The best matches of the description itself and of `count` starts within the bounds, best first.
 
     A linkage gives one for each of its circuits. Starts are Sobol's points, a quarter of them near the
-    description; `tell` is called with the number done.
+    description; `step` is called after each.
     """
     found: list[Seed] = []
-    for done, varied in enumerate(_starts(task, count, seed)):
-        tell(done)
+    for varied in _starts(task, count, seed):
         found += [one for one in looked_at(task, varied) if math.isfinite(one.error)]
+        step()
     return sorted(found, key=lambda one: one.error)
 
 
@@ -84,16 +84,12 @@ def apart(task: PathTask, found: list[Seed], count: int) -> list[Seed]:
             break
         near = (
             np.abs((one.varied - other.varied) / (task.high - task.low)).max() < SAME
-            and np.abs(_wrapped(one.poses[0] - other.poses[0])).max() < 0.2
+            and np.abs(short_way(one.poses[0] - other.poses[0])).max() < 0.2
             for other in kept
         )
         if not any(near):
             kept.append(one)
     return kept
-
-
-def _wrapped(angles: Floats) -> Floats:
-    return np.asarray((angles + math.pi) % math.tau - math.pi)
 
 
 def _starts(task: PathTask, count: int, seed: int) -> Iterator[Floats]:
