@@ -51,13 +51,6 @@ def unit(ends: Ends, quantity: str) -> str:
     return "deg" if quantity in ("input", "angle") and turns(ends, quantity) else ends.unit(quantity)
 
 
-def word(ends: Ends, quantity: str) -> str:
-    """A quantity of the output by its name."""
-    if quantity == "angle":
-        return "angle" if turns(ends, quantity) else "position"
-    return quantity
-
-
 def comparison_figure(comparison: Comparison) -> Figure:
     """The computed curve with the measured points, and their differences, a column for each quantity."""
     ends = comparison.ends
@@ -67,7 +60,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
             x = shown(ends, "input", comparison.input)
             top, below = grid[:, column]
             curve = shown(ends, quantity, comparison.curve[quantity])
-            top.plot(shown(ends, "input", comparison.curve_input), curve, label="computed", **COMPUTED)
+            top.plot(shown(ends, "input", comparison.curve["input"]), curve, label="computed", **COMPUTED)
             _points(top, x, shown(ends, quantity, comparison.measured[quantity]), "measured")
             _points(below, x, shown(ends, quantity, comparison.difference(quantity)), "difference")
             _labels(grid[:, column], ends, quantity, ["measured minus\ncomputed"])
@@ -122,7 +115,7 @@ def _points(axes: Axes, x: Floats, y: Floats, label: str) -> None:
 
 def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> None:
     top, *below = column
-    name = word(ends, quantity)
+    name = ends.word(quantity)
     # with several columns the quantity must stand at each
     top.set_ylabel(f"{'output ' if quantity == 'angle' else ''}{name} [{unit(ends, quantity)}]")
     for axes, text in zip(below, differences, strict=True):

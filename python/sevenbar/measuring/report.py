@@ -14,10 +14,11 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.measuring.calibrate import Calibration, Parameter
-from sevenbar.measuring.compare import Comparison, per_cent
+from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
-from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns, word
+from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns
 from sevenbar.measuring.measured import Ends
+from sevenbar.measuring.passes import PassFit
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, json_text, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
@@ -48,12 +49,8 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         "measured", f"{comparison.source}, {rows} rows of {', '.join(_words(ends, comparison.outputs))}"
     )
     facts.add("drive", drive)
-    facts.add("explained by", _candidate(chosen.circuit, chosen.branch, chosen.residual), style="bold")
-    others = [
-        _candidate(c.circuit, c.branch, c.residual)
-        for c in comparison.candidates[1:]
-        if (c.circuit, c.branch) != (chosen.circuit, chosen.branch)
-    ]
+    facts.add("explained by", _candidate(chosen), style="bold")
+    others = [_candidate(c) for c in comparison.candidates[1:] if not alike(c, chosen)]
     if others:
         more = len(others) - MOST_CANDIDATES
         tail = f"; {more} more" if more > 0 else ""
@@ -91,7 +88,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
             for side in (calibration.nominal, calibration.computed)
         )
         facts.add(
-            f"rms of the {word(ends, quantity)}",
+            f"rms of the {ends.word(quantity)}",
             f"{before:.4g} before, {after:.4g} after [{ends.unit(quantity)}]",
         )
     count = len(calibration.calibrated)
@@ -144,14 +141,19 @@ def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, An
         "rows": len(comparison.line),
         "circuit": comparison.chosen.circuit,
         "branch": comparison.chosen.branch,
+        "branches": list(comparison.chosen.branches),
         "aligned": list(comparison.aligned),
         "phase": comparison.chosen.phase,
         "offset": comparison.chosen.offset,
-        "candidates": [vars(c) for c in comparison.candidates],
+        "candidates": [_candidate_dict(c) for c in comparison.candidates],
         "table": table,
         "differences": {q: vars(comparison.spread(q)) for q in comparison.outputs},
         "notes": list(comparison.notes),
     }
+
+
+def _candidate_dict(fit: PassFit) -> dict[str, Any]:
+    return {**vars(fit), "branches": list(fit.branches)}
 
 
 def calibration_dict(calibration: Calibration) -> dict[str, Any]:
@@ -304,11 +306,11 @@ def write_calibration(
 
 
 def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
-    return [word(ends, quantity) for quantity in quantities]
+    return [ends.word(quantity) for quantity in quantities]
 
 
-def _candidate(circuit: int, branch: int, residual: float) -> str:
-    return f"circuit {circuit}, branch {branch} (residual {per_cent(residual)})"
+def _candidate(fit: PassFit) -> str:
+    return f"{name_of(fit)} (residual {per_cent(fit.residual)})"
 
 
 def _value(ends: Ends, quantity: str, value: float) -> str:
@@ -321,7 +323,7 @@ def _extents_table(extents: Sequence[Extent], ends: Ends) -> Table:
     """The paper's Table 1, a line for each of its three values of each quantity."""
     rows = (
         (
-            f"{word(ends, extent.quantity)} {name} [{ends.unit(extent.quantity)}]",
+            f"{ends.word(extent.quantity)} {name} [{ends.unit(extent.quantity)}]",
             f"{computed:.6g}",
             f"{measured:.6g}",
             f"{error:+.4g}",
@@ -337,7 +339,7 @@ def _spread_table(comparison: Comparison) -> Table:
     ends = comparison.ends
     rows = (
         (
-            f"{word(ends, quantity)} [{ends.unit(quantity)}]",
+            f"{ends.word(quantity)} [{ends.unit(quantity)}]",
             f"{spread.greatest:+.4g}",
             str(spread.line),
             f"{spread.rms:.4g}",
@@ -401,7 +403,7 @@ def _rows(ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, A
     columns = {"line": line, f"input_{_suffix(ends.unit('input'))}": inputs}
     for quantity in next(iter(sides.values())):
         for side, values in sides.items():
-            name = f"{word(ends, quantity)}_{side}_{_suffix(ends.unit(quantity))}"
+            name = f"{ends.word(quantity)}_{side}_{_suffix(ends.unit(quantity))}"
             columns[name] = values[quantity]
     return columns
 
