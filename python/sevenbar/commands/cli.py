@@ -31,9 +31,9 @@ from sevenbar.commands.options import (
     Source,
     Speed,
     figure_formats,
-    progress_bar,
     words,
 )
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.reporting.figures import KINDS, Places, write_figures
 from sevenbar.reporting.folder import check_targets

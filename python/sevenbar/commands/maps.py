@@ -16,9 +16,9 @@ from sevenbar.commands.options import (
     Json,
     Source,
     figure_formats,
-    progress_bar,
     words,
 )
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
 
 if TYPE_CHECKING:

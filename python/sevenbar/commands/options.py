@@ -1,9 +1,7 @@
-"""What the commands share: arguments and options, and how progress is shown."""
+"""What the commands share: arguments and options."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -62,48 +60,3 @@ def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]
     if out is None:
         raise RequestError("--figures: a folder for them is missing; give --out, as in '--out report'")
     return endings
-
-
-@contextmanager
-def progress_bar(title: str, *, rate: bool = False) -> Iterator[Callable[[int, int], None]]:
-    """A bar on the error stream, so that what is printed can be piped on; with `rate` how many a second.
-
-    It is shown when the first progress is told, so that a refusal stands alone and short work has none.
-    """
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        ProgressColumn,
-        Task,
-        TaskID,
-        TextColumn,
-        TimeRemainingColumn,
-    )
-    from rich.text import Text
-
-    class Rate(ProgressColumn):
-        """Steps a second."""
-
-        def render(self, task: Task) -> Text:
-            speed = task.finished_speed or task.speed
-            return Text("" if speed is None else f"{speed:,.0f}/s")
-
-    columns = [TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()]
-    bar = Progress(*columns, *([Rate()] if rate else []), TimeRemainingColumn(), console=Console(stderr=True))
-    task: TaskID | None = None
-
-    def progress(done: int, total: int) -> None:
-        nonlocal task
-        if task is None:
-            bar.start()
-            # what was there already is no rate
-            task = bar.add_task(title, total=total, completed=done)
-        bar.update(task, completed=done, total=total)
-
-    try:
-        yield progress
-    finally:
-        if task is not None:
-            bar.stop()

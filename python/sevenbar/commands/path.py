@@ -18,9 +18,9 @@ from sevenbar.commands.options import (
     PointPlace,
     Source,
     figure_formats,
-    progress_bar,
     words,
 )
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.text.ranges import split_named, split_range
 

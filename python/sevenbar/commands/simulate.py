@@ -18,8 +18,8 @@ from sevenbar.commands.options import (
     Source,
     Speed,
     figure_formats,
-    progress_bar,
 )
+from sevenbar.commands.progress import progress_bar
 
 
 def simulate(

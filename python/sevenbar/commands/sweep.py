@@ -12,7 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.commands.deliver import deliver
-from sevenbar.commands.options import InputJoint, Json, OutputJoint, Source, progress_bar, words
+from sevenbar.commands.options import InputJoint, Json, OutputJoint, Source, words
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
 
@@ -90,16 +91,14 @@ def sweep(
             f"(at most {MOST_WITHOUT_FOLDER}), so give a folder, as in --out sweep"
         )
     finished = out is not None and is_finished(out)
-    try:
-        with progress_bar(f"sweep of {draft.linkage.name}", rate=True) as progress:
-            found = carry_out(
-                plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
-                progress=progress,
-            )  # fmt: skip
-    except KeyboardInterrupt:
-        kept = "" if out is None else f"; the finished parts are kept in {out}, --resume goes on with them"
-        typer.echo(f"sevenbar: stopped{kept}", err=True)
-        raise typer.Exit(130) from None
+    kept = "nothing is written"
+    if out is not None:
+        kept = f"the finished parts are kept in {out}, --resume goes on with them"
+    with progress_bar(f"sweep of {draft.linkage.name}", rate=True, kept=kept) as progress:
+        found = carry_out(
+            plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
+            progress=progress,
+        )  # fmt: skip
     deliver(found, Report(_text, _as_dict), json=json)
     if out is not None and not json:
         parts = found.description["parts"]

@@ -1,0 +1,105 @@
+"""How long work reports: a line that says what is done, then a bar with the best so far, on the error stream.
+
+    with progress_bar("mapping the RSSR") as progress:
+        found = motion_map(.., progress=progress)
+
+calls `progress(done, total)`, or `progress(done, total, "best 0.1 deg")`.
+
+Whoever works reports `progress(0, total)` once the request is checked and before the long part begins: that
+shows the line, so a refusal is alone and short work is quiet. A total that is not known is 0.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+#: How a shell sees a command that Ctrl+C ended.
+STOPPED = 130
+
+
+class Shown:
+    """What was reported of one piece of work: a bar on a terminal, one plain line elsewhere."""
+
+    def __init__(self, title: str, *, rate: bool) -> None:
+        self._title, self._rate = title, rate
+        self._begun = False
+        self._bar: Progress | None = None
+        self._task: TaskID | None = None
+
+    def __call__(self, done: int, total: int, best: str = "") -> None:
+        """Reports `done` of `total` steps (0: not known), and what the best so far is."""
+        if not self._begun:
+            self._begin(done, total)
+        if self._bar is not None and self._task is not None:
+            self._bar.update(self._task, completed=done, total=total or None, best=best)
+
+    def end(self, *, erase: bool) -> None:
+        """Leaves the bar as it is, or takes it away."""
+        if self._bar is not None:
+            self._bar.live.transient = erase
+            self._bar.stop()
+
+    def _begin(self, done: int, total: int) -> None:
+        self._begun = True
+        if not sys.stderr.isatty():
+            # of a bar in a log file only its frames would be left
+            typer.echo(f"{self._title} ..", err=True)
+            return
+        self._bar = _bar(rate=self._rate)
+        self._bar.start()
+        # what was there already is no rate
+        self._task = self._bar.add_task(self._title, total=total or None, completed=done, best="")
+
+
+@contextmanager
+def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is written") -> Iterator[Shown]:
+    """Shows how far work is; with `rate` how many steps a second.
+
+    Ctrl+C ends the command with the line "stopped; " and what is `kept`.
+    """
+    shown = Shown(title, rate=rate)
+    try:
+        yield shown
+    except KeyboardInterrupt:
+        shown.end(erase=False)
+        typer.echo(f"sevenbar: stopped; {kept}", err=True)
+        raise typer.Exit(STOPPED) from None
+    except BaseException:
+        # a message is alone
+        shown.end(erase=True)
+        raise
+    shown.end(erase=False)
+
+
+def _bar(*, rate: bool) -> Progress:
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        ProgressColumn,
+        Task,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+    from rich.text import Text
+
+    class Rate(ProgressColumn):
+        """Steps a second."""
+
+        def render(self, task: Task) -> Text:
+            speed = task.finished_speed or task.speed
+            return Text("" if speed is None else f"{speed:,.0f}/s")
+
+    columns = [TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn()]
+    best = TextColumn("{task.fields[best]}", markup=False)
+    rates = [Rate()] if rate else []
+    return Progress(*columns, best, *rates, TimeRemainingColumn(), console=Console(stderr=True))
