@@ -8,16 +8,20 @@ axes; extreme distances of two circles by brute force.
 from __future__ import annotations
 
 import doctest
+import math
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.description.draft import Draft
 from sevenbar.design.maps import atlas
 from sevenbar.design.maps.atlas import Map, motion_map
 from sevenbar.design.maps.critical import NEARLY_REAL, critical_gaps
-from sevenbar.design.maps.plane import Kind
+from sevenbar.design.maps.plane import Kind, LoopPlane
+from sevenbar.design.maps.window import axes_of
+from sevenbar.errors import RequestError
 
 
 @dataclass(frozen=True)
@@ -25,18 +29,21 @@ class Case:
     dimensions: dict[str, float]
     over: dict[str, tuple[float, float]]
     input: str = "crank"
+    follow: tuple[str, ...] = ()
 
 
 PAPER = {"M": 700, "N": 700, "L1": 250, "L3": 550, "D": 0}
 GENERAL = {"M": 700, "N": 700, "L1": 250, "L2": 1000, "L3": 550, "D": 100}
 
 FAST = {
-    "the paper's crank and rocker": Case(PAPER, {"L1": (100, 1400), "L3": (200, 1500)}),
+    "the paper's crank and rocker": Case(PAPER, {"L1": (100, 1400), "L3": (200, 1500)}, follow=("L2",)),
     "crank and coupler": Case(GENERAL, {"L1": (50, 1800), "L2": (50, 3000)}),
 }
 SLOW = {
-    "the paper's axes": Case(PAPER, {"M": (-1000, 1400), "N": (-1000, 1500)}),
-    "the paper's axes, rocker driving": Case(PAPER, {"M": (-1000, 1400), "D": (-1000, 1500)}, "rocker"),
+    "the paper's axes": Case(PAPER, {"M": (-1000, 1400), "N": (-1000, 1500)}, follow=("L2",)),
+    "the paper's axes, rocker driving": Case(
+        PAPER, {"M": (-1000, 1400), "D": (-1000, 1500)}, "rocker", ("L2",)
+    ),
     "a cusp on a symmetric map": Case(GENERAL, {"N": (-1500, 1500), "M": (-1800, 1800)}),
     "a narrow strip": Case(
         {"M": 300, "N": 200, "L1": 650, "L2": 600, "L3": 450, "D": 1}, {"L1": (50, 1800), "L3": (50, 3000)}
@@ -56,7 +63,7 @@ _MADE: dict[str, Map] = {}
 def made(name: str) -> Map:
     case = (FAST | SLOW)[name]
     if name not in _MADE:
-        _MADE[name] = motion_map(sb.rssr(**case.dimensions), case.over, input=case.input)
+        _MADE[name] = motion_map(sb.rssr(**case.dimensions), case.over, input=case.input, follow=case.follow)
     return _MADE[name]
 
 
@@ -138,6 +145,57 @@ def test_with_axes_in_one_plane_the_crank_turns_where_n_l3_is_more_than_twice_m_
     L1, L3 = of.values(line.places).T
     assert np.abs(700 * L3 - 2 * 700 * L1).max() < 1e-6 * 700
     assert of.areas[Kind("crank-rocker", 2)] == pytest.approx((1500 - 200) / 2 / 2 / 1300, abs=1e-12)
+
+
+def test_a_rod_that_the_file_leaves_out_keeps_its_length():
+    """hypot(M + L1, N - L3) = L2 with the rod of the file's pose, the hypotenuse of 450, 550 and 700."""
+    of = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": (300, 800)})
+    rod = math.sqrt(450**2 + 550**2 + 700**2)
+    turns = {(s.axis.name, s.way): s.value for s in of.design.steps}
+    crank, rocker = math.sqrt(rod**2 - 150**2) - 700, 700 - math.sqrt(rod**2 - 950**2)
+    assert (crank - 250, rocker - 550) == pytest.approx((36.15, -154.14), abs=5e-3)
+    assert turns["L1", "up"] == pytest.approx(crank, abs=1e-6)
+    assert turns["L3", "down"] == pytest.approx(rocker, abs=1e-6)
+    (line,) = of.boundaries
+    L1, L3 = of.values(line.places).T
+    assert np.abs(np.hypot(700 + L1, 700 - L3) - rod).max() < of.tolerance * 500
+    assert of.linkage.dimensions["L2"] == rod
+
+
+def test_a_file_that_gives_the_rod_means_the_same_map():
+    over = {"L1": (100, 400), "L3": (300, 800)}
+    left_out = motion_map(sb.load("rssr"), over, grid=9)
+    rod = sb.load("rssr").dimensions["L2"]
+    given = motion_map(sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=rod), over, grid=9)
+    assert left_out.areas == given.areas
+    assert (left_out.held.text, given.held.text) == ("M, N, D, L2 (997.497 mm in the design)", "M, N, L2, D")
+
+
+def test_a_loop_that_is_analysed_point_by_point_holds_the_rod_too():
+    draft = Draft.of_linkage(sb.load("rssr")).holding()
+    plane = LoopPlane(draft, axes_of(draft, {"L1": (100, 400), "L3": (300, 800)}), "crank", 8, None)
+    (motion,) = plane.motions(np.array([[0.9, 0.1]]))
+    assert motion.linkage.dimensions["L2"] == sb.load("rssr").dimensions["L2"]
+
+
+@pytest.mark.parametrize(
+    ("over", "follow", "message"),
+    [
+        ({"L1": (1, 2), "M": (1, 2)}, "N", "follow: 'N' is given, 700 mm, so it stays; give L2"),
+        ({"L1": (1, 2), "M": (1, 2)}, "L9", "follow: 'L9' is not a dimension; give L2"),
+        ({"L1": (1, 2), "L2": (1, 2)}, "L2", "follow: L2 is an axis of the map; leave one of the two out"),
+    ],
+)
+def test_what_cannot_follow_is_refused(over, follow, message):
+    with pytest.raises(RequestError) as refused:
+        motion_map(sb.load("rssr"), over, follow=[follow])
+    assert str(refused.value) == message
+
+
+def test_where_the_file_leaves_nothing_out_nothing_can_follow():
+    given = sb.rssr(M=700, N=700, L1=250, L3=550, D=0, L2=1000)
+    with pytest.raises(RequestError, match="'L2' is given, 1000 mm, so it stays; the file leaves none out"):
+        motion_map(given, {"L1": (1, 2), "M": (1, 2)}, follow=["L2"])
 
 
 @pytest.mark.slow
@@ -246,7 +304,7 @@ def test_where_no_critical_distance_is_near_the_coupler_the_type_is_one_all_over
 
 @pytest.mark.slow
 def test_the_design_stands_on_the_map_with_its_distances_to_the_next_types():
-    of = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": "30 cm : 80 cm"})
+    of = motion_map(sb.load("rssr"), {"L1": (100, 400), "L3": "30 cm : 80 cm"}, follow=["L2"])
     design = of.design
     assert (design.x, design.y, design.inside, design.kind) == (250, 550, True, Kind("crank-rocker", 2))
     told = [(step.axis.name, step.way, step.value, step.kind) for step in design.steps]
@@ -264,13 +322,13 @@ def test_the_design_stands_on_the_map_with_its_distances_to_the_next_types():
 
 @pytest.mark.slow
 def test_all_four_sides_of_a_design_are_told_the_type_beyond():
-    of = motion_map(sb.load("rssr"), {"M": (-1000, 1400), "D": (-1000, 1500)}, grid=11)
+    of = motion_map(sb.load("rssr"), {"M": (-1000, 1400), "D": (-1000, 1500)}, grid=11, follow=["L2"])
     assert [step.kind for step in of.design.steps] == [Kind("double-rocker", 1)] * 4
     assert [step.value for step in of.design.steps[:2]] == pytest.approx([-770, 770], abs=1e-6)
 
 
 def test_the_speed_changes_no_motion_type():
-    of = motion_map(sb.load("rssr"), {"speed": (1, 20), "M": (600, 800)})
+    of = motion_map(sb.load("rssr"), {"speed": (1, 20), "M": (600, 800)}, follow=["L2"])
     assert of.areas[Kind("crank-rocker", 2)] == pytest.approx(170 / 200, abs=1e-9)
 
 

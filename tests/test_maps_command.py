@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
 import subprocess
 import sys
@@ -26,12 +27,12 @@ OVER = ("--over", "L1=100:400", "--over", "L3=300:800")
 
 @pytest.fixture(scope="module")
 def of():
-    return motion_map(sb.load("rssr"), {"L1": (100, 1000), "D": (-800, 800)}, grid=21)
+    return motion_map(sb.load("rssr"), {"L1": (100, 1000), "D": (-800, 800)}, grid=21, follow=["L2"])
 
 
 def test_the_shares_of_the_types_and_the_way_to_the_next_one_are_printed():
-    run = sevenbar("map", "rssr", "--over", "L1=10:40cm", "--over", "L3=300..800")
-    assert (run.returncode, run.stderr) == (0, "")
+    run = sevenbar("map", "rssr", "--over", "L1=10:40cm", "--over", "L3=300..800", "--follow", "L2")
+    assert (run.returncode, run.stderr) == (0, "mapping RSSR of Sun and Zhou ..\n")
     lines = [re.sub(r" +", " ", line).strip() for line in run.stdout.splitlines()]
     # the triangle below the line L3 = 2 L1
     assert "crank-rocker 58.333 %" in lines
@@ -39,6 +40,15 @@ def test_the_shares_of_the_types_and_the_way_to_the_next_one_are_printed():
     assert "L1 up +25 275 mm double-rocker" in lines
     assert "L3 down -50 500 mm double-rocker" in lines
     assert "L1 down not before 100 mm" in lines
+    assert "held M, N, D; L2 follows (997.497 mm in the design)" in lines
+
+
+def test_the_rod_that_the_file_leaves_out_is_held():
+    run = sevenbar("map", "rssr", *OVER)
+    lines = [re.sub(r" +", " ", line).strip() for line in run.stdout.splitlines()]
+    assert "held M, N, D, L2 (997.497 mm in the design)" in lines
+    assert "L1 up +36.1541 286.154146 mm double-rocker" in lines
+    assert "L3 down -154.138 395.861873 mm double-rocker" in lines
 
 
 def table(path: Path) -> list[dict[str, str]]:
@@ -64,7 +74,7 @@ def test_the_folder_holds_the_map_for_people_and_for_programs(tmp_path):
     assert told["design"]["changes"][1] == {
         "dimension": "L1",
         "way": "up",
-        "at": pytest.approx(275),
+        "at": pytest.approx(286.154146),
         "becomes": {"motion_type": "double-rocker", "circuits": 1},
     }
     (line,) = told["boundaries"]
@@ -72,7 +82,10 @@ def test_the_folder_holds_the_map_for_people_and_for_programs(tmp_path):
     rows = table(out / "boundaries.csv")
     assert len(rows) == len(line["points"])
     for row in rows:
-        assert float(row["L3_mm"]) == pytest.approx(2 * float(row["L1_mm"]), abs=1e-6)
+        reach = math.hypot(700 + float(row["L1_mm"]), 700 - float(row["L3_mm"]))
+        assert reach == pytest.approx(told["held"]["L2"], abs=1e-3)
+    assert (told["left_out"], told["follow"]) == (["L2"], [])
+    assert told["held"] == {"M": 700, "N": 700, "D": 0, "L2": pytest.approx(997.496867)}
     (swing,) = told["measures"]
     assert swing["unit"] == "deg"
     assert swing["design"] == pytest.approx(75.1465, abs=1e-3)

@@ -20,7 +20,7 @@ OVER = {"M": (-1000, 1400), "D": (-1000, 1500)}
 
 @pytest.fixture(scope="module")
 def of():
-    return motion_map(sb.rssr(**DIMENSIONS, speed=10.0), OVER, grid=31)
+    return motion_map(sb.rssr(**DIMENSIONS, speed=10.0), OVER, grid=31, follow=["L2"])
 
 
 def values_at(of, place, name):

@@ -100,15 +100,35 @@ def test_limits_are_where_the_coupler_is_stretched_or_folded() -> None:
             assert min(abs(r - L2) for r in reach) < 1e-6
 
 
-def test_a_length_that_the_file_leaves_out_follows_from_the_others() -> None:
+@pytest.mark.parametrize("follow", [(), ("L2",)])
+@pytest.mark.parametrize("measure", ["limits", lambda motion: len(motion.limits)])
+def test_a_length_that_the_file_leaves_out_is_held_or_follows_from_the_others(follow, measure) -> None:
     axes = {"L1": grid(100, 400, 9), "N": [600, 700], "D": [0.0, 30.0]}
-    table = run(sb.load("rssr"), axes, ["motion_type", "limits"]).table()
+    found = run(sb.load("rssr"), axes, ["motion_type", measure], follow=follow)
+    table = found.table()
+    rod = None if follow else math.sqrt(450**2 + 550**2 + 700**2)
     explicit = [
-        sb.rssr(M=700, N=N, L1=L1, L3=550, D=D).motion()
+        sb.rssr(M=700, N=N, L1=L1, L3=550, D=D, L2=rod).motion()
         for L1, N, D in zip(*(table[name].to_pylist() for name in ("L1_mm", "N_mm", "D_mm")), strict=True)
     ]
     assert table["motion_type"].to_pylist() == [motion.motion_type for motion in explicit]
-    assert table["limits"].to_pylist() == [len(motion.limits) for motion in explicit]
+    limits = table[table.column_names[table.column_names.index("motion_type") + 1]].to_pylist()
+    assert limits == [len(motion.limits) for motion in explicit]
+    assert found.description["follow"] == list(follow)
+    assert found.description["held"] == {"M": 700, "L3": 550} | ({} if follow else {"L2": rod})
+
+
+def test_the_linkages_of_a_sweep_differ_where_the_rod_follows() -> None:
+    axes = {"L1": grid(100, 400, 9)}
+    held, following = (run(sb.load("rssr"), axes, follow=follow).description for follow in ((), ["L2"]))
+    assert held["mark"] != following["mark"]
+    assert "L2 = 997.49" in held["toml"]
+    assert "L2" not in following["toml"]
+
+
+def test_what_is_swept_cannot_follow() -> None:
+    with pytest.raises(RequestError, match="follow: L2 is swept itself; leave one of the two out"):
+        run(sb.load("rssr"), {"L2": [900, 1000]}, follow=["L2"])
 
 
 def test_a_general_loop_is_swept_with_angles_in_degrees() -> None:

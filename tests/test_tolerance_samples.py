@@ -70,6 +70,61 @@ def test_each_sample_is_the_output_of_its_own_linkage():
     assert exact.greatest == pytest.approx(np.abs(by_hand).max(), abs=1e-12)
 
 
+def without_its_rod(dimensions, **changes):
+    """An RSSR whose coupler follows from its other dimensions, as of a file that leaves it out."""
+    own = {name: value for name, value in dimensions.items() if name != "L2"} | changes
+    return sb.rssr(**own, speed=10.0)
+
+
+def test_a_rod_that_follows_has_no_tolerance_and_its_length_is_that_of_each_design():
+    linkage = sb.load("rssr")
+    found = sensitivities(linkage, samples=12, follow=["L2"])
+    given = tolerances(found.dimensions, {"*": 5.0}, length_unit="mm", following=found.followers)
+    assert given.widths.tolist() == [5, 5, 5, 0, 5, 5]
+    exact = monte_carlo(found, given, 50, seed=7, distribution="uniform")
+    errors = given.drawn(50, "uniform", np.random.default_rng(7))
+    by_hand = []
+    for column in errors.T:
+        changes = dict(zip(found.loop.numbers.names, found.loop.numbers.nominal + column, strict=True))
+        circuit = without_its_rod(changes).motion(12).circuits[found.circuit.index]
+        by_hand.append(circuit.output - found.circuit.output)
+    by_hand = np.remainder(np.array(by_hand) + np.pi, math.tau) - np.pi
+    np.testing.assert_allclose(exact.mean, by_hand.mean(axis=0), atol=1e-12)
+
+
+def test_derivatives_where_the_rod_follows_are_those_of_differences():
+    linkage = sb.load("rssr")
+    found = sensitivities(linkage, samples=12, follow=["L2"])
+    rows = found.of()
+    swing = found.measure("swing")
+    assert np.abs(rows[:, found.loop.numbers.names.index("L2")]).max() == 0
+    for place, name in enumerate(found.loop.numbers.names):
+        if name == "L2":
+            continue
+        up, down = (
+            without_its_rod(linkage.dimensions, **{name: linkage.dimensions[name] + step})
+            .motion(12)
+            .circuits[0]
+            for step in (1e-3, -1e-3)
+        )
+        assert rows[:, place] == pytest.approx((up.output - down.output) / 2e-3, abs=1e-10)
+        by_swing = math.degrees(up.swing - down.swing) / 2e-3
+        assert swing.slopes[place] == pytest.approx(by_swing, abs=1e-7)
+
+
+def test_a_rod_is_held_where_nothing_else_is_said():
+    held = sensitivities(sb.load("rssr"), samples=8)
+    assert linear_estimate(held, {"L1": 0.5}).held.text == "M, N, L3, D, L2 (997.497 mm in the design)"
+    assert linear_estimate(held, {"L*": 0.5}).held.text == "M, N, D"
+    follows = sensitivities(sb.load("rssr"), samples=8, follow=["L2"])
+    told = linear_estimate(follows, {"*": 0.5})
+    assert told.held.text == "L2 follows (997.497 mm in the design)"
+    assert "L2" not in [effect.dimension.name for effect in told.effects]
+    with pytest.raises(RequestError, match="L2 follows from the others; leave its tolerance or follow out"):
+        linear_estimate(follows, {"L2": 0.5})
+    assert tolerances_for(follows, 0.01).tolerances.widths[3] == 0
+
+
 def near_a_change_point(coupler):
     """The paper's mechanism with a shorter coupler: below 961 mm its crank no longer turns fully."""
     return sb.rssr(M=700, N=700, L1=250, L3=550, L2=coupler)

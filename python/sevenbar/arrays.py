@@ -57,6 +57,15 @@ def real_array(name: str, values: npt.ArrayLike) -> Floats:
     return array.reshape(-1)
 
 
+def short_way(angles: npt.ArrayLike) -> Floats:
+    """Angles [rad] by the short way round, in [-pi, pi): `(a + pi) mod 2 pi - pi`.
+
+    >>> short_way([-math.pi, 0.0, 1.5 * math.pi]).round(4).tolist()
+    [-3.1416, 0.0, -1.5708]
+    """
+    return np.asarray(np.remainder(np.asarray(angles, dtype=np.float64) + math.pi, math.tau) - math.pi)
+
+
 def _is_real(array: npt.NDArray[Any]) -> bool:
     # integers beyond 64 bits come as objects, as do a caller's own kinds of numbers
     return array.dtype.kind in "iuf" or (

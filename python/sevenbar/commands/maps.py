@@ -11,6 +11,7 @@ import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
+    Follow,
     Force,
     InputJoint,
     Json,
@@ -44,6 +45,7 @@ def map_(
         int | None, typer.Option(help="Lines of the grid along each range; 61 for an RSSR, else 25.")
     ] = None,
     input_joint: InputJoint = None,
+    follow: Follow = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for map.json, boundaries.csv, contours.csv and the figures.")
     ] = None,
@@ -70,7 +72,9 @@ def map_(
     report = map_report(names, formats, size=size)
     check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.name}") as progress:
-        found = motion_map(loaded, ranges, grid=grid, input=input_joint, progress=progress)
+        found = motion_map(
+            loaded, ranges, grid=grid, input=input_joint, follow=words(follow or []), progress=progress
+        )
         heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
     deliver(MapFindings(found, heights), report, out, json=json, force=force)
 

@@ -10,6 +10,10 @@ import typer
 from sevenbar.errors import RequestError, shown
 
 Source = Annotated[str, typer.Argument(metavar="FILE|NAME", help="A TOML file, or a name of the gallery.")]
+Follow = Annotated[
+    list[str] | None,
+    typer.Option(help="A dimension that the file leaves out (L2), to follow from the others; else held."),
+]
 Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
 Figures = Annotated[
     list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")

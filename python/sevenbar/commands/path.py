@@ -11,6 +11,7 @@ from sevenbar.commands.deliver import check_out, command_line, deliver
 from sevenbar.commands.given import limits_of, point_of
 from sevenbar.commands.options import (
     Figures,
+    Follow,
     Force,
     Json,
     PointLink,
@@ -39,6 +40,7 @@ def path(
         list[str] | None,
         typer.Option(help="Bounds of a dimension, as in L1=100:400 or L1=10:40cm; may be repeated."),
     ] = None,
+    follow: Follow = None,
     place: Annotated[bool, typer.Option("--place", help="The linkage may stand anywhere in space.")] = False,
     timing: Annotated[
         bool, typer.Option("--timing", help="Reach each point at the input that the table has for it.")
@@ -92,6 +94,7 @@ def path(
         phase=phase,
         place=place,
         limits=limits_of(transmission, size, motion_type, draft.linkage.length_unit),
+        follow=words(follow or []),
     )
     check_counts(designs, starts, seed)
     with progress_bar("designing") as progress:

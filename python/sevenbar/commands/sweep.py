@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,12 +13,13 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.commands.deliver import deliver
-from sevenbar.commands.options import InputJoint, Json, OutputJoint, Source, words
+from sevenbar.commands.options import Follow, InputJoint, Json, OutputJoint, Source, words
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
 
 if TYPE_CHECKING:
+    from sevenbar.description.held import Held
     from sevenbar.sweep.result import Sweep
 
 #: Most linkages of a sweep that leaves no folder: what is made in minutes may be lost.
@@ -61,6 +63,7 @@ def sweep(
         str | None, typer.Option(help="Address of a Dask scheduler, as in tcp://host:8786.")
     ] = None,
     part_size: Annotated[int | None, typer.Option(help="Linkages of a part.")] = None,
+    follow: Follow = None,
     json: Json = False,
 ) -> None:
     """Measure many linkages: dimensions over grids, lists and samples, into Parquet (extra 'sweep')."""
@@ -82,7 +85,7 @@ def sweep(
     draft = Draft.of(text_of(linkage), linkage)
     plan = SweepPlan.of(
         draft, axes, words(measure or list(USUAL)), method=method, count=count, seed=seed,
-        samples=samples, input=input_joint, output=output, part_size=part_size,
+        samples=samples, input=input_joint, output=output, part_size=part_size, follow=words(follow or []),
     )  # fmt: skip
     total = plan.space.count
     if out is None and total > MOST_WITHOUT_FOLDER:
@@ -99,7 +102,7 @@ def sweep(
             plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
             progress=progress,
         )  # fmt: skip
-    deliver(found, Report(_text, _as_dict), json=json)
+    deliver(found, Report(partial(_text, plan.held), _as_dict), json=json)
     if out is not None and not json:
         parts = found.description["parts"]
         typer.echo(
@@ -111,15 +114,17 @@ def _as_dict(found: Sweep) -> dict[str, Any]:
     return {**found.description, "totals": asdict(found.totals)}
 
 
-def _text(found: Sweep) -> RenderableType:
+def _text(held: Held, found: Sweep) -> RenderableType:
     """Counts by words, ranges of numbers, of all linkages."""
     totals = found.totals
     sampling = found.description["sampling"]
     seed = "" if sampling["seed"] is None else f", seed {sampling['seed']}"
     linkages, rows = _counted(totals.linkages, "linkage"), _counted(totals.rows, "row")
     parts: list[RenderableType] = [
-        Text.assemble((linkages, "bold"), f" ({sampling['method']}{seed}), {rows}")
+        Text.assemble((linkages, "bold"), f" ({sampling['method']}{seed}), {rows}"),
     ]
+    if held.text:
+        parts.append(Text.assemble(("held", "dim"), f"  {held.text}"))
     if totals.invalid:
         parts.append(Text(f"no linkage at all: {totals.invalid} (their rows say why, in status)"))
     for name, counts in totals.words.items():

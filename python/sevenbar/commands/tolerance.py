@@ -11,6 +11,7 @@ import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
+    Follow,
     Force,
     InputJoint,
     Json,
@@ -18,6 +19,7 @@ from sevenbar.commands.options import (
     Source,
     Speed,
     figure_formats,
+    words,
 )
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.units import amount, sizes_of
@@ -58,6 +60,7 @@ def tolerance(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    follow: Follow = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for tolerance.json, dimensions.csv, deviation.csv and the figures."),
@@ -83,7 +86,13 @@ def tolerance(
     report = tolerance_report(formats)
     check_out(report, out, force=force)
     found = sensitivities(
-        loaded, circuit=circuit, samples=samples, input=input_joint, output=output, speed=speed
+        loaded,
+        circuit=circuit,
+        samples=samples,
+        input=input_joint,
+        output=output,
+        speed=speed,
+        follow=words(follow or []),
     )
     if wanted is not None:
         error = _wanted(wanted, found.outputs[found.place(of, quantity)].unit)

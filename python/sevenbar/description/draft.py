@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -31,6 +31,8 @@ class Draft:
     text: str
     raw: Mapping[str, Any]
     source: str
+    #: Names of dimensions that the file leaves out and that are held at the value they have there.
+    held: tuple[str, ...] = ()
 
     @staticmethod
     def of(text: str, source: str) -> Draft:
@@ -84,6 +86,38 @@ class Draft:
             dimension = self.dimension(name)
             draft = draft.with_value(dimension.place, self.written(dimension, float(value)))
         return draft
+
+    def holding(self, follow: Collection[str] = ()) -> Draft:
+        """The draft whose dimensions stay as they are while others change, except those that `follow`.
+
+        A file that leaves L2 out means the rod that closes its pose, and a rod does not grow with the crank:
+        its length is written. Raises `RequestError` for a name in `follow` that the file gives.
+
+            >>> import sevenbar as sb
+            >>> draft = Draft.of_linkage(sb.load("rssr"))
+            >>> for chosen in (draft.holding(), draft.holding(["L2"])):
+            ...     print(round(chosen.with_values({"L1": 275.0}).linkage.dimensions["L2"], 3))
+            997.497
+            986.471
+        """
+        left_out = {dimension.name: dimension for dimension in self.dimensions if dimension.follows}
+        for name in follow:
+            if name not in left_out:
+                raise RequestError(self._no_follower(name, list(left_out)))
+        found = self
+        for name, dimension in left_out.items():
+            if name not in follow:
+                found = replace(found.with_value(dimension.place, dimension.value), held=(*found.held, name))
+        return found
+
+    def _no_follower(self, name: str, left_out: Sequence[str]) -> str:
+        known = {dimension.name: dimension for dimension in self.dimensions}
+        if name not in known:
+            why = "is not a dimension"
+        else:
+            why = f"is given, {known[name].value:g} {known[name].unit}".rstrip() + ", so it stays"
+        hint = f"give {' or '.join(left_out)}" if left_out else "the file leaves none out, so do not give it"
+        return f"follow: {shown(name)} {why}; {hint}"
 
     def with_point(self, name: str, link: int, at: Sequence[float]) -> Draft:
         """The draft with one more named point."""

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 
@@ -71,8 +71,8 @@ def _angle_or_length(numbers: Numbers, column: int) -> tuple[str, float]:
     return numbers.linkage.length_unit, 1.0
 
 
-def _short_way(apart: Floats, turns: bool) -> Floats:
-    return np.asarray(np.remainder(apart + np.pi, math.tau) - np.pi if turns else apart)
+def _apart(values: Floats, turns: bool) -> Floats:
+    return short_way(values) if turns else values
 
 
 def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
@@ -130,7 +130,7 @@ def _rates_at(
     q = poses_at(loop, circuit, at)
     here = loop.slopes(q, 3)
     found = np.column_stack([q[:, column], here.rates[:, :, column]]) * speed ** np.arange(4)
-    apart = np.abs(_short_way(found[:, order] - value, bool(order == 0 and loop.numbers.turns[column])))
+    apart = np.abs(_apart(found[:, order] - value, bool(order == 0 and loop.numbers.turns[column])))
     if not np.isfinite(apart).any():
         return None
     best = int(np.nanargmin(apart))
@@ -153,7 +153,7 @@ def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
     for number, centre in enumerate(sorted(centres, key=lambda c: c.input), 1):
         slopes = np.full(len(numbers.names), np.nan)
         q = poses_at(back, circuit, centre.output)
-        apart = np.abs(_short_way(q[:, place] - centre.input, bool(numbers.turns[place])))
+        apart = np.abs(_apart(q[:, place] - centre.input, bool(numbers.turns[place])))
         if len(q) and apart.min() < SAME_VALUE * numbers.scales[place]:
             best = int(np.argmin(apart))
             slopes = back.slopes(q[best : best + 1], 0).by_number[0, 0, :, place] * told
@@ -162,7 +162,7 @@ def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
 
 def poses_at(loop: NumberedLoop, circuit: Circuit, value: float) -> Floats:
     """Poses (n, columns) of a circuit where the loop's driving column has a value, from each row nearby."""
-    apart = _short_way(value - circuit.q[:, loop.input], bool(loop.numbers.turns[loop.input]))
+    apart = _apart(value - circuit.q[:, loop.input], bool(loop.numbers.turns[loop.input]))
     size = np.where(np.isfinite(circuit.q).all(axis=1), np.abs(apart), np.nan)
     nearest = np.sort(np.argsort(size, kind="stable")[: min(NEAREST, np.isfinite(size).sum())])
     q = loop.numbers.poses(circuit.q[nearest])

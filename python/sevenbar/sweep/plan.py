@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -15,6 +15,8 @@ import numpy as np
 from sevenbar import __version__
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.description.held import Held, held_of
+from sevenbar.errors import RequestError
 from sevenbar.kinematics.batches import simd_level
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
@@ -63,6 +65,7 @@ class SweepPlan:
         input: str | None = None,
         output: str | None = None,
         part_size: int | None = None,
+        follow: Collection[str] = (),
     ) -> SweepPlan:
         """The plan of a caller's request.
 
@@ -71,6 +74,10 @@ class SweepPlan:
         """
         draft = linkage if isinstance(linkage, Draft) else Draft.of_linkage(linkage)
         space = Space.of(draft, axes, method, count, seed)
+        draft = draft.holding(follow)
+        for axis in space.axes:
+            if axis.name in follow:
+                raise RequestError(f"follow: {axis.name} is swept itself; leave one of the two out")
         found = measures_named(measures)
         # whatever is wrong with the request as a whole is wrong with the linkage that was given, too
         motion = draft.linkage.motion(samples, input=input, output=output)
@@ -85,6 +92,11 @@ class SweepPlan:
     def measured(self) -> tuple[Measure, ...]:
         """The measures themselves."""
         return tuple(MEASURES[m] if isinstance(m, str) else m for m in self.measures)
+
+    @property
+    def held(self) -> Held:
+        """What is the same of all linkages."""
+        return held_of(self.draft, [axis.name for axis in self.space.axes])
 
     @property
     def parts(self) -> int:
@@ -126,6 +138,7 @@ class SweepPlan:
         """What a sweep's description holds: the request and what follows from it; `makers` made its parts."""
         return {
             **self.request(),
+            **self.held.as_dict,
             "length_unit": self.draft.linkage.length_unit,
             "toml": self.draft.toml(),
             "linkages": self.space.count,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import closing
 from functools import partial
@@ -58,6 +58,7 @@ def run(
     threads: int | None = None,
     scheduler: str | None = None,
     part_size: int | None = None,
+    follow: Collection[str] = (),
     progress: Callable[[int, int], None] | None = None,
 ) -> Sweep:
     """Measures of many linkages: named dimensions over grids, lists and samples.
@@ -67,8 +68,9 @@ def run(
     `measures` are names of `measures.MEASURES` or functions of the Motion, taken with `samples` a turn.
     With `out` the rows go to a folder of Parquet parts of `part_size` linkages; `resume` goes on with the
     parts that are there, `mixed` also with those of other versions or vector units. It runs on `threads`
-    (all processors by default), or on the workers of a Dask `scheduler`; the rows are the same. `progress`
-    is called with the number of linkages done, and of all.
+    (all processors by default), or on the workers of a Dask `scheduler`; the rows are the same. A dimension
+    that the file leaves out, L2 of an RSSR, is held at its value in the design; `follow=["L2"]` lets it
+    follow from the others. `progress` is called with the number of linkages done, and of all.
 
     Raises `RequestError` for an argument that does not fit, `OutputError` for a folder that cannot be
     written or holds something else, `MissingExtraError` without the extra `[sweep]`.
@@ -81,7 +83,7 @@ def run(
     """
     plan = SweepPlan.of(
         linkage, axes, measures, method=method, count=count, seed=seed, samples=samples,
-        input=input, output=output, part_size=part_size,
+        input=input, output=output, part_size=part_size, follow=follow,
     )  # fmt: skip
     return carry_out(
         plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler, progress=progress

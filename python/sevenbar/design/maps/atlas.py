@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -11,6 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.description.held import Held, held_of
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
@@ -97,6 +98,11 @@ class Map(Printed):
         """The design's linkage."""
         return self.draft.linkage
 
+    @property
+    def held(self) -> Held:
+        """What is the same all over the map."""
+        return held_of(self.draft, [axis.name for axis in self.axes])
+
     def values(self, places: Floats) -> Floats:
         """Places (n, 2) given in shares, in the dimensions' units."""
         return np.column_stack([axis.value(p) for axis, p in zip(self.axes, places.T, strict=True)])
@@ -143,6 +149,7 @@ def motion_map(
     *,
     grid: int | None = None,
     input: str | None = None,
+    follow: Collection[str] = (),
     progress: Progress | None = None,
 ) -> Map:
     """The motion types of a linkage over two of its dimensions, the first along x.
@@ -150,7 +157,8 @@ def motion_map(
     `over` has a range for each: two numbers in the file's unit, or a text as "20cm:40cm". Of an RSSR in the
     paper's dimensions the boundaries do not depend on `grid`, the count of lines along each range; of other
     loops, each point of which is a motion of its own, they are searched between those lines. `input` is the
-    joint that drives, the file's by default; `progress` is called with the motions done and in sight.
+    joint that drives, the file's by default. A dimension that the file leaves out, L2 of an RSSR, is held at
+    its value in the design; `follow=["L2"]` lets it follow from the others.
 
     Raises `RequestError` for dimensions and ranges that do not fit.
 
@@ -161,6 +169,10 @@ def motion_map(
     """
     draft = Draft.of_linkage(of) if isinstance(of, Linkage) else of
     axes = axes_of(draft, over)
+    for axis in axes:
+        if axis.name in follow:
+            raise RequestError(f"follow: {axis.name} is an axis of the map; leave one of the two out")
+    draft = draft.holding(follow)
     linkage = draft.linkage
     column = linkage.column(linkage.drive.joint if input is None else input, "input")
     driver = linkage.columns[column]

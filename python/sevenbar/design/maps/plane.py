@@ -18,7 +18,7 @@ from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure, rows_of
 from sevenbar.kinematics.motion import Motion
 
-#: Counts the motions that were solved, and those in sight.
+#: Counts the linkages that were classified or measured, and those in sight, 0 where they are not known.
 Progress = Callable[[int, int], None]
 
 #: Which circuit's value counts where a linkage has several: the best one, or that of an index.
@@ -68,6 +68,13 @@ class Plane(ABC):
         self.kinds: list[Kind] = []
         self._progress = progress
         self._done = self._planned = 0
+        self.count(0)
+
+    def count(self, done: int) -> None:
+        """Reports that so many more linkages are done."""
+        self._done += done
+        if self._progress is not None:
+            self._progress(self._done, self._planned)
 
     @abstractmethod
     def numbers_at(self, points: Floats) -> Integers:
@@ -119,9 +126,7 @@ class Plane(ABC):
                 found.append(linkage.motion(self.samples, input=self.input))
             except (DescriptionError, RequestError, NotCoveredError):
                 found.append(None)
-            self._done += 1
-            if self._progress is not None:
-                self._progress(self._done, self._planned)
+            self.count(1)
         return found
 
 

@@ -44,6 +44,7 @@ def as_dict(findings: MapFindings) -> dict[str, Any]:
             {"dimension": axis.name, "unit": axis.dimension.unit, "low": axis.low, "high": axis.high}
             for axis in of.axes
         ],
+        **of.held.as_dict,
         "kinds": [
             {"motion_type": kind.motion_type, "circuits": kind.circuits, "share": share}
             for kind, share in of.areas.items()
@@ -109,6 +110,8 @@ def text(findings: MapFindings) -> RenderableType:
     facts = Facts()
     for label, axis in (("across", x), ("up", y)):
         facts.add(label, f"{axis.name} from {axis.text(axis.low)} to {axis.text(axis.high)}")
+    if held := of.held.text:
+        facts.add("held", held)
     facts.add("input", of.input)
     facts.add("boundaries", _precision(of))
     where = "" if design.inside else "; outside the map"

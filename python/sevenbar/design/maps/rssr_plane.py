@@ -55,6 +55,7 @@ class RssrPlane(Plane):
 
     def numbers_at(self, points: Floats) -> Integers:
         """The number of the kind at each point as it is, (n,)."""
+        self.count(len(points))
         codes, limits = rssr_types(self.dimensions(points), self._side, THREADS)
         names = np.array(CODES)[codes]
         circuits = np.where(names == "double-rocker", np.isfinite(limits).sum(axis=1) // 2, 2)
@@ -94,6 +95,7 @@ class RssrPlane(Plane):
         motions = rssr_motions(self.dimensions(points), self._side, speed, THREADS)
         if not all(measure.name in motions.columns and measure.per == "circuit" for measure in measures):
             return super().values_at(points, measures, take)
+        self.count(len(points))
         pick = np.fmin if take == "lowest" else np.fmax
         kept = np.ones(len(motions.circuit), dtype=bool) if isinstance(take, str) else motions.circuit == take
         found = np.full((len(points), len(measures)), np.nan)

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.closure import row_of, transmissions
 from sevenbar.design.synthesis.limits import Limits
@@ -199,8 +199,7 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
 
 def _apart(difference: Floats, turning: Sequence[bool], size: float) -> Floats:
     """Differences of joint values (.., columns), angles to the nearest turn, slides relative to the size."""
-    wrapped = (difference + math.pi) % math.tau - math.pi
-    return np.where(turning, wrapped, difference / size)
+    return np.where(turning, short_way(difference), difference / size)
 
 
 def _one_way(ways: Ways) -> Refusal | None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.outputs import values_of
 
@@ -16,7 +14,7 @@ class ChangedDesigns:
 
     def __init__(self, linear: Linear) -> None:
         found = linear.found
-        self.loop, self.speed = found.loop, found.speed
+        self._found, self.loop, self.speed = found, found.loop, found.speed
         self._numbers = found.loop.numbers
         self._output = found.outputs[found.place(linear.output, linear.quantity)]
         self._q = found.poses[np.isin(found.rows, linear.rows)]
@@ -31,8 +29,8 @@ class ChangedDesigns:
         These (samples, n) are zero at a dead centre of the input. NaN where the loop does not
         close on the same pass of the circuit.
         """
-        designs = self._numbers.nominal + changes
-        steps = np.einsum("nkc,sk->snc", self._by_number, changes)
+        designs = self._found.designs(changes)
+        steps = np.einsum("nkc,sk->snc", self._by_number, designs - self._numbers.nominal)
         q, sides = self.loop.followed(self._x, self._q, designs, steps)
         for sample in np.flatnonzero(np.isnan(q).any(axis=(1, 2))):
             lost = np.isnan(q[sample]).any(axis=1)
@@ -49,8 +47,8 @@ class ChangedDesigns:
 
     def deviations(self, changes: Floats, q: Floats) -> Floats:
         """The output of changed designs less the nominal one's, (samples, n)."""
-        designs = self._numbers.nominal + changes
+        designs = self._found.designs(changes)
         apart = np.array([self._values(p, poses) for p, poses in zip(designs, q, strict=True)]) - self.nominal
         if self._output.joint and self._numbers.is_ball[self._output.place]:
-            apart = np.remainder(apart + np.pi, math.tau) - np.pi
+            apart = short_way(apart)
         return np.asarray(apart.reshape(len(changes), -1))

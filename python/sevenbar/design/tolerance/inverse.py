@@ -65,7 +65,13 @@ def tolerances_for(
         return linear_estimate(found, chosen, distribution=distribution, output=output, quantity=quantity)
 
     unit = found.linkage.length_unit
-    chosen = tolerances(found.dimensions, dict.fromkeys(names, 1.0), length_unit=unit, opening=found.opening)
+    chosen = tolerances(
+        found.dimensions,
+        dict.fromkeys(names, 1.0),
+        length_unit=unit,
+        opening=found.opening,
+        following=found.followers,
+    )
     widths = np.where(chosen.widths > 0, found.small, 0.0)
     for _ in range(MOST_ROUNDS):
         linear = estimate(replace(chosen, widths=widths))

@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.description.held import Held, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError
@@ -77,6 +78,12 @@ class Linear:
     def deviation(self) -> Floats:
         """The standard deviation (n,)."""
         return np.sqrt(self.slopes**2 @ self.tolerances.deviations(self.distribution) ** 2)
+
+    @property
+    def held(self) -> Held:
+        """The dimensions without a tolerance."""
+        told = zip(self.found.dimensions, self.tolerances.widths, strict=True)
+        return held_of(self.found.draft, [dimension.name for dimension, width in told if width > 0])
 
     @property
     def greatest(self) -> int:
@@ -145,7 +152,9 @@ def linear_estimate(
     found = of if isinstance(of, Sensitivities) else sensitivities(of)
     if not isinstance(given, Tolerances):
         unit = found.linkage.length_unit
-        given = tolerances(found.dimensions, given, length_unit=unit, opening=found.opening)
+        given = tolerances(
+            found.dimensions, given, length_unit=unit, opening=found.opening, following=found.followers
+        )
     given.deviations(distribution)
     status = found.clear(given.widths)
     place = found.place(output, quantity)

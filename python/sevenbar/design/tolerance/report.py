@@ -48,6 +48,8 @@ def text(findings: Findings) -> RenderableType:
     unit = "rad" if found.input_turns else found.linkage.length_unit
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
+    if held := linear.held.text:
+        facts.add("held", held)
     facts.add("errors", f"independent, {linear.distribution}{spread}")
     facts.add("worst case", _worst_text(worst))
     facts.add("", _corner_text(worst))
@@ -79,6 +81,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         "circuit": found.circuit.index,
         "told": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
         "distribution": linear.distribution,
+        **linear.held.as_dict,
         "dimensions": [
             {
                 "name": effect.dimension.name,

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits import Circuit, Integers, Words
 from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.gradients import QUANTITIES, MeasureSlopes, measure_slopes
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Solvable, chosen_circuit
@@ -42,7 +43,8 @@ class Sensitivities(Printed):
     `values` (rows, outputs) and `slopes` (rows, outputs, dimensions) are in the outputs' units (angles in
     rad), and by the dimensions' units, which are the file's. NaN in rows whose `status` tells why, in columns
     of dimensions that open the loop (`opening`), and in outputs of what spins idly. `input` (rows,) [rad, or
-    length]; rates are at `speed`. `poses` (n, columns) are those of the `loop` on some `rows` (n,).
+    length]; rates are at `speed`. `poses` (n, columns) are those of the `loop` on some `rows` (n,). A coupler
+    that is `following` has no derivatives of its own.
     """
 
     loop: NumberedLoop
@@ -59,6 +61,8 @@ class Sensitivities(Printed):
     slopes: Floats
     measures: tuple[MeasureSlopes, ...]
     opening: tuple[str, ...]
+    draft: Draft
+    following: Following | None
 
     @property
     def linkage(self) -> Solvable:
@@ -110,6 +114,11 @@ class Sensitivities(Printed):
         )
 
     @property
+    def followers(self) -> tuple[str, ...]:
+        """The dimensions that follow from others."""
+        return () if self.following is None else (self.loop.numbers.names[self.following.own],)
+
+    @property
     def opens(self) -> npt.NDArray[np.bool_]:
         """Which dimensions (dimensions,) open the loop."""
         return np.array([name in self.opening for name in self.loop.numbers.names])
@@ -119,11 +128,15 @@ class Sensitivities(Printed):
         """Whether the input is an angle, not a slide."""
         return bool(self.loop.numbers.turns[self.loop.input])
 
+    def designs(self, changes: Floats) -> Floats:
+        """The numbers (.., dimensions) of designs changed by so much, with what follows from them."""
+        designs = self.loop.numbers.nominal + changes
+        return designs if self.following is None else self.following.whole(designs)
+
     def changed(self, change: Floats) -> Linkage:
         """The linkage that a file with other numbers describes, by the change (dimensions,) of each."""
-        numbers = self.loop.numbers
-        values = dict(zip(numbers.names, (numbers.nominal + change).tolist(), strict=True))
-        return Draft.of_linkage(numbers.linkage).with_values(values).linkage
+        values = dict(zip(self.loop.numbers.names, self.designs(change).tolist(), strict=True))
+        return self.draft.with_values(values).linkage
 
     @property
     def small(self) -> Floats:
@@ -138,7 +151,7 @@ class Sensitivities(Printed):
                 continue
             apart = self.input - one.value * one.scale
             if self.input_turns:
-                apart = np.remainder(apart + np.pi, math.tau) - np.pi
+                apart = short_way(apart)
             moves = float(np.nansum(np.abs(one.slopes) * reach)) * one.scale
             status[(status == "ok") & (np.abs(apart) <= CLEAR * moves)] = NEAR
         return status
@@ -165,22 +178,26 @@ def sensitivities(
     input: str | None = None,
     output: str | None = None,
     speed: float | str | None = None,
+    follow: Collection[str] = (),
 ) -> Sensitivities:
     """Exact derivatives of every output of a circuit by every number of the linkage's description.
 
     Outputs are each joint's position, velocity and acceleration (the position only of a ball's turns), each
     named point's position and velocity, and the circuit's measures. Numbers are M, N, L1, L2, L3 and D of an
     RSSR; lengths, twists, offsets, angles and pitches of rows; coordinates of joints and axes as drawn; and
-    those of points. The arguments are those of `Linkage.motion`. Raises `RequestError` for a linkage made
-    without a description and for an argument that does not fit.
+    those of points. L2 that a file leaves out is a number of its own, as of a rod that is made; in `follow`
+    it follows from the others, and its derivatives are 0. The arguments are those of `Linkage.motion`. Raises
+    `RequestError` for a linkage made without a description and for an argument that does not fit.
 
         >>> import sevenbar as sb
         >>> found = sensitivities(sb.load("rssr"))
         >>> [dimension.name for dimension, _, _ in found.ranking()[:2]]
         ['L2', 'L1']
     """
-    numbers = Numbers(linkage)
-    motion = linkage.motion(samples, input=input, output=output, speed=speed)
+    draft = Draft.of_linkage(linkage).holding(follow)
+    numbers = Numbers(draft.linkage)
+    following = Following.among(numbers.dimensions)
+    motion = draft.linkage.motion(samples, input=input, output=output, speed=speed)
     chosen = chosen_circuit(motion, circuit)
     loop = numbers.loop(chosen.input_column)
     rows, poses = loop.poses(chosen)
@@ -196,6 +213,12 @@ def sensitivities(
     slopes = np.full((count, len(outputs), len(numbers.names)), np.nan)
     values[rows] = values_of(outputs, np.where(numbers.is_ball, chosen.q[rows], poses), here, motion.speed)
     slopes[rows] = slopes_of(numbers, outputs, chosen.q[rows], here, motion.speed)
+    measures = [
+        one for one in measure_slopes(numbers, chosen, motion.speed) if not one.name.startswith("jerk_")
+    ]
+    if following is not None:
+        slopes = following.chained(slopes, numbers.nominal)
+        measures = [replace(one, slopes=following.chained(one.slopes, numbers.nominal)) for one in measures]
     slopes[:, :, here.opening] = np.nan
     status = chosen.status.astype("<U20")
     status[~np.isin(np.arange(count), rows) & (status == "ok")] = "dead-centre"
@@ -214,10 +237,10 @@ def sensitivities(
         status=status,
         values=values,
         slopes=slopes,
-        measures=tuple(
-            one for one in measure_slopes(numbers, chosen, motion.speed) if not one.name.startswith("jerk_")
-        ),
+        measures=tuple(measures),
         opening=tuple(np.array(numbers.names)[here.opening].tolist()),
+        draft=draft,
+        following=following,
     )
     if np.isnan(found.of()).all() and not here.opening.all():
         raise RequestError(f"output: {motion.input} does not determine {motion.output}; give another output")

@@ -87,16 +87,18 @@ def tolerances(
     *,
     length_unit: str,
     opening: Sequence[str] = (),
+    following: Sequence[str] = (),
 ) -> Tolerances:
     """Tolerances from half widths by name or pattern: `{"L1": 0.5, "twist_*": "0.1deg", "*": "ISO 2768-m"}`.
 
     Numbers are in the dimension's unit. A name counts before a pattern, and of two patterns the later. The
     classes of ISO 2768 are for lengths from 0.5 to 4000 mm, by their size. `opening` are dimensions that no
-    change alone leaves assembled. Raises `RequestError` for a name that does not exist, a negative width, a
-    dimension that opens the loop, and where no dimension gets a tolerance.
+    change alone leaves assembled, `following` those that others determine. Raises `RequestError` for a name
+    that does not exist, a negative width, a dimension that opens the loop or follows, and where no dimension
+    gets a tolerance.
     """
     names = [dimension.name for dimension in dimensions]
-    free = [name for name in names if name not in opening]
+    free = [name for name in names if name not in (*opening, *following)]
     if not free:
         raise RequestError(
             f"tolerance: an error of {', '.join(names[:-1])} or {names[-1]} alone would open this "
@@ -117,6 +119,12 @@ def tolerances(
                 f"this linkage has {', '.join(names)}"
             )
         for k in matched:
+            if names[k] in following:
+                if place is not None:
+                    raise RequestError(
+                        f"tolerance: {names[k]} follows from the others; leave its tolerance or follow out"
+                    )
+                continue
             if names[k] in opening and place is not None:
                 raise RequestError(
                     f"tolerance: {names[k]}: an error of it alone would open this overconstrained loop, so "

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.kinematics.circuits import Circuit, Trace
@@ -311,7 +311,7 @@ class _Measure:
 
     def _step(self, joints: Floats, q: Floats) -> Floats:
         step = joints[..., self._kept] - q[self._kept]
-        turned = np.remainder(step + math.pi, math.tau) - math.pi
+        turned = short_way(step)
         return np.asarray(np.where(self._turns, turned, step / self._size))
 
     def apart(self, joints: Floats, q: Floats) -> Floats:

@@ -23,7 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.design.synthesis.closure import (
     output_slopes,
     outputs,
@@ -100,7 +100,7 @@ class Fit:
         inputs = (zeros[0] + self.input)[None]
         angles = outputs(row, inputs, branch, floor=0.0)
         by_row, by_input = output_slopes(row, inputs, outputs(row, inputs, branch, floor=DEAD))
-        off = (angles[0] - zeros[1] - self.wanted + math.pi) % math.tau - math.pi
+        off = short_way(angles[0] - zeros[1] - self.wanted)
         slopes = by_row[0][:, FREE]
         if self.wish.zeros is None:
             slopes = np.column_stack([slopes, by_input[0], -np.ones(len(off))])

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -210,7 +210,7 @@ def _chosen(fit: Fit, rows: Floats, zeros: Floats, most: int) -> list[Estimate]:
         missed = missed + np.maximum(-transmissions(rows, turn).min(axis=1), 0.0)
     for branch in (0, 1):
         angles = outputs(rows, zeros[:, :1] + fit.input, branch)
-        off = (angles - zeros[:, 1:] - fit.wanted + math.pi) % math.tau - math.pi
+        off = short_way(angles - zeros[:, 1:] - fit.wanted)
         at_points = np.abs(off[:, fit.points]).max(axis=1) if wish.exact else np.zeros(len(rows))
         rms = np.sqrt((off[:, fit.range] ** 2).mean(axis=1)) + missed
         good = np.isfinite(off).all(axis=1) & (square.min(axis=1) > 0) & (at_points < ON_BRANCH)
@@ -263,8 +263,7 @@ def _judged(
         return math.inf, Refusal("assembly", "cannot reach the whole range of the input")
     angles = np.unwrap(angles)
     at, wanted = (wish.input, wish.output) if wish.function is None else (dense, wish.function(dense))
-    errors = np.interp(at, dense, angles) - zero[1] - wanted
-    errors = (errors + math.pi) % math.tau - math.pi
+    errors = short_way(np.interp(at, dense, angles) - zero[1] - wanted)
     greatest = float(np.abs(errors).max())
     if greatest > tolerance:
         detail = (

@@ -28,7 +28,7 @@ import math
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 
 #: Points that determine a design with both zeros given, and with neither.
 FIXED_ZEROS_MOST, FREE_ZEROS_MOST = 5, 7
@@ -90,7 +90,7 @@ def reflected(rows: Floats, zeros: Floats) -> tuple[Floats, Floats]:
     turn = rows[:, 0] < 0
     rows = np.where(turn[:, None], rows * [-1, -1, 1, 1, 1, -1], rows)
     zeros = np.where(turn[:, None], zeros + math.pi, zeros)
-    return rows, (zeros + math.pi) % math.tau - math.pi
+    return rows, short_way(zeros)
 
 
 def through(

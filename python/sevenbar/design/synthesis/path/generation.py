@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -40,6 +40,7 @@ def path_generation(
     count: int = 5,
     starts: int = STARTS,
     seed: int = 0,
+    follow: Collection[str] = (),
 ) -> tuple[Candidate, ...]:
     """Several distinct linkages whose point goes through wanted points in order, the best first.
 
@@ -48,7 +49,8 @@ def path_generation(
     are given), `bounds` hold (low, high) in the file's units. `timing` (n,) [rad, or length] are the inputs
     at which the points shall be reached, with `phase` from an unknown start on. With `place` the linkage may
     stand anywhere in space, and be of any size where every length varies. `limits`: transmission angle (of
-    an RSSR), size, motion type. `starts` linkages all over the bounds are tried, from a `seed`.
+    an RSSR), size, motion type. `starts` linkages all over the bounds are tried, from a `seed`. L2 of an RSSR
+    whose file leaves it out varies like the others, or is in `follow`.
 
     Each answer is one circuit through all points in their order without a dead centre between, as the
     ordinary analysis of its file finds it; its errors [length] are the distances there.
@@ -75,6 +77,7 @@ def path_generation(
         phase=phase,
         place=place,
         limits=limits,
+        follow=follow,
     )
     return generated(task, count=count, starts=starts, seed=seed)
 

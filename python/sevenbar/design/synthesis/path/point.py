@@ -11,7 +11,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import NotCoveredError
-from sevenbar.kinematics.geometry import Point, following_coupler
+from sevenbar.kinematics.following import Following
+from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers, Slopes
 from sevenbar.kinematics.word import TurnAndSlide
 
@@ -29,7 +30,7 @@ class PointLoop:
     """The loop of a draft with one point: values (all,) are those of its dimensions in the file's units.
 
     `varied` are the numbers, among `dimensions`, of those that may change, by which derivatives are. A
-    coupler that the file leaves out follows from the others unless it is one of them.
+    coupler that the draft lets follow does so unless it is one of them.
     """
 
     def __init__(self, draft: Draft, point: Point, varied: Sequence[int] = ()) -> None:
@@ -49,27 +50,19 @@ class PointLoop:
         self.size = self._numbers.size
         #: What is 1 of each column (columns,): a radian, or the size.
         self.units = self._numbers.scales
-        keys = {d.place[1]: k for k, d in enumerate(self.dimensions) if d.place[0] == "rssr"}
-        follows = [k for k, d in enumerate(self.dimensions) if d.follows and k not in self.varied]
-        #: The place of a coupler that follows, and those of what it follows from.
-        self._coupler = (follows[0], [keys[key] for key in ("M", "N", "L1", "L3")]) if follows else None
+        self._coupler = Following.among(self.dimensions, self.varied)
         self._loop: tuple[bytes, NumberedLoop] | None = None
         self._slopes: tuple[bytes, Slopes] | None = None
 
     def _whole(self, values: Floats) -> Floats:
         """The values with a coupler that follows."""
-        if self._coupler is None:
-            return values
-        own, others = self._coupler
-        values = values.copy()
-        values[own] = following_coupler(*values[others])
-        return values
+        return values if self._coupler is None else self._coupler.whole(values)
 
     def _at(self, values: Floats) -> NumberedLoop:
         """The loop of these values, kept for the next question."""
         key = values.tobytes()
         if self._loop is None or self._loop[0] != key:
-            only = [*self.varied, *(self._coupler[:1] if self._coupler else ())]
+            only = [*self.varied, *([self._coupler.own] if self._coupler else ())]
             self._loop = key, self._numbers.loop(self.input, self._whole(values), only)
         return self._loop[1]
 
@@ -104,11 +97,7 @@ class PointLoop:
         count = len(self.varied)
         by_dimension = by[:, :, :count].copy()
         if self._coupler is not None:
-            own, others = self._coupler
-            whole = self._whole(values)
-            m, n, crank, rocker = whole[others]
-            parts = np.array([m - crank, n, crank - m, rocker]) / whole[own]
-            for number, part in zip(others, parts, strict=True):
+            for number, part in zip(self._coupler.leaders, self._coupler.slopes(values), strict=True):
                 if number in self.varied:
                     by_dimension[:, :, self.varied.index(number)] += part * by[:, :, count]
         place = self._place

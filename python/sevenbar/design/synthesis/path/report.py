@@ -48,6 +48,7 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
         ),
         ("point", f"{task.point.name} on link {task.point.link}"),
         ("varied", f"{count} dimension{'s' * (count != 1)}: {names}"),
+        *([("held", task.held.text)] if task.held.text else []),
         ("ground", "anywhere in space" if task.place else "where the description has it"),
         ("limits", task.limits.text()),
     ]

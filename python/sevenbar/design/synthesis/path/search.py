@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.design.synthesis.path.match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
@@ -84,16 +84,12 @@ def apart(task: PathTask, found: list[Seed], count: int) -> list[Seed]:
             break
         near = (
             np.abs((one.varied - other.varied) / (task.high - task.low)).max() < SAME
-            and np.abs(_wrapped(one.poses[0] - other.poses[0])).max() < 0.2
+            and np.abs(short_way(one.poses[0] - other.poses[0])).max() < 0.2
             for other in kept
         )
         if not any(near):
             kept.append(one)
     return kept
-
-
-def _wrapped(angles: Floats) -> Floats:
-    return np.asarray((angles + math.pi) % math.tau - math.pi)
 
 
 def _starts(task: PathTask, count: int, seed: int) -> Iterator[Floats]:

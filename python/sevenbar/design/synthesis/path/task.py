@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.description.draft import Draft
+from sevenbar.description.held import Held, held_of
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.design.synthesis.path.point import PointLoop
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
@@ -72,6 +73,11 @@ class PathTask:
         """The dimensions that may change."""
         return tuple(self.closure.dimensions[number] for number in self.varied)
 
+    @property
+    def held(self) -> Held:
+        """What does not change."""
+        return held_of(self.draft, [dimension.name for dimension in self.dimensions])
+
     @cached_property
     def extent(self) -> float:
         """The greatest extent of the wanted path [length], which errors are parts of."""
@@ -118,15 +124,17 @@ def path_task(
     phase: bool = False,
     place: bool = False,
     limits: Limits | None = None,
+    follow: Collection[str] = (),
 ) -> PathTask:
     """The task as requested, checked; raises `RequestError` for what does not fit.
 
     `points` (n, 3) [length]; one that ends where it began is closed. `vary` holds names of dimensions or
     patterns, `bounds` (low, high) by name or pattern, numbers in the file's units or texts as "25 cm"; where
-    none are given all that can change without opening the loop varies, within bounds of its own.
+    none are given all that can change without opening the loop varies, within bounds of its own. L2 of an
+    RSSR whose file leaves it out is a dimension like the others; in `follow` it follows from them.
     """
     draft = linkage if isinstance(linkage, Draft) else Draft.of_linkage(linkage)
-    draft, own = _with_point(draft, point)
+    draft, own = _with_point(draft.holding(follow), point)
     wanted, closed = _wanted(points)
     inputs = _timing(timing, wanted, closed)
     if phase and inputs is None:
@@ -248,8 +256,9 @@ def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
         for i, d in enumerate(every)
         if d.place[0] == "point" and task.draft.raw["point"][int(d.place[1])]["name"] != task.point.name
     }
+    follow = {i for i, d in enumerate(every) if d.follows}
     if vary is None:
-        chosen = [i for i in range(len(every)) if i not in others]
+        chosen = [i for i in range(len(every)) if i not in others | follow]
     else:
         chosen = []
         for pattern in vary:
@@ -259,7 +268,9 @@ def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
                     f"vary: {shown(pattern)} is not a dimension here; {suggestion(pattern, names)}"
                     f"give some of {', '.join(names)}, or a pattern as 'L*'"
                 )
-            chosen += [i for i in found if i not in chosen]
+            if named := [names[i] for i in found if i in follow and pattern in (names[i], every[i].key)]:
+                raise RequestError(f"vary: {named[0]} is to follow from the others; leave one of the two out")
+            chosen += [i for i in found if i not in chosen and i not in follow]
         aside = [names[i] for i in chosen if i in others]
         if aside:
             raise RequestError(
