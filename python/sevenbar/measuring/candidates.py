@@ -101,15 +101,17 @@ class Candidates:
             found[quantity] = apart
         return found
 
-    def _residual(self, rates: Sequence[Floats], offset: float, *, signed: bool) -> tuple[float, int]:
-        """Root mean square of the differences relative to the ranges, and how many rows do not close.
+    def _residual(self, rates: Sequence[Floats], offset: float, *, signed: bool) -> tuple[float, int, float]:
+        """Root mean square of the differences relative to the ranges, how many rows do not close, that of the others.
 
-        A row that does not close counts as a difference of a whole range.
+        In the first a row that does not close counts as a difference of a whole range.
         """
         apart = self.differences(rates, offset, signed=signed)
         parts = np.array([d / self.scales[q] for q, d in apart.items()])
         open_rows = int(np.isnan(parts).any(axis=0).sum())
-        return math.sqrt(float(np.mean(np.where(np.isnan(parts), 1.0, parts) ** 2))), open_rows
+        closed = float(np.mean(parts[np.isfinite(parts)] ** 2)) if open_rows < parts.shape[1] else 1.0
+        every = float(np.mean(np.where(np.isnan(parts), 1.0, parts) ** 2))
+        return math.sqrt(every), open_rows, math.sqrt(closed)
 
     def _offset(self, rates: Sequence[Floats]) -> float:
         """The offset of the output that fits best: the mean difference, of angles round the circle."""
@@ -174,10 +176,19 @@ class Candidates:
         moved = self._offset(rates) if offset else 0.0
         ways = (False, True) if len(self.stretches) > 1 and "velocity" in self.values else (False,)
         tries = [(*self._residual(rates, moved, signed=signed), signed) for signed in ways]
-        residual, open_rows, signed = min(tries)
-        branches = key.branches if len(key.branches) > 1 else ()
+        residual, open_rows, closed, signed = min(tries)
         return PassFit(
-            key.circuit, key.branches[0], key.turn, residual, open_rows, phase, moved, branches, signed
+            circuit=key.circuit,
+            branch=key.branches[0],
+            turn=key.turn,
+            residual=residual,
+            open_rows=open_rows,
+            open_share=open_rows / len(self.inputs),
+            phase=phase,
+            offset=moved,
+            branches=key.branches if len(key.branches) > 1 else (),
+            signed=signed,
+            closed_residual=closed,
         )
 
     def _first_phase(self, wanted: Sequence[Key], offset: bool) -> dict[Key, float]:

@@ -37,9 +37,6 @@ UNIFORM = 0.01
 #: The second best candidate within this factor of the best: the data hardly distinguish the two.
 CLOSE_CALL = 1.2
 
-#: Differences of this share of the measured range are no small ones: something else is wrong.
-UNEXPLAINED = 0.1
-
 #: Lines that a note names.
 MOST_LINES = 12
 
@@ -80,6 +77,8 @@ class Comparison(Printed):
     #: The chosen circuit at the inputs of the rows, once for each of its passes.
     circuit: Circuit
     notes: tuple[str, ...]
+    #: Those of the notes that say something of the rows, not of the differences.
+    about_rows: tuple[str, ...]
     _candidates: Candidates = field(repr=False)
 
     @property
@@ -204,17 +203,19 @@ def compare(
         computed=computed,
         circuit=problem.circuit_of(best),
         notes=(),
+        about_rows=(),
         _candidates=problem,
     )
-    return replace(compared, notes=(*notes, *_notes(compared, measured)))
+    about = (*notes, *_about_rows(compared))
+    return replace(compared, notes=(*about, *_about_differences(compared, measured)), about_rows=about)
 
 
-def _notes(compared: Comparison, measured: Measured) -> list[str]:
+def _about_rows(compared: Comparison) -> list[str]:
     """What the rows show besides their differences."""
     notes, best = [], compared.chosen
     if best.branches:
         notes.append(
-            f"the input turns back at its limit in {_lines(compared)}: the rows are compared pass by pass, "
+            f"the input turns back at its limit in {_lines(compared)}: the rows are taken pass by pass, "
             f"on {name_of(best).partition(', ')[2]}"
         )
     for quantity, values in compared.measured.items():
@@ -232,7 +233,13 @@ def _notes(compared: Comparison, measured: Measured) -> list[str]:
             f"(residual {per_cent(other.residual)} against {per_cent(best.residual)}): "
             "these data hardly distinguish the two"
         )
-    if best.residual > UNEXPLAINED:
+    return notes
+
+
+def _about_differences(compared: Comparison, measured: Measured) -> list[str]:
+    """What is to be said of the differences, and of rows that are left out."""
+    notes, best = [], compared.chosen
+    if not best.explains:
         notes.append(
             f"the differences are {per_cent(best.residual)} of the measured range: no circuit explains "
             "these data; check units, zeros (--align), speed and which joint was measured"

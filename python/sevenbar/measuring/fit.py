@@ -61,6 +61,8 @@ class CurveFit:
         self.held: list[int] = []
         #: Lines of rows that came to lie beyond a limit of the input.
         self.left_out: list[int] = []
+        #: Why the parameters are not those of a minimum, if they are not.
+        self.unfinished: RequestError | None = None
         self._least = math.inf
 
     @property
@@ -108,7 +110,7 @@ class CurveFit:
         """The residual of the parameters that were found."""
         residual = self.residual(self.z)
         if residual is None:
-            raise self._lost()
+            raise ArithmeticError("the poses of a fit were lost")
         return residual
 
     def jacobian(self, columns: Sequence[int]) -> Floats:
@@ -130,16 +132,16 @@ class CurveFit:
             if set(again) == set(unidentified):
                 break
             unidentified = again
-        if end == "closed":
-            raise self._lost()
         if end == "unsettled":
-            raise RequestError(
+            self.unfinished = RequestError(
                 f"{self.model.before.source}: no best dimensions were found in {self.evaluations} evaluations; "
                 "free fewer with --free or --hold"
             )
+        elif end == "settled":
+            self.unfinished = None
         return again
 
-    def _lost(self) -> RequestError:
+    def _closed_way(self) -> RequestError:
         """What keeps the fit from its minimum."""
         model, source = self.model, self.model.before.source
         if model.too_short:
@@ -223,7 +225,10 @@ class CurveFit:
             self.z = spread(minimum.x)
             lost = self.model.lost
             total = len(self.model.before.line)
-            if minimum.end != "closed" or not lost.size:
+            if minimum.end != "closed":
+                return minimum.end
+            self.unfinished = self._closed_way()
+            if not lost.size:
                 return minimum.end
             if len(self.left_out) + lost.size > MAY_BE_LOST * total:
                 return minimum.end

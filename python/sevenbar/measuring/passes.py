@@ -20,6 +20,13 @@ from sevenbar.kinematics.circuits import Integers
 TURNS_BACK = 0.01
 
 
+#: Differences of this share of the measured range are no small ones: something else is wrong.
+UNEXPLAINED = 0.1
+
+#: Share of the rows that may lie beyond a limit of the input, which errors of the dimensions move.
+MAY_BE_OPEN = 0.1
+
+
 @dataclass(frozen=True)
 class PassFit:
     """A pass of a circuit and its residual: the rms of differences relative to each measured range.
@@ -33,13 +40,21 @@ class PassFit:
     #: Whole turns of the input at which the data begin, for a circuit that closes after several.
     turn: int
     residual: float
-    #: Rows whose input does not close the loop on this pass.
+    #: Rows whose input does not close the loop on this pass, and what share they are.
     open_rows: int
+    open_share: float = 0.0
     phase: float = 0.0
     offset: float = 0.0
     branches: tuple[int, ...] = ()
     #: Whether velocities change their sign where the input goes back; those of `motion.csv` do not.
     signed: bool = False
+    #: The residual of the rows that close alone.
+    closed_residual: float = 0.0
+
+    @property
+    def explains(self) -> bool:
+        """Whether it explains the rows: all but few close, and these with small differences."""
+        return self.closed_residual <= UNEXPLAINED and self.open_share <= MAY_BE_OPEN
 
     @property
     def key(self) -> Key:

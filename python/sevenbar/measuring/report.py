@@ -81,7 +81,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
     )
     speed = calibration.before.speed
     facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
-    facts.add("explained by", f"circuit {chosen.circuit}, branch {chosen.branch}")
+    facts.add("explained by", name_of(chosen))
     for quantity in calibration.outputs:
         before, after = (
             _rms(calibration.measured[quantity] - side[quantity])
@@ -310,6 +310,8 @@ def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
 
 
 def _candidate(fit: PassFit) -> str:
+    if fit.explains and fit.open_rows:
+        return f"{name_of(fit)} (residual {per_cent(fit.closed_residual)} where it closes)"
     return f"{name_of(fit)} (residual {per_cent(fit.residual)})"
 
 
