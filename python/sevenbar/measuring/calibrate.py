@@ -26,6 +26,7 @@ import fnmatch
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -83,7 +84,7 @@ class Calibration(Printed):
     file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of
     the output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of
     the calibrated parameters in their order. `places` counts the rows without those that repeat an input; `exact`:
-    what is left is rounding, and no interval can be made of it. `held` has the dimensions that stay as asked.
+    what is left is rounding, and no interval can be made of it. `follow` names what follows the others.
     """
 
     linkage: Linkage
@@ -96,7 +97,7 @@ class Calibration(Printed):
     freedom: int
     places: int
     exact: bool
-    held: Held
+    follow: tuple[str, ...]
     noise: Mapping[str, float]
     line: Integers
     input: Floats
@@ -105,6 +106,12 @@ class Calibration(Printed):
     nominal: Mapping[str, Floats]
     evaluations: int
     notes: tuple[str, ...]
+
+    @cached_property
+    def held(self) -> Held:
+        """The dimensions that stay as they were asked to, or follow."""
+        moved = {p.name for p in self.parameters if p.status not in ("fixed", "follows")}
+        return held_of(Draft.of_linkage(self.linkage).holding(self.follow), moved)
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -171,7 +178,8 @@ def calibrate(
     ends = ends_of(linkage) if ends is None else ends
     numbers = Numbers(linkage)
     names = _named(numbers, free, hold, follow)
-    draft = Draft.of_linkage(linkage).holding(follow)
+    if follow:
+        Draft.of_linkage(linkage).holding(follow)
     _refuse_what_stays(measured, ends)
     evaluations, seen = 0, progress or (lambda _done, _total, _best: None)
     seen(0, 0, "")
@@ -197,7 +205,7 @@ def calibrate(
     _refuse_unexplained(before, fit)
     if fit.unfinished is not None:
         raise fit.unfinished
-    return _calibration(measured, fit, unidentified, confidence, held_of(draft, {*names, *model.opening}))
+    return _calibration(measured, fit, unidentified, confidence)
 
 
 def _named(numbers: Numbers, free: Sequence[str], hold: Sequence[str], follow: Sequence[str]) -> list[str]:
@@ -270,7 +278,6 @@ def _calibration(
     fit: CurveFit,
     unidentified: Mapping[int, tuple[int, ...]],
     confidence: float,
-    held: Held,
 ) -> Calibration:
     """The calibration of a finished fit."""
     from scipy.special import stdtrit
@@ -278,7 +285,9 @@ def _calibration(
     model, before = fit.model, fit.model.before
     free, scales = fit.free, model.scales
     deviation, jacobian = fit.deviation(), fit.jacobian(free)
-    computed, at_nominal = _curve(model, fit.z), _at_nominal(model, fit.z)
+    computed = model.computed(fit.z)
+    if computed is None:
+        raise ArithmeticError("the poses of a finished calibration were lost")
     rms = {q: math.sqrt(float(np.mean((v - computed[q]) ** 2))) for q, v in model.values.items()}
     exact = all(rms[q] <= EXACT * extent for q, extent in model.extents.items())
     _, values, rows = np.linalg.svd(jacobian, full_matrices=False)
@@ -314,32 +323,16 @@ def _calibration(
         freedom=fit.freedom,
         places=fit.sites,
         exact=exact,
-        held=held,
+        follow=model.follows,
         noise={q: noise * deviation for q, noise in fit.noise.items()},
         line=measured.line[model.rows],
         input=model.begin + fit.z[-2],
         measured=model.values,
         computed=computed,
-        nominal=at_nominal,
+        nominal=model.at_first,
         evaluations=fit.evaluations,
         notes=_notes(measured, fit, computed, exact=exact),
     )
-
-
-def _curve(model: CurveModel, z: Floats) -> Mapping[str, Floats]:
-    computed = model.computed(z)
-    if computed is None:
-        raise ArithmeticError("the poses of a finished calibration were lost")
-    return computed
-
-
-def _at_nominal(model: CurveModel, z: Floats) -> Mapping[str, Floats]:
-    """The curve of the design, with the zeros of the first alignment; the poses stay those of z."""
-    model.back_to(model.first)
-    found = _curve(model, model.first)
-    if not (model.computed(z) is not None or model.back_to(z)):
-        raise ArithmeticError("the poses of a finished calibration were lost")
-    return found
 
 
 def _notes(

@@ -268,8 +268,8 @@ class Candidates:
                 measured["angle"] = measured["angle"] - math.tau * turns
         return {quantity: measured[quantity] - apart[quantity] for quantity in measured}, measured
 
-    def curve(self, chosen: PassFit, computed: Mapping[str, Floats]) -> tuple[Floats, dict[str, Floats]]:
-        """The inputs (m,) of the linkage and each quantity (m,) on each pass of the rows, a gap between passes."""
+    def curve(self, chosen: PassFit, computed: Mapping[str, Floats]) -> dict[str, Floats]:
+        """The "input" (m,) of the linkage and each quantity on each pass of the rows, NaN between passes."""
         low, high = float(self.inputs.min()), float(self.inputs.max())
         grid = np.linspace(low, high, CURVE)
         table = self.passes(grid + chosen.phase + math.tau * chosen.turn)
@@ -292,8 +292,7 @@ class Candidates:
                 found["angle"] = angle
             for quantity, values in {"input": grid + chosen.phase, **found}.items():
                 parts[quantity] += [values, gap]
-        joined = {quantity: np.concatenate(values)[:-1] for quantity, values in parts.items()}
-        return joined.pop("input"), joined
+        return {quantity: np.concatenate(values)[:-1] for quantity, values in parts.items()}
 
     def circuit_of(self, chosen: PassFit) -> Circuit:
         """The chosen circuit at the inputs of the rows, once for each of its passes."""

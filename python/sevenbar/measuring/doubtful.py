@@ -28,6 +28,10 @@ FEW = 0.1
 #: Rows that one message names.
 MOST_NAMED = 5
 
+#: Times the median residual that no row exceeds where there is no need to look closer: a row that is far off
+#: draws at most half of the curve to itself.
+PLAIN = 6.0
+
 #: Steps of the fit by absolute differences, and the smallest weight's difference relative to the median.
 STEPS, LEAST = 30, 1e-3
 
@@ -61,7 +65,7 @@ def left_by_most(residual: Floats, jacobian: Floats) -> Floats:
     The least sum of absolute values over changes of the parameters, by their derivatives (n, k).
     """
     left = residual
-    if not jacobian.shape[1]:
+    if not jacobian.shape[1] or np.abs(left).max() <= PLAIN * np.median(np.abs(left)):
         return left
     for _ in range(STEPS):
         middle = float(np.median(np.abs(left)))

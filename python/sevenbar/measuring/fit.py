@@ -40,6 +40,9 @@ MOST_ROUNDS, MOST_WEIGHINGS = 8, 40
 #: Factor by which the noise of a quantity may still change.
 WEIGHED = 1e-10
 
+#: Share of the sum of squares that may still be gained where it is only to be known how large the noise is.
+ENOUGH = 1e-2
+
 #: Evaluations of one search.
 MOST_EVALUATIONS = 400
 
@@ -121,16 +124,21 @@ class CurveFit:
     def run(self) -> dict[int, tuple[int, ...]]:
         """Finds the parameters; gives what is held as the data do not identify it, and what undoes each."""
         unidentified = self._unidentified(0.0)
+        exactly = False
         for turn in range(MOST_ROUNDS):
             self.held = list(unidentified)
-            end = self._weigh()
+            # what the noise hides shows long before the minimum is known to all digits
+            exactly = exactly or turn >= MOST_ROUNDS // 2
+            end = self._weigh(exactly=exactly)
             again = self._unidentified(self.deviation())
             if turn >= MOST_ROUNDS // 2:
                 # a choice that would come and go stays
                 both = [*unidentified, *again]
                 again = {k: again.get(k, unidentified.get(k, ())) for k in both}
             if set(again) == set(unidentified):
-                break
+                if exactly:
+                    break
+                exactly = True
             unidentified = again
         if end == "unsettled":
             self.unfinished = RequestError(
@@ -157,11 +165,11 @@ class CurveFit:
             f"of lines {shown}{more}; check the circuit, units and zeros, or hold more dimensions"
         )
 
-    def _weigh(self) -> str:
+    def _weigh(self, *, exactly: bool) -> str:
         """Least squares, the noise of each quantity being taken from its own differences."""
         self._begin()
         for _ in range(MOST_WEIGHINGS):
-            end = self._least_squares()
+            end = self._least_squares(0.0 if exactly else ENOUGH)
             if len(self.noise) == 1 or not self.free:
                 break
             parts = np.split(self.found(), len(self.noise))
@@ -175,26 +183,28 @@ class CurveFit:
             self.noise = {
                 q: noise * factor for (q, noise), factor in zip(self.noise.items(), factors, strict=True)
             }
-            if max(abs(math.log(factor)) for factor in factors) < WEIGHED:
+            if max(abs(math.log(factor)) for factor in factors) < (WEIGHED if exactly else ENOUGH):
                 break
         return end
 
     def _begin(self) -> None:
         """Begins a search where the last one ended, or at the design, where the residual is less."""
-        starts = []
-        for z in (self.z, self.model.first):
-            start = self.model.first.copy()
-            start[self.free] = z[self.free]
-            start = self.model.filled(start)
-            if not any(np.array_equal(start, other) for other, _ in starts):
-                residual = self.residual(start)
-                starts.append((start, math.inf if residual is None else float(residual @ residual)))
-                self.evaluations += 1
-        self.z = min(starts, key=lambda one: one[1])[0]
-        if self.residual(self.z) is None and not self.model.back_to(self.z):
+        start = self.model.first.copy()
+        start[self.free] = self.z[self.free]
+        start = self.model.filled(start)
+        if np.array_equal(start, self.z):
+            return
+        values = self.model.values
+        design = sum(float(np.sum(((self.model.at_first[q] - v) / self.noise[q]) ** 2)) for q, v in values.items())
+        residual = self.residual(start)
+        self.evaluations += 1
+        if residual is not None and float(residual @ residual) < design:
+            self.z = start
+        else:
             self.z = self.model.first.copy()
+            self.model.back_to(self.z)
 
-    def _least_squares(self) -> str:
+    def _least_squares(self, enough: float) -> str:
         free, scales = self.free, self.model.scales
         if self.count <= len(free):
             rows = len(self.model.begin)
@@ -220,7 +230,7 @@ class CurveFit:
         while True:
             minimum = least_squares(
                 lambda part: self.residual(spread(part)), slopes, self.z[free] / scales[free],
-                most=MOST_EVALUATIONS)  # fmt: skip
+                most=MOST_EVALUATIONS, enough=enough)  # fmt: skip
             self.evaluations += minimum.evaluations
             self.z = spread(minimum.x)
             lost = self.model.lost

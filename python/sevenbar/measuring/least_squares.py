@@ -61,11 +61,13 @@ def least_squares(
     x: Floats,
     *,
     most: int,
+    enough: float = 0.0,
 ) -> Minimum:
     """The parameters near x (k,) at which a residual (n,) has the least sum of squares.
 
     `residual` gives `None` where it does not exist, and no step goes there; `jacobian` (n, k) is asked for
-    only where it does. `most` evaluations.
+    only where it does. `most` evaluations; the search also ends where no more than a share `enough` of the sum is
+    still to be gained.
 
     >>> points, heights = np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.7, 7.4])
     >>> found = least_squares(
@@ -85,6 +87,8 @@ def least_squares(
         while True:
             step, promised = step_of.within(radius)
             length = float(np.linalg.norm(step))
+            if promised <= enough * cost:
+                return Minimum(x, "settled", evaluations)
             flat = promised <= FLAT * cost or length <= SETTLED
             if flat and (length <= SETTLED or length > NO_SHORTER * last):
                 return Minimum(x, "settled", evaluations)

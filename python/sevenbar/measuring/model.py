@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -95,15 +96,23 @@ class CurveModel:
         self.lost: Integers = np.zeros(0, dtype=np.int64)
         #: A length that was too short there.
         self.too_short = ""
-        self._start(loop, poses)
+        self._start(loop, poses, here)
 
-    def _start(self, loop: NumberedLoop, poses: Floats) -> None:
-        """Takes closed poses of a loop as those from which others are followed."""
+    def _start(self, loop: NumberedLoop, poses: Floats, here: Slopes) -> None:
+        """Takes closed poses of a loop, with derivatives by all its numbers, as those from which others are followed."""
         self._only = [self.places[k] for k in self.moving]
-        self._known = (self.numbers.loop(self.driver, loop.p, self._only), poses)
+        self._known = (loop, poses)
         self._slopes: Slopes | None = None
+        self._matrices: dict[str, Floats] = {}
+        if self.order == 0:
+            self._slopes = replace(here, by_number=here.by_number[:, :, self.moving])
+        else:
+            self._known = (self.numbers.loop(self.driver, loop.p, self._only), poses)
         self._at = self.first.copy()
-        self._first_poses = (self._known[0], poses)
+        self._first_poses = (self.numbers.loop(self.driver, loop.p, ()), poses)
+        at_first = self.computed(self.first)
+        #: The curve of the design, with the zeros of the first alignment.
+        self.at_first: dict[str, Floats] = {} if at_first is None else at_first
 
     def _sites(self) -> Integers:
         """Which place of the input each row is at (rows,): inputs of a pass that agree are one."""
@@ -126,10 +135,12 @@ class CurveModel:
         loop, poses = self._known
         self.rows, self.begin, self.speeds = self.rows[keep], self.begin[keep], self.speeds[keep]
         self.values = {q: v[keep] for q, v in self.values.items()}
+        self.at_first = {q: v[keep] for q, v in self.at_first.items()}
         self.sites = np.unique(self.sites[keep], return_inverse=True)[1]
-        self._known = (loop, poses[keep])
         self._first_poses = (self._first_poses[0], self._first_poses[1][keep])
-        self._slopes = None
+        # derivatives are those of the poses that are left
+        self._known = (self.numbers.loop(self.driver, loop.p, self._only), poses[keep])
+        self._slopes, self._matrices = None, {}
 
     def filled(self, z: Floats) -> Floats:
         """Parameters with those that follow the others in their place."""
@@ -178,12 +189,14 @@ class CurveModel:
         if self.lost.size:
             return False
         self._known = (self.numbers.loop(self.driver, p, self._only), near)
-        self._slopes, self._at = None, z.copy()
+        self._slopes, self._matrices, self._at = None, {}, z.copy()
         return True
 
     def back_to(self, z: Floats) -> bool:
         """Moves the poses to parameters from those of the design; whether every row closes there."""
-        self._known, self._slopes, self._at = self._first_poses, None, self.first.copy()
+        loop, poses = self._first_poses
+        self._known = (self.numbers.loop(self.driver, loop.p, self._only), poses)
+        self._slopes, self._matrices, self._at = None, {}, self.first.copy()
         return self._to(z)
 
     def _here(self) -> Slopes:
@@ -219,8 +232,10 @@ class CurveModel:
         """
         if not self._to(z):
             raise ValueError("no derivatives where the loop does not close")
+        if self._matrices:
+            return self._matrices
         here = self._here()
-        slopes = {}
+        slopes = self._matrices
         for quantity in self.values:
             order = OUTPUTS.index(quantity)
             speeds = self.speeds**order
