@@ -266,7 +266,8 @@ def _refuse_unexplained(before: Comparison, fit: CurveFit) -> None:
 
 def _need_scipy() -> None:
     try:
-        import scipy.special  # noqa: F401
+        # its parts take a while to load, and are not needed before the end
+        import scipy  # noqa: F401
     except ImportError:
         raise MissingExtraError(
             "calibrate needs scipy and tomlkit; install them with: pip install 'sevenbar[calibrate]'"

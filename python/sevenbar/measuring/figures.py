@@ -38,17 +38,12 @@ WIDE, NARROW, TALL = 6.4, 4.3, 6.2
 
 def shown(ends: Ends, quantity: str, values: Floats) -> Floats:
     """Values of a quantity as they are drawn: positions that turn in degrees, all else as it is."""
-    return np.degrees(values) if quantity in ("input", "angle") and turns(ends, quantity) else values
-
-
-def turns(ends: Ends, quantity: str) -> bool:
-    """Whether a quantity is that of a joint that turns."""
-    return ends.kind(quantity)[0] == "turn"
+    return np.degrees(values) if quantity in ("input", "angle") and ends.turns(quantity) else values
 
 
 def unit(ends: Ends, quantity: str) -> str:
     """The unit of `shown` values."""
-    return "deg" if quantity in ("input", "angle") and turns(ends, quantity) else ends.unit(quantity)
+    return "deg" if quantity in ("input", "angle") and ends.turns(quantity) else ends.unit(quantity)
 
 
 def comparison_figure(comparison: Comparison) -> Figure:
@@ -124,7 +119,7 @@ def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> N
     below[-1].set_xlabel(f"input: {short(ends.input, 40)} [{unit(ends, 'input')}]")
     for axes in column:
         axes.grid(lw=0.6)
-        if turns(ends, "input"):
+        if ends.turns("input"):
             axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 1.5, 3, 4.5, 6, 10]))
 
 

@@ -59,6 +59,10 @@ class Ends:
         slides = self.input_slides if quantity == "input" else self.output_slides
         return "slide" if slides else "turn", max(OUTPUTS.index(quantity), 0) if quantity in OUTPUTS else 0
 
+    def turns(self, quantity: str) -> bool:
+        """Whether a quantity is that of a joint that turns."""
+        return self.kind(quantity)[0] == "turn"
+
     def word(self, quantity: str) -> str:
         """A quantity of the output by its name."""
         return "position" if quantity == "angle" and self.output_slides else quantity

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
@@ -16,13 +15,18 @@ from rich.text import Text
 from sevenbar.measuring.calibrate import Calibration, Parameter
 from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
-from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns
 from sevenbar.measuring.measured import Ends
 from sevenbar.measuring.passes import PassFit
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, json_text, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: Decimals of values that exact rows give.
+EXACT_DIGITS = 6
 
 #: The JSON has all candidates and notes; the page has as many candidates.
 MOST_CANDIDATES = 4
@@ -76,7 +80,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
     facts = Facts()
     facts.add(
         "measured",
-        f"{calibration.source}, {len(calibration.line)} rows of "
+        f"{calibration.source}, {_rows_and_places(calibration)} of "
         + ", ".join(_words(ends, calibration.outputs)),
     )
     speed = calibration.before.speed
@@ -93,6 +97,8 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         )
     count = len(calibration.calibrated)
     facts.add("fitted", f"{count} parameters, {calibration.freedom} degrees of freedom")
+    if held := calibration.held.text:
+        facts.add("held", held)
     for parameter in calibration.parameters:
         if parameter.status == "untold":
             facts.add("not identifiable", unidentified_sentence(parameter, calibration))
@@ -103,6 +109,12 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         facts.add("note", note)
     title = Text(calibration.linkage.name, style="bold underline")
     return Group(title, facts.grid, Text(), _parameter_table(calibration))
+
+
+def _rows_and_places(calibration: Calibration) -> str:
+    """How many rows there are, and at how many places where some repeat an input."""
+    rows = len(calibration.line)
+    return f"{rows} rows" + (f" at {calibration.places} places" if calibration.places < rows else "")
 
 
 def unidentified_sentence(parameter: Parameter, calibration: Calibration) -> str:
@@ -168,8 +180,12 @@ def calibration_dict(calibration: Calibration) -> dict[str, Any]:
         "rows": len(calibration.line),
         "circuit": calibration.before.chosen.circuit,
         "branch": calibration.before.chosen.branch,
+        "branches": list(calibration.before.chosen.branches),
         "confidence": calibration.confidence,
         "degrees_of_freedom": calibration.freedom,
+        "places": calibration.places,
+        "exact": calibration.exact,
+        **calibration.held.as_dict,
         "parameters": [{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
         "covariance": {
             "parameters": [p.name for p in calibration.calibrated],
@@ -218,7 +234,16 @@ def _write_compared(comparison: Comparison | ExtremesComparison, path: Path) -> 
 
 
 def _comparison_figure(comparison: Comparison | ExtremesComparison) -> Figure | None:
+    # matplotlib takes longer to load than a comparison to make
+    from sevenbar.measuring.figures import comparison_figure
+
     return comparison_figure(comparison) if isinstance(comparison, Comparison) else None
+
+
+def _calibration_figure(calibration: Calibration) -> Figure:
+    from sevenbar.measuring.figures import calibration_figure
+
+    return calibration_figure(calibration)
 
 
 def calibration_report(
@@ -233,7 +258,7 @@ def calibration_report(
             "calibration.json": json_file(calibration_dict),
             "parameters.csv": _write_parameters,
             "rows.csv": columns_file(_calibrated_rows),
-            **figure_files("calibration", figures, calibration_figure),
+            **figure_files("calibration", figures, _calibration_figure),
         },
     )
 
@@ -316,7 +341,7 @@ def _candidate(fit: PassFit) -> str:
 
 
 def _value(ends: Ends, quantity: str, value: float) -> str:
-    if turns(ends, quantity):
+    if ends.turns(quantity):
         return f"{math.degrees(value):.4f}\u00b0"
     return f"{value:.6g} {ends.unit(quantity)}"
 
@@ -359,10 +384,13 @@ def _parameter_table(calibration: Calibration) -> Table:
     for p in calibration.parameters:
         label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]".removesuffix(" []")
         nominal, value = _shown(p, p.nominal), _shown(p, p.value)
-        if p.status == "calibrated":
+        follows = p.status == "follows"
+        if p.status == "calibrated" or follows:
             reach = _shown(p, (p.high - p.low) / 2)
-            digits = _digits(reach)
-            cells = [f"{value:.{digits}f}", f"{reach:.{digits}f}", f"{value - nominal:+.{digits}f}", ""]
+            digits = EXACT_DIGITS if calibration.exact else _digits(reach)
+            plus_minus = "exact" if calibration.exact else f"{reach:.{digits}f}"
+            change = f"{value - nominal:+.{digits}f}"
+            cells = [f"{value:.{digits}f}", plus_minus, change, "follows" * follows]
         else:
             note = {"fixed": "held", "untold": "not identifiable"}.get(p.status, p.status)
             cells = [f"{value:.6g}", "-", "-", note]
