@@ -5,11 +5,12 @@ by the dimensions (`sevenbar.kinematics.sensitivity`), `|r|^2` is made least (`l
 
     s^2 = |r|^2 / (n - k),      covariance s^2 (J^T J)^-1,      value +- t(n - k) sqrt(covariance)         (1)
 
-with Student's t, n being the places that were measured (`fit`). Where several quantities were measured, the noise of each is taken from its differences.
+with Student's t, n being the places that were measured (`fit`). Where several quantities were measured, the
+noise of each is taken from its differences.
 
 What data cannot identify is held, not guessed. A direction v in the space of the dimensions (J v = 0 to
-rounding, or so small that the standard error along v exceeds `fit.UNIDENTIFIED` of the linkage's size) changes
-the curve by nothing that could be seen: of an RSSR measured by its angles, making all lengths twice as long.
+rounding, or so small that the standard error along v exceeds `fit.UNIDENTIFIED` of the linkage's size)
+changes the curve by nothing that could be seen: of an RSSR measured by its angles, making all lengths twice as long.
 For each such direction one dimension stays at its nominal value, and the report names it and those that undo
 its change; intervals of the others then hold for that value. A dimension whose change alone would open an
 overconstrained loop is held too, and so is a coupler that the file leaves out, unless it is to be found.
@@ -38,7 +39,7 @@ from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.sensitivity import Numbers
-from sevenbar.measuring.compare import Comparison, compare, ends_of, inputs_of, name_of, per_cent
+from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent
 from sevenbar.measuring.doubtful import EXACT, far_off, left_by_most, sentence
 from sevenbar.measuring.fit import CurveFit
 from sevenbar.measuring.measured import Ends, Measured
@@ -49,7 +50,7 @@ from sevenbar.text.printing import Printed
 #: Correlation of neighbouring residuals, in standard deviations of that of random ones, that is reported.
 FOLLOWS = 4.0
 
-#: `fixed` and `follows` as it was asked for; `untold` is what the data do not identify.
+#: `fixed` and `follows` as the caller wants it; `untold` is what the data do not identify.
 Status = Literal["calibrated", "fixed", "follows", "untold", "opens the loop"]
 
 #: Called with the evaluations done, how many there will be (0: not known), and the best residual so far.
@@ -60,8 +61,8 @@ Progress = Callable[[int, int, str], None]
 class Parameter:
     """A dimension or an offset: nominal and calibrated value [length, rad], and how well it is known.
 
-    `error` is its standard error, `low` and `high` the ends of its interval; NaN where it was not calibrated, and
-    where the rows are exact.
+    `error` is its standard error, `low` and `high` the ends of its interval; NaN where it was not
+    calibrated, and where the rows are exact.
     `undone_by` names the dimensions whose changes undo one of an `untold` dimension.
     """
 
@@ -83,8 +84,8 @@ class Calibration(Printed):
     Arrays (n,) hold the rows that were used: `input` [rad, or length] as calibrated, `measured` as in the
     file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of
     the output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of
-    the calibrated parameters in their order. `places` counts the rows without those that repeat an input; `exact`:
-    what is left is rounding, and no interval can be made of it. `follow` names what follows the others.
+    the calibrated parameters in their order. `places` counts the rows without those that repeat an input;
+    `exact`: what is left is rounding, and no interval can be made of it. `follow` names what follows the others.
     """
 
     linkage: Linkage
@@ -151,10 +152,10 @@ def calibrate(
 
     `free` names the dimensions to be found and `hold` those to be kept, by names or patterns ("length_*"):
     M, N, L1, L2, L3, D of an RSSR, length_1, offset_1, twist_1 .. of Denavit-Hartenberg rows, coordinates of
-    joints and axes as drawn. A coupler that the file leaves out is a rod with the length that closes its pose,
-    and a dimension like the others; in `follow` it follows from them. `offsets` of "input" and "output" frees
-    the zeros of the two measured joints. `progress(evaluations, 0, "residual 0.2 %")` is called on the way. The
-    others are as for `compare`.
+    joints and axes as drawn. A coupler that the file leaves out is a rod with the length that closes its
+    pose, and a dimension like the others; in `follow` it follows from them. `offsets` of "input" and "output"
+    frees the zeros of the two measured joints. `progress(evaluations, 0, "residual 0.2 %")` is called on the
+    way. The others are as for `compare`.
 
     Raises `RequestError` for a wrong argument, too few rows, rows that no circuit explains and a linkage made
     without a description, `NotCoveredError` for an output that spins idly, `MissingExtraError` without scipy.
@@ -236,9 +237,9 @@ def _refuse_what_stays(measured: Measured, ends: Ends) -> None:
         values = measured.values[quantity]
         if np.ptp(values) <= EXACT * float(np.abs(values).max()):
             raise RequestError(
-                f"{measured.source}: the {ends.word(quantity)} of {ends.output} is the same in all {len(measured)} "
-                "rows: an output that does not move identifies no dimension; check which joint and which column "
-                "were measured"
+                f"{measured.source}: the {ends.word(quantity)} of {ends.output} is the same in all "
+                f"{len(measured)} rows: an output that does not move identifies no dimension; check which joint "
+                "and which column were measured"
             )
 
 
@@ -258,9 +259,9 @@ def _refuse_unexplained(before: Comparison, fit: CurveFit) -> None:
     share = math.inf if computed is None else fit.share(computed)
     if share > UNEXPLAINED:
         raise RequestError(
-            f"{before.source}: no circuit explains these data; the best dimensions on {name_of(before.chosen)} "
-            f"leave a residual of {per_cent(share)} of the measured range; check units, zeros "
-            "(--offset input,output), speed, the order of the rows and which joint was measured"
+            f"{before.source}: no circuit explains these data; the best dimensions on "
+            f"{name_of(before.chosen)} leave a residual of {per_cent(share)} of the measured range; "
+            f"{causes(before, '--offset input,output')}"
         )
 
 
@@ -346,13 +347,13 @@ def _notes(
     lost = len(before.line) - len(model.rows) - len(fit.left_out)
     if lost:
         notes.append(
-            f"{lost} of {len(before.line)} rows have inputs at which the nominal linkage does not close, or is "
-            "at a dead centre; they are left out"
+            f"{lost} of {len(before.line)} rows have inputs at which the nominal linkage does not close, or "
+            "is at a dead centre; they are left out"
         )
     if fit.left_out:
         notes.append(
-            f"lines {', '.join(map(str, sorted(fit.left_out)))} lie beyond a limit of the input of the linkage "
-            "as calibrated; they are left out"
+            f"lines {', '.join(map(str, sorted(fit.left_out)))} lie beyond a limit of the input of the "
+            "linkage as calibrated; they are left out"
         )
     if exact:
         notes.append("the rows are exact: what is left is rounding, and no intervals can be made of it")

@@ -45,7 +45,7 @@ class Candidates:
         if not ends.output_slides and "angle" in self.values:
             # a jump of half a turn between two rows is one from 180 to -180 degrees
             self.values["angle"] = np.unwrap(self.values["angle"])
-        self.scales = {quantity: float(np.ptp(v)) or 1.0 for quantity, v in self.values.items()}
+        self.scales = {quantity: ends.extent(quantity, v) for quantity, v in self.values.items()}
         self.source = measured.source
         self.stretches = stretches_of(inputs, slides=ends.input_slides)
         #: Which way the input goes at each row (n,), 1 or -1.
@@ -102,7 +102,7 @@ class Candidates:
         return found
 
     def _residual(self, rates: Sequence[Floats], offset: float, *, signed: bool) -> tuple[float, int, float]:
-        """Root mean square of the differences relative to the ranges, how many rows do not close, that of the others.
+        """Root mean square of the differences relative to the ranges, open rows, and that of the others.
 
         In the first a row that does not close counts as a difference of a whole range.
         """
@@ -150,8 +150,8 @@ class Candidates:
         least = min(candidate.residual for candidate in tried)
         if phase:
             tried = [self._refined(c, offset) if c.residual <= max(NEAR * least, 1e-3) else c for c in tried]
-        # residuals that differ by rounding are the same
-        tried.sort(key=lambda c: (float(f"{max(c.residual, SAME_RESIDUAL):.6g}"), c.key))
+        # residuals that differ by rounding are the same; what closes nowhere explains nothing
+        tried.sort(key=lambda c: (c.open_share == 1.0, float(f"{max(c.residual, SAME_RESIDUAL):.6g}"), c.key))
         if tried[0].open_rows == len(self.inputs):
             raise RequestError(
                 f"{self.source}: at none of its inputs does the linkage close; check the units of the input "
@@ -216,7 +216,9 @@ class Candidates:
                     at = self.inputs + shift + math.tau * key.turn
                     if not self.ends.input_slides:
                         at = at % (math.tau * turns)
-                    read[key.turn] = {k: [np.interp(at, grid, r) for r in rates] for k, rates in curves.items()}
+                    read[key.turn] = {
+                        k: [np.interp(at, grid, r) for r in rates] for k, rates in curves.items()
+                    }
                 here = self._gathered(read[key.turn], key)
                 moved = self._offset(here) if offset else 0.0
                 residual = self._residual(here, moved, signed=False)[0]

@@ -57,8 +57,8 @@ class Comparison(Printed):
     """Measured and computed values at the same inputs, (n,) each; NaN where the loop does not close.
 
     `input` [rad, or length] is that of the linkage: the measured one plus `chosen.phase`; `measured` has
-    `chosen.offset` subtracted from the angle, and is brought within half a turn of `computed`. `branch` is the
-    pass of each row, `speeds` the speed of the input there.
+    `chosen.offset` subtracted from the angle, and is brought within half a turn of `computed`. `branch` is
+    the pass of each row, `speeds` the speed of the input there.
     """
 
     linkage: Linkage
@@ -88,7 +88,7 @@ class Comparison(Printed):
 
     @cached_property
     def curve(self) -> Mapping[str, Floats]:
-        """The computed curve over the inputs (m,), for figures: "input" and each quantity, NaN between passes."""
+        """The computed curve (m,) for figures: "input" and each quantity; NaN between passes."""
         return self._candidates.curve(self.chosen, self.computed)
 
     def difference(self, quantity: str) -> Floats:
@@ -225,12 +225,12 @@ def _about_rows(compared: Comparison) -> list[str]:
                 f"{compared.ends.output}"
             )
     others = [c for c in compared.candidates[1:] if not alike(c, best)]
-    near = CLOSE_CALL * max(best.residual, SAME_RESIDUAL)
-    if others and others[0].residual < near and others[0].open_rows <= best.open_rows:
+    near = CLOSE_CALL * max(best.closed_residual, SAME_RESIDUAL)
+    if others and others[0].closed_residual < near and others[0].open_rows <= best.open_rows:
         other = others[0]
         notes.append(
             f"{name_of(other)} explains the data nearly as well "
-            f"(residual {per_cent(other.residual)} against {per_cent(best.residual)}): "
+            f"(residual {per_cent(other.closed_residual)} against {per_cent(best.closed_residual)}): "
             "these data hardly distinguish the two"
         )
     return notes
@@ -242,7 +242,7 @@ def _about_differences(compared: Comparison, measured: Measured) -> list[str]:
     if not best.explains:
         notes.append(
             f"the differences are {per_cent(best.residual)} of the measured range: no circuit explains "
-            "these data; check units, zeros (--align), speed and which joint was measured"
+            f"these data; {causes(compared, '--align')}"
         )
     else:
         notes += far_off_notes(compared)
@@ -263,6 +263,15 @@ def alike(one: PassFit, other: PassFit) -> bool:
     return one.key.branches == other.key.branches or bool(one.branches and other.branches)
 
 
+def causes(compared: Comparison, zeros: str) -> str:
+    """What to check where no circuit explains the rows; `zeros` is the option that finds zeros."""
+    stretches = compared._candidates.stretches
+    rows = "" if stretches.in_order else (
+        f"the input turns back {len(stretches) - 1} times in {len(compared.line)} rows: sort them by time; "
+    )  # fmt: skip
+    return f"{rows}check units, zeros ({zeros}), speed and which joint was measured"
+
+
 def far_off_notes(compared: Comparison) -> list[str]:
     """The rows whose differences are far from all others, with their lines."""
     rates = compared._candidates.at(compared.chosen.key, compared.chosen.phase)
@@ -275,7 +284,9 @@ def far_off_notes(compared: Comparison) -> list[str]:
         if rows:
             ends = compared.ends
             notes.append(
-                sentence(compared.source, compared.line, rows, apart, ends.word(quantity), ends.unit(quantity))
+                sentence(
+                    compared.source, compared.line, rows, apart, ends.word(quantity), ends.unit(quantity)
+                )
             )
     return notes
 

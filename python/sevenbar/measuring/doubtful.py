@@ -2,7 +2,8 @@
 
 A row counts as far off if its difference is more than `FAR` times the median of all. Where many differences
 are of one kind, as those of wrong dimensions are, none is: they follow the curve, and its steepest part is no
-slip. So near a dead centre of the input, where the output is steep, the difference counts as one of the input.
+slip. So near a dead centre of the input, where the output is steep, the difference counts as one of the
+input.
 
 Source: the least sum of absolute differences by reweighted least squares; Beaton and Tukey, "The fitting of
 power series", Technometrics 16 (1974).
@@ -56,7 +57,7 @@ def far_off(differences: Floats, slopes: Floats, extent: float) -> list[int]:
     rows = known[far]
     if rows.size > max(1.0, FEW * known.size):
         return []
-    return rows[np.argsort(-size[far], kind="stable")].tolist()
+    return [int(row) for row in rows[np.argsort(-size[far], kind="stable")]]
 
 
 def left_by_most(residual: Floats, jacobian: Floats) -> Floats:
@@ -87,6 +88,5 @@ def sentence(source: str, lines: Integers, rows: list[int], differences: npt.NDA
         often = f"{times:,.0f} times the median" if times < 1e6 else "the others by almost nothing"
         named.append(f"line {lines[row]} by {differences[row]:.3g} {unit} ({often})")
     more = f", and {len(rows) - MOST_NAMED} more" if len(rows) > MOST_NAMED else ""
-    return (
-        f"the {word} is far off in {source}: {', '.join(named)}{more}; measure again there, or leave such rows out"
-    )
+    where = f"{', '.join(named)}{more}"
+    return f"the {word} is far off in {source}: {where}; measure again there, or leave such rows out"

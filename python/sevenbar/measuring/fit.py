@@ -46,7 +46,7 @@ ENOUGH = 1e-2
 #: Evaluations of one search.
 MOST_EVALUATIONS = 400
 
-#: Share of the rows that may be left out as they come to lie beyond a limit of the input.
+#: Share of the rows that may be left out as they lie, in the end, beyond a limit of the input.
 MAY_BE_LOST = 0.1
 
 #: Lines that a message names.
@@ -54,7 +54,7 @@ MOST_LINES = 8
 
 
 class CurveFit:
-    """The parameters of a model that explain its rows best; `seen` is called with the best residual so far."""
+    """The parameters of a model that explain its rows best; `seen(best residual)` is called on the way."""
 
     def __init__(self, model: CurveModel, wanted: list[int], seen: Callable[[float], None]) -> None:
         self.model, self.wanted, self.seen = model, wanted, seen
@@ -62,7 +62,7 @@ class CurveFit:
         self.noise = {q: float(np.ptp(v)) or 1.0 for q, v in model.values.items()}
         self.evaluations = 0
         self.held: list[int] = []
-        #: Lines of rows that came to lie beyond a limit of the input.
+        #: Lines of rows that lie, in the end, beyond a limit of the input.
         self.left_out: list[int] = []
         #: Why the parameters are not those of a minimum, if they are not.
         self.unfinished: RequestError | None = None
@@ -104,10 +104,10 @@ class CurveFit:
             self.seen(share)
 
     def share(self, computed: Mapping[str, Floats]) -> float:
-        """Root mean square of the differences relative to each measured range."""
+        """Root mean square of the differences relative to the range, of the quantity that fits worst."""
         model = self.model
         parts = [(computed[q] - v) / model.extents[q] for q, v in model.values.items()]
-        return math.sqrt(float(np.mean(np.square(parts))))
+        return math.sqrt(max(float(np.mean(part**2)) for part in parts))
 
     def found(self) -> Floats:
         """The residual of the parameters that were found."""
@@ -142,8 +142,8 @@ class CurveFit:
             unidentified = again
         if end == "unsettled":
             self.unfinished = RequestError(
-                f"{self.model.before.source}: no best dimensions were found in {self.evaluations} evaluations; "
-                "free fewer with --free or --hold"
+                f"{self.model.before.source}: no best dimensions were found in {self.evaluations} "
+                "evaluations; free fewer with --free or --hold"
             )
         elif end == "settled":
             self.unfinished = None
@@ -195,7 +195,9 @@ class CurveFit:
         if np.array_equal(start, self.z):
             return
         values = self.model.values
-        design = sum(float(np.sum(((self.model.at_first[q] - v) / self.noise[q]) ** 2)) for q, v in values.items())
+        design = sum(
+            float(np.sum(((self.model.at_first[q] - v) / self.noise[q]) ** 2)) for q, v in values.items()
+        )
         residual = self.residual(start)
         self.evaluations += 1
         if residual is not None and float(residual @ residual) < design:
@@ -212,8 +214,8 @@ class CurveFit:
             if self.sites < rows:
                 repeats = f" at {self.sites} places, as {rows - self.sites} rows repeat the input of another,"
             raise RequestError(
-                f"{self.model.before.source}: {self.count} measured values{repeats} cannot identify {len(free)} "
-                "dimensions; measure at more inputs, or free fewer with --free or --hold"
+                f"{self.model.before.source}: {self.count} measured values{repeats} cannot identify "
+                f"{len(free)} dimensions; measure at more inputs, or free fewer with --free or --hold"
             )
         if not free:
             return "settled"

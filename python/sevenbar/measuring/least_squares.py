@@ -23,7 +23,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 
-#: The first radius, of parameters in parts of the size or radians.
+#: The first radius, of parameters relative to the size, or in radians.
 RADIUS = 0.1
 
 #: Fair, good and least part of the promised fall.
@@ -32,7 +32,7 @@ FAIR, GOOD, ANY = 0.25, 0.75, 1e-4
 #: A promised fall, relative to the sum, below which rounding hides it.
 FLAT = 1e-10
 
-#: Error of a parameter [parts of the size, rad] that is rounding.
+#: Error of a parameter [share of the size, rad] that is rounding.
 SETTLED = 1e-13
 
 #: Ratio of one step's length to the last above which steps no longer become shorter.
@@ -65,9 +65,9 @@ def least_squares(
 ) -> Minimum:
     """The parameters near x (k,) at which a residual (n,) has the least sum of squares.
 
-    `residual` gives `None` where it does not exist, and no step goes there; `jacobian` (n, k) is asked for
-    only where it does. `most` evaluations; the search also ends where no more than a share `enough` of the sum is
-    still to be gained.
+    `residual` gives `None` where it does not exist, and no step goes there; `jacobian` (n, k) is needed
+    only where it does. `most` evaluations; the search also ends where no more than a share `enough` of the sum
+    is still to be gained.
 
     >>> points, heights = np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.7, 7.4])
     >>> found = least_squares(
@@ -121,7 +121,7 @@ class _Steps:
 
     def __init__(self, jacobian: Floats, residual: Floats) -> None:
         count = jacobian.shape[1]
-        triangle = np.linalg.qr(np.column_stack([jacobian, residual]), mode="r")
+        triangle: Floats = np.asarray(np.linalg.qr(np.column_stack([jacobian, residual]), mode="r"))
         left, self.values, rows = np.linalg.svd(triangle[:, :count], full_matrices=False)
         self.along, self.columns = left.T @ triangle[:, count], rows.T
 
@@ -139,7 +139,7 @@ class _Steps:
         """The step of length `radius`, by Newton's method on 1/|step|, which is nearly straight in c."""
         squares, pull = self.values**2, self.values * self.along
         c = 0.0 if squares.min(initial=1.0) > 0 else 1e-12 * float(squares.max(initial=1.0))
-        parts = -pull / np.maximum(squares + c, np.finfo(float).tiny)
+        parts: Floats = -pull / np.maximum(squares + c, np.finfo(float).tiny)
         for _ in range(50):
             length = float(np.linalg.norm(parts))
             if abs(length - radius) <= 1e-3 * radius:

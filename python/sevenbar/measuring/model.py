@@ -44,7 +44,12 @@ class CurveModel:
     """A linkage's curve at measured rows, by its parameters."""
 
     def __init__(
-        self, numbers: Numbers, before: Comparison, inputs: Floats, free: Collection[str], follows: Sequence[str]
+        self,
+        numbers: Numbers,
+        before: Comparison,
+        inputs: Floats,
+        free: Collection[str],
+        follows: Sequence[str],
     ) -> None:
         chosen, ends = before.chosen, before.ends
         self.before, self.follows = before, tuple(follows)
@@ -83,14 +88,16 @@ class CurveModel:
             )
         self.opening = frozenset(n for n, opens in zip(self.names, here.opening, strict=False) if opens)
         #: Which of the numbers may change.
-        self.moving = [k for k, name in enumerate(self.names[:-2]) if name in free and name not in self.opening]
+        self.moving = [
+            k for k, name in enumerate(self.names[:-2]) if name in free and name not in self.opening
+        ]
         self.order = max(OUTPUTS.index(q) for q in before.outputs)
         self.begin = begin
         self.values = {q: before.measured[q][self.rows].copy() for q in before.outputs}
         if "angle" in self.values:
             self.values["angle"] += chosen.offset
         self.speeds = before.speeds[self.rows]
-        self.extents = {q: float(np.ptp(before.measured[q])) or 1.0 for q in before.outputs}
+        self.extents = {q: ends.extent(q, before.measured[q]) for q in before.outputs}
         self.sites = self._sites()
         #: Rows, of those used, that did not close at the last parameters that were tried.
         self.lost: Integers = np.zeros(0, dtype=np.int64)
@@ -99,7 +106,7 @@ class CurveModel:
         self._start(loop, poses, here)
 
     def _start(self, loop: NumberedLoop, poses: Floats, here: Slopes) -> None:
-        """Takes closed poses of a loop, with derivatives by all its numbers, as those from which others are followed."""
+        """Takes closed poses of a loop, with derivatives by all numbers, to follow others from."""
         self._only = [self.places[k] for k in self.moving]
         self._known = (loop, poses)
         self._slopes: Slopes | None = None

@@ -20,6 +20,9 @@ from sevenbar.kinematics.circuits import Integers
 TURNS_BACK = 0.01
 
 
+#: Rows of a stretch, on average, below which rows are in no order.
+LEAST_ROWS = 4
+
 #: Differences of this share of the measured range are no small ones: something else is wrong.
 UNEXPLAINED = 0.1
 
@@ -73,13 +76,18 @@ class Key:
 
 @dataclass(frozen=True)
 class Stretches:
-    """Rows between the places where their input turns back: `of_row` (n,) counts them, `rising` says how each goes."""
+    """Rows between turns of their input: `of_row` (n,) counts them, `rising` says how each goes."""
 
     of_row: Integers
     rising: tuple[bool, ...] = field(default=(True,))
 
     def __len__(self) -> int:
         return len(self.rising)
+
+    @property
+    def in_order(self) -> bool:
+        """Whether the rows can be in the order of the motion, which turns back now and then only."""
+        return len(self) * LEAST_ROWS <= len(self.of_row)
 
     @property
     def turns(self) -> list[int]:
@@ -124,10 +132,10 @@ def ways_through(stretches: Stretches, passes: int) -> list[tuple[int, ...]]:
     """The passes that stretches of rows may be of, for a circuit with so many passes.
 
     One pass for all rows; and, where the input turns back, those on which it goes on to the next pass at its
-    upper turns, its lower turns, or both.
+    upper turns, its lower turns, or both. Rows in no order are of one pass.
     """
     found: list[tuple[int, ...]] = [(branch,) for branch in range(passes)]
-    if len(stretches) < 2 or passes < 2:
+    if len(stretches) < 2 or passes < 2 or not stretches.in_order:
         return found
     # beyond two passes the walk along the circuit has a direction
     directions: Sequence[int] = (1,) if passes == 2 else (1, -1)

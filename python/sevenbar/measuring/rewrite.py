@@ -42,7 +42,8 @@ def _read(text: str) -> Linkage:
         return loads(text, "calibrated.toml")
     except SevenbarError as error:
         raise RequestError(
-            f"calibrate: the dimensions that explain these data best make no linkage, so nothing is written: {error}"
+            "calibrate: the dimensions that explain these data best make no linkage, so nothing is written: "
+            f"{error}"
         ) from None
 
 
@@ -54,21 +55,23 @@ def _check(linkage: Linkage, calibration: Calibration) -> None:
     rows = Measured(calibration.source, calibration.line, {"input": calibration.input, **values})
     again = compare(linkage, rows, ends, speed=before.speed).chosen
     parts = [
-        np.square(calibration.computed[q] - v) / (float(np.ptp(v)) or 1.0) ** 2
-        for q, v in calibration.measured.items()
+        np.square((calibration.computed[q] - v) / ends.extent(q, v)) for q, v in calibration.measured.items()
     ]
     share = math.sqrt(float(np.mean(parts)))
     if again.open_rows or not again.residual <= share + AGREES:
         lines = f", and {again.open_rows} rows do not close" if again.open_rows else ""
         raise RequestError(
-            "calibrate: the file, read again, does not explain the rows as the calibration does, so nothing is "
-            f"written: residual {per_cent(again.residual)} of the measured range, not {per_cent(share)}{lines}"
+            "calibrate: the file, read again, does not explain the rows as the calibration does, so nothing "
+            f"is written: residual {per_cent(again.residual)} of the measured range, not "
+            f"{per_cent(share)}{lines}"
         )
 
 
 def _head(calibration: Calibration) -> list[str]:
     per_cent_words = f"{100 * calibration.confidence:g} %"
-    intervals = "Exact rows: no intervals." if calibration.exact else f"Half widths of {per_cent_words} intervals:"
+    intervals = (
+        "Exact rows: no intervals." if calibration.exact else f"Half widths of {per_cent_words} intervals:"
+    )
     lines = [f"Calibrated by sevenbar from {calibration.source}, {len(calibration.line)} rows. {intervals}"]
     for p in calibration.calibrated:
         degrees = p.kind == "angle"
