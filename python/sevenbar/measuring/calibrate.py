@@ -10,10 +10,10 @@ noise of each is taken from its differences.
 
 What data cannot identify is held, not guessed. A direction v in the space of the dimensions (J v = 0 to
 rounding, or so small that the standard error along v exceeds `fit.UNIDENTIFIED` of the linkage's size)
-changes the curve by nothing that could be seen: of an RSSR measured by its angles, making all lengths twice as long.
-For each such direction one dimension stays at its nominal value, and the report names it and those that undo
-its change; intervals of the others then hold for that value. A dimension whose change alone would open an
-overconstrained loop is held too, and so is a coupler that the file leaves out, unless it is to be found.
+changes the curve by nothing that could be seen: of an RSSR measured by its angles, making all lengths twice
+as long. For each such direction one dimension stays at its nominal value, and the report names it and those
+that undo its change; intervals of the others then hold for that value. A dimension whose change alone would
+open an overconstrained loop is held too.
 
 Where no circuit explains the rows, or no minimum is found, there is a `RequestError` with the cause and no
 calibration.
@@ -85,7 +85,7 @@ class Calibration(Printed):
     file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of
     the output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of
     the calibrated parameters in their order. `places` counts the rows without those that repeat an input;
-    `exact`: what is left is rounding, and no interval can be made of it. `follow` names what follows the others.
+    `exact`: what is left is rounding, and no interval can be made of it. `follow` names what follows others.
     """
 
     linkage: Linkage
@@ -238,8 +238,8 @@ def _refuse_what_stays(measured: Measured, ends: Ends) -> None:
         if np.ptp(values) <= EXACT * float(np.abs(values).max()):
             raise RequestError(
                 f"{measured.source}: the {ends.word(quantity)} of {ends.output} is the same in all "
-                f"{len(measured)} rows: an output that does not move identifies no dimension; check which joint "
-                "and which column were measured"
+                f"{len(measured)} rows: an output that does not move identifies no dimension; check which "
+                "joint and which column were measured"
             )
 
 

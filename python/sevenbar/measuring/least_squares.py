@@ -66,8 +66,8 @@ def least_squares(
     """The parameters near x (k,) at which a residual (n,) has the least sum of squares.
 
     `residual` gives `None` where it does not exist, and no step goes there; `jacobian` (n, k) is needed
-    only where it does. `most` evaluations; the search also ends where no more than a share `enough` of the sum
-    is still to be gained.
+    only where it does. `most` evaluations; the search also ends where no more than a share `enough` of the
+    sum is still to be gained.
 
     >>> points, heights = np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.7, 7.4])
     >>> found = least_squares(
