@@ -302,6 +302,20 @@ def test_intervals_of_repeated_rows_hold_the_truth_as_often_as_they_claim():
     assert 181 <= held <= 198
 
 
+def test_exact_rows_of_the_design_itself_are_settled_at_once_whatever_is_free():
+    linkage = sb.load("seven_r")
+    circuit = linkage.motion(60).circuits[0]
+    found = calibrate(linkage, table(input=circuit.input, angle=circuit.output))
+    assert found.exact
+    assert [p.value for p in found.parameters] == pytest.approx(
+        [p.nominal for p in found.parameters], abs=1e-9
+    )
+    # three axes are parallel: lengths across them turn nothing, and of slides along them only the sum counts
+    held = {p.name: set(p.undone_by) for p in found.parameters if p.status == "untold"}
+    assert {name for name, others in held.items() if not others} == {f"length_{i}" for i in range(2, 6)}
+    assert held["offset_3"] == held["offset_4"] == {"offset_5"}
+
+
 def test_exact_rows_have_no_warning_and_no_interval():
     inputs, angle = curve(noise=0.0)
     found = calibrate(sb.load("rssr"), table(input=inputs, angle=angle), hold=["D"])

@@ -229,10 +229,12 @@ class CurveFit:
             found = self.model.slopes(spread(part))
             return np.concatenate([found[q][:, free] / self.noise[q] for q in found])
 
+        extents = self.model.extents
+        exact = sum(len(v) * (EXACT * extents[q] / self.noise[q]) ** 2 for q, v in self.model.values.items())
         while True:
             minimum = least_squares(
                 lambda part: self.residual(spread(part)), slopes, self.z[free] / scales[free],
-                most=MOST_EVALUATIONS, enough=enough)  # fmt: skip
+                most=MOST_EVALUATIONS, enough=enough, exact=exact)  # fmt: skip
             self.evaluations += minimum.evaluations
             self.z = spread(minimum.x)
             lost = self.model.lost

@@ -38,6 +38,9 @@ SETTLED = 1e-13
 #: Ratio of one step's length to the last above which steps no longer become shorter.
 NO_SHORTER = 0.7
 
+#: Share of the sum that is rounding below which there is nothing to gain: the residual to a ten-thousandth.
+NOTHING = 1e-8
+
 #: A radius at which the way on is closed.
 CLOSED = 1e-8
 
@@ -62,12 +65,14 @@ def least_squares(
     *,
     most: int,
     enough: float = 0.0,
+    exact: float = 0.0,
 ) -> Minimum:
     """The parameters near x (k,) at which a residual (n,) has the least sum of squares.
 
     `residual` gives `None` where it does not exist, and no step goes there; `jacobian` (n, k) is needed
     only where it does. `most` evaluations; the search also ends where no more than a share `enough` of the
-    sum is still to be gained.
+    sum is still to be gained. Below the sum `exact` the residual is rounding: one that falls no more is
+    least.
 
     >>> points, heights = np.array([0.0, 1.0, 2.0]), np.array([1.0, 2.7, 7.4])
     >>> found = least_squares(
@@ -87,7 +92,7 @@ def least_squares(
         while True:
             step, promised = step_of.within(radius)
             length = float(np.linalg.norm(step))
-            if promised <= enough * cost:
+            if promised <= enough * cost or cost <= NOTHING * exact:
                 return Minimum(x, "settled", evaluations)
             flat = promised <= FLAT * cost or length <= SETTLED
             if flat and (length <= SETTLED or length > NO_SHORTER * last):
@@ -102,7 +107,8 @@ def least_squares(
             # the way is closed, or the promise was not kept
             radius = FAIR * length
             if radius <= CLOSED or evaluations >= most:
-                return Minimum(x, "closed" if trial is None else "unsettled", evaluations)
+                least: End = "settled" if cost <= exact else "unsettled"
+                return Minimum(x, "closed" if trial is None else least, evaluations)
         x, here = x + step, trial
         if not flat:
             if share < FAIR:
