@@ -19,6 +19,7 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.geometry import following_coupler
 from sevenbar.measuring.calibrate import calibrate
 from sevenbar.measuring.compare import compare, ends_of
+from sevenbar.measuring.figures import calibration_figure
 from sevenbar.measuring.least_squares import least_squares
 from sevenbar.measuring.measured import Measured
 from sevenbar.measuring.passes import stretches_of, ways_through
@@ -119,6 +120,29 @@ def test_velocities_of_an_input_that_goes_back_have_the_other_sign():
         assert compared.chosen.signed is signed
         found = calibrate(linkage, measured, ends, free=["L1", "L3"], speed=1.0)
         assert found.parameter("L1").value == pytest.approx(251.0, rel=1e-9)
+
+
+def test_curves_of_several_passes_are_drawn_pass_by_pass():
+    inputs, angle = rocking(cycles=2)
+    linkage = sb.load("rssr")
+    ends = ends_of(linkage, "rocker")
+    compared = compare(linkage, table(input=inputs, angle=angle), ends)
+    gaps = np.flatnonzero(np.isnan(compared.curve["input"]))
+    assert len(gaps) == 3
+    for stretch, part in enumerate(np.split(np.arange(len(compared.curve["input"])), gaps)):
+        # beyond the nominal limits there is no curve, and next to them it is steep
+        rows = np.flatnonzero((compared.stretch == stretch) & np.isfinite(compared.computed["angle"]))[5:-5]
+        known = part[np.isfinite(compared.curve["angle"][part])]
+        at = np.interp(inputs[rows], compared.curve["input"][known], compared.curve["angle"][known])
+        np.testing.assert_allclose(at, compared.computed["angle"][rows], atol=1e-3)
+    found = calibrate(linkage, table(input=inputs, angle=angle), ends, free=["L1", "L3"])
+    top = calibration_figure(found).axes[0]
+    for line in top.lines[:2]:
+        x, y = line.get_xdata(), line.get_ydata()
+        assert np.isnan(y).sum() == 3
+        # degrees from one row to the next, within a pass
+        assert np.nanmax(np.abs(np.diff(y))) < 30
+        assert np.nanmin(np.diff(x)[np.isfinite(np.diff(y))]) >= 0
 
 
 def test_a_crank_that_is_moved_to_and_fro_stays_on_its_pass():

@@ -85,7 +85,8 @@ class Calibration(Printed):
     file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of
     the output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of
     the calibrated parameters in their order. `places` counts the rows without those that repeat an input;
-    `exact`: what is left is rounding, and no interval can be made of it. `follow` names what follows others.
+    `exact`: what is left is rounding, and no interval can be made of it. `follow` names what follows others;
+    `stretch` counts how often the input has turned back at a limit before a row.
     """
 
     linkage: Linkage
@@ -101,6 +102,7 @@ class Calibration(Printed):
     follow: tuple[str, ...]
     noise: Mapping[str, float]
     line: Integers
+    stretch: Integers
     input: Floats
     measured: Mapping[str, Floats]
     computed: Mapping[str, Floats]
@@ -328,6 +330,7 @@ def _calibration(
         follow=model.follows,
         noise={q: noise * deviation for q, noise in fit.noise.items()},
         line=measured.line[model.rows],
+        stretch=before.stretch[model.rows],
         input=model.begin + fit.z[-2],
         measured=model.values,
         computed=computed,

@@ -79,10 +79,14 @@ class Candidates:
         self._last = (inputs.tobytes(), found)
         return found
 
+    def stretch_of_rows(self, key: Key) -> Integers:
+        """The stretch of each row (n,); one where all rows are of one pass."""
+        return self.stretches.of_row if len(key.branches) > 1 else np.zeros_like(self.stretches.of_row)
+
     def branch_of_rows(self, key: Key) -> Integers:
         """The pass of each row (n,)."""
         branches = np.array(key.branches, dtype=np.int64)
-        return branches[self.stretches.of_row if len(branches) > 1 else np.zeros_like(self.stretches.of_row)]
+        return branches[self.stretch_of_rows(key)]
 
     def speeds(self, *, signed: bool) -> Floats:
         """The speed of the input at each row (n,)."""
@@ -271,15 +275,15 @@ class Candidates:
         return {quantity: measured[quantity] - apart[quantity] for quantity in measured}, measured
 
     def curve(self, chosen: PassFit, computed: Mapping[str, Floats]) -> dict[str, Floats]:
-        """The "input" (m,) of the linkage and each quantity on each pass of the rows, NaN between passes."""
+        """The "input" (m,) of the linkage and each quantity on each stretch of the rows, NaN between them."""
         low, high = float(self.inputs.min()), float(self.inputs.max())
         grid = np.linspace(low, high, CURVE)
         table = self.passes(grid + chosen.phase + math.tau * chosen.turn)
         gap = np.array([np.nan])
-        own = self.branch_of_rows(chosen.key)
+        own = self.stretch_of_rows(chosen.key)
         parts: dict[str, list[Floats]] = {"input": [], **{q: [] for q in self.values}}
-        for branch in dict.fromkeys(chosen.key.branches):
-            rows = np.flatnonzero((own == branch) & np.isfinite(next(iter(computed.values()))))
+        for stretch, branch in enumerate(chosen.key.branches):
+            rows = np.flatnonzero((own == stretch) & np.isfinite(next(iter(computed.values()))))
             way = float(self.ways[rows[0]]) if rows.size else 1.0
             speed = abs(self.speed) * way if chosen.signed else self.speed
             rates = table[chosen.circuit, branch]

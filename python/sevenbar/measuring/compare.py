@@ -58,7 +58,8 @@ class Comparison(Printed):
 
     `input` [rad, or length] is that of the linkage: the measured one plus `chosen.phase`; `measured` has
     `chosen.offset` subtracted from the angle, and is brought within half a turn of `computed`. `branch` is
-    the pass of each row, `speeds` the speed of the input there.
+    the pass of each row, `stretch` counts how often the input has turned at a limit, `speeds` is the speed
+    of the input there.
     """
 
     linkage: Linkage
@@ -70,6 +71,7 @@ class Comparison(Printed):
     aligned: tuple[str, ...]
     line: Integers
     branch: Integers
+    stretch: Integers
     speeds: Floats
     input: Floats
     measured: Mapping[str, Floats]
@@ -88,7 +90,7 @@ class Comparison(Printed):
 
     @cached_property
     def curve(self) -> Mapping[str, Floats]:
-        """The computed curve (m,) for figures: "input" and each quantity; NaN between passes."""
+        """The computed curve (m,) for figures: "input" and each quantity; NaN between stretches."""
         return self._candidates.curve(self.chosen, self.computed)
 
     def difference(self, quantity: str) -> Floats:
@@ -197,6 +199,7 @@ def compare(
         aligned=aligned,
         line=measured.line,
         branch=problem.branch_of_rows(best.key),
+        stretch=problem.stretch_of_rows(best.key),
         speeds=problem.speeds(signed=best.signed),
         input=inputs + best.phase,
         measured=values,

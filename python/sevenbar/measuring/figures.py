@@ -72,7 +72,9 @@ def calibration_figure(calibration: Calibration) -> Figure:
     with rc_context(STYLE):
         figure, grid = _grid(len(calibration.outputs), (3.0, 1.2, 1.2))
         x = shown(ends, "input", calibration.input)
-        order = np.argsort(x, kind="stable")
+        order = np.lexsort([x, calibration.stretch])
+        # no line from one pass to another
+        ends_of_stretches = np.flatnonzero(np.diff(calibration.stretch[order])) + 1
         for column, quantity in enumerate(calibration.outputs):
             top, before, after = grid[:, column]
             sides: Mapping[str, Mapping[str, Floats]] = {
@@ -81,7 +83,8 @@ def calibration_figure(calibration: Calibration) -> Figure:
             }
             for name, look in (("nominal", NOMINAL), ("calibrated", COMPUTED)):
                 values = shown(ends, quantity, sides[name][quantity])
-                top.plot(x[order], values[order], label=name, **look)
+                line = (np.insert(v[order], ends_of_stretches, np.nan) for v in (x, values))
+                top.plot(*line, label=name, **look)
             measured = shown(ends, quantity, calibration.measured[quantity])
             _points(top, x, measured, "measured")
             for axes, name in ((before, "nominal"), (after, "calibrated")):

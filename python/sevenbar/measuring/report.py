@@ -54,7 +54,11 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     )
     facts.add("drive", drive)
     facts.add("explained by", _candidate(chosen), style="bold")
-    others = [_candidate(c) for c in comparison.candidates[1:] if not alike(c, chosen)]
+    others, named = [], [chosen]
+    for candidate in comparison.candidates[1:]:
+        if not any(alike(candidate, other) for other in named):
+            named.append(candidate)
+            others.append(_candidate(candidate))
     if others:
         more = len(others) - MOST_CANDIDATES
         tail = f"; {more} more" if more > 0 else ""
