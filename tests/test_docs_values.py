@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import sevenbar as sb
-from sevenbar.commands.given import angle, angles, input_value, lengths, point_of
+from sevenbar.commands.given import angle, angles, input_value, lengths, numbers, point_of
 from sevenbar.commands.path import parsed_bounds
 from sevenbar.commands.points import parsed_box
 from sevenbar.description.draft import Draft
@@ -76,6 +76,7 @@ READERS: dict[str, Callable[[str], str]] = {
     "speed": lambda text: f"{turning_speed(text):g} rad/s",
     "range of L1": span,
     "range of angles": turned,
+    "range of x": lambda text: "{:g} to {:g}".format(*numbers("--x", text)),
     "values of L1": swept,
     "place": placed,
     "box": boxed,

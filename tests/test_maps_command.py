@@ -160,14 +160,14 @@ MISTAKES = {
         "L1=a:5",
         "--over",
         "L3=1:2",
-    ): "rssr.L1: 'a' is not a finite length; give 250 or 250mm",
+    ): "over: L1: 'a' is not a finite length; give 250 or 250mm",
     (
         "rssr",
         "--over",
         "L1=5kg:6kg",
         "--over",
         "L3=1:2",
-    ): "rssr.L1: '5kg' is not a finite length; give 250 or 250mm",
+    ): "over: L1: '5kg' is not a finite length; give 250 or 250mm",
     (
         "rssr",
         "--over",
@@ -231,6 +231,23 @@ def test_a_figure_names_its_regions_its_axes_and_the_design(of):
     assert "L1 = 250 mm" in told
     assert "L1 = 275 mm: double-rocker" in told
     assert "L2 follows from the others" in told
+
+
+@pytest.mark.parametrize("command", ["map", "sweep"])
+def test_an_end_that_is_no_number_is_the_option_s_and_not_the_file_s(command):
+    over = {"map": "L1=100:nan", "sweep": "L1=100:nan:5"}[command]
+    told = mistake(command, "rssr", "--over", over, "--over", {"map": "L3=300:800", "sweep": "L3=1"}[command])
+    assert told == "over: L1: 'nan' is not a finite length; give 250 or 250mm"
+
+
+def test_a_circuit_that_no_linkage_on_the_map_has_is_refused(tmp_path):
+    words = ("map", "rssr", *OVER, "--measure", "swing", "--grid", "5", "--take", "7", "--out", "out")
+    run = sevenbar(*words, cwd=tmp_path)
+    assert (run.returncode, run.stdout, list(tmp_path.iterdir())) == (2, "", [])
+    assert run.stderr.splitlines()[-1] == (
+        "sevenbar: take: 7 is a circuit that no linkage on the map has: they have at most 2, 0 to 1; "
+        "give one of these, highest or lowest"
+    )
 
 
 @pytest.mark.parametrize("size", SIZES)

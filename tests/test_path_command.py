@@ -60,7 +60,7 @@ def test_a_design_is_written_opens_and_makes_the_path(tmp_path):
     ("more", "told"),
     [
         (("--point", "Z"), "point: no point 'Z'; this linkage has none"),
-        ((), "--point: missing; give --point NAME, or --link with --at"),
+        ((), "--point: missing; the file names none, so add one to it, or a place on a link, as in --link"),
         (("--link", 2), "--at: missing; give --point NAME, or --link with --at"),
         (("--link", 2, "--at", "1,2"), "--at: '1,2' is not a place; give three numbers"),
         (("--link", 4, "--at", "1,2,3"), "point: 4 is not a moving link; give 1 to 3, link 4 is the ground"),

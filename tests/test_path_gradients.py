@@ -10,6 +10,7 @@ from sevenbar.design.synthesis.path.point import PointLoop
 from sevenbar.design.synthesis.path.refine import PathProblem
 from sevenbar.design.synthesis.path.search import Seed
 from sevenbar.design.synthesis.path.task import path_task
+from sevenbar.errors import RequestError
 
 #: Every form and every kind of joint: dimensions, rows, drawings; S S with its spin held, U, H, C, P.
 LINKAGES = (
@@ -23,6 +24,7 @@ LINKAGES = (
     "sarrus",
     "screw_drill",
     "six_bar",
+    "swash_plate",
 )
 
 #: Part of the size by which dimensions are changed for differences, and what these are good for.
@@ -65,7 +67,8 @@ def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "link"),
-    [("rssr", 2), ("seven_r", 4), ("planar_4r", 2), ("rsur", 2), ("rssp", 2), ("six_bar", 3)],
+    [("rssr", 2), ("seven_r", 4), ("planar_4r", 2), ("rsur", 2), ("rssp", 2), ("six_bar", 3)]
+    + [("swash_plate", link) for link in (1, 2)],
 )
 def test_derivatives_by_dimensions_are_those_of_linkages_written_with_other_dimensions(name, link):
     size = sb.load(name).motion(12).circuits[0].size
@@ -101,6 +104,42 @@ def test_derivatives_by_dimensions_are_those_of_linkages_written_with_other_dime
         assert exact[:, number] == pytest.approx(difference, abs=GOOD * most), dimension.name
         compared += 1
     assert compared >= 6
+
+
+def test_a_rod_that_follows_is_part_of_the_derivatives():
+    """The point of linkages whose file leaves L2 out, at the crank's angle of a pose."""
+    draft = Draft.of_linkage(sb.load("rssr")).with_point("Q", 3, (40.0, 60.0, 10.0))
+    task = path_task(draft, [(0, 0, 1), (0, 1, 0), (1, 0, 0)], "Q", follow=["L2"], place=True)
+    assert "L2" not in [dimension.name for dimension in task.dimensions]
+    assert task.held.text == "L2 follows (997.497 mm in the design)"
+    closure = task.closure
+    circuit = draft.linkage.motion(12).circuits[0]
+    x = circuit.input[3:4]
+    exact = closure.reached(closure.start, closure.poses(closure.start, circuit.q[3:4])).by_dimension[0]
+    for k, name in enumerate(d.name for d in task.dimensions):
+        if name.startswith("Q."):
+            continue
+        places = []
+        for step in (1e-3, -1e-3):
+            own = {n: v for n, v in draft.linkage.dimensions.items() if n != "L2"}
+            linkage = sb.rssr(**own | {name: own[name] + step})
+            motion = linkage.motion(law=sb.Law.of([0.0], x, 1.0, 0.0))
+            places.append(motion.circuits[0].point(3, (40.0, 60.0, 10.0)).position[0])
+        assert exact[:, k] == pytest.approx((places[0] - places[1]) / 2e-3, abs=1e-7), name
+
+
+def test_a_path_holds_the_rod_unless_it_varies_or_follows():
+    draft = Draft.of_linkage(sb.load("rssr")).with_point("Q", 3, (40.0, 60.0, 10.0))
+    points = [(0, 0, 1), (0, 1, 0), (1, 0, 0)]
+    held = path_task(draft, points, "Q", vary=["L1", "L3"])
+    assert held.held.text == "M, N, D, L2 (997.497 mm in the design)"
+    longer = held.drawn(np.array([260.0, 500.0])).linkage
+    assert longer.dimensions["L2"] == draft.linkage.dimensions["L2"]
+    follows = path_task(draft, points, "Q", vary=["L1", "L3"], follow=["L2"])
+    rod = np.sqrt((260.0 - 700.0) ** 2 + 500.0**2 + 700.0**2)
+    assert follows.drawn(np.array([260.0, 500.0])).linkage.dimensions["L2"] == pytest.approx(rod, rel=1e-15)
+    with pytest.raises(RequestError, match="vary: L2 is to follow from the others; leave one of the two out"):
+        path_task(draft, points, "Q", vary=["L1", "L2"], follow=["L2"])
 
 
 def rough(task, circuit, rows):

@@ -14,9 +14,9 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.path.task import path_task
+from sevenbar.design.synthesis.path.generation import path_generation
 from sevenbar.drawing.skeleton import frames_of
-from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
+from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.export import export
 from sevenbar.export.layout import arrange
 from sevenbar.export.parts import Rod, length_of
@@ -194,6 +194,22 @@ def test_all_derivatives_by_dimensions_of_a_loop_with_a_planar_joint_are_differe
     assert compared > 400
 
 
-def test_paths_are_not_sought_with_a_planar_joint() -> None:
-    with pytest.raises(NotCoveredError, match="slides in a plane, and no path is sought"):
-        path_task(sb.load("swash_plate"), [(0, 0, 0), (1, 0, 0), (1, 1, 0)], (2, (0.0, 0.0, 0.0)))
+@pytest.mark.parametrize("name", ["swash_plate", "as P, P and R"])
+def test_a_path_is_found_with_a_planar_joint(name: str) -> None:
+    drawing = Draft.of_linkage(sb.load("swash_plate"))
+    if name != "swash_plate":
+        joints = [dict(joint) | {"at": np.array(joint["at"], dtype=float)} for joint in drawing.raw["joint"]]
+        for joint in joints:
+            if "axis" in joint:
+                joint["axis"] = np.array(joint["axis"], dtype=float)
+        drawing = Draft.of_linkage(sb.from_axes(in_parts(joints)))
+    knuckle, place = (len(drawing.linkage.joints) - 2, (50.0, 6.0, 20.0))
+    there = drawing.with_values({"knuckle.x": 52.0, "knuckle.z": 14.0}).linkage
+    wanted = there.motion(24).circuits[0].point(knuckle, place).position[::3]
+    (best, *_) = path_generation(
+        drawing, wanted, (knuckle, place), vary=["knuckle.x", "knuckle.z"], count=1, starts=8
+    )
+    assert best.error_greatest < 1e-6
+    assert best.draft.dimension("knuckle.x").value == pytest.approx(52.0, abs=1e-4)
+    assert best.draft.dimension("knuckle.z").value == pytest.approx(14.0, abs=1e-4)
+    assert best.motion_type == "crank-slider"

@@ -222,3 +222,17 @@ def test_what_is_said_of_a_bad_curve(tmp_path, text, message):
     path.write_text(text, encoding="utf-8")
     with pytest.raises(SevenbarError, match=re.escape(message)):
         run("point", "seven_r", "--link", 4, CUBE, "--curve", path)
+
+
+@pytest.mark.parametrize("more", [("--least", "velocity"), ("--curve",)])
+def test_a_point_on_a_link_that_spins_idly_is_refused(tmp_path, more):
+    if more == ("--curve",):
+        table = tmp_path / "curve.csv"
+        table.write_text("x [mm],y [mm],z [mm]\n1,2,3\n4,5,6\n7,8,8\n", encoding="utf-8")
+        more = ("--curve", table)
+    with pytest.raises(
+        SevenbarError, match=r"^point: the spin of .*link 2.* about the line of .* is not deter"
+    ):
+        run("point", "rssp", "--link", 2, CUBE, *more)
+    # its neighbours have the balls
+    assert run("point", "rssp", "--link", 1, CUBE, "--least", "rms")

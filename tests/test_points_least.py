@@ -6,10 +6,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.design.points import (
     least_acceleration_point,
-    least_jerk_point,
     least_point,
-    least_rms_point,
-    least_velocity_point,
 )
 from sevenbar.errors import MissingExtraError, RequestError
 
@@ -159,10 +156,12 @@ def test_a_crank_s_point_off_the_axis_has_r_omega_squared():
     motion = sb.load("planar_4r").motion(speed=3.0)
     found = least_acceleration_point(motion, 1, [(0, 0), (12, 30), (5, 30)])
     assert found.value == pytest.approx(13 * 9, rel=1e-12)
-    assert least_velocity_point(motion, 1, [(0, 0), (12, 30), (5, 30)]).value == pytest.approx(
+    assert least_point(motion, 1, [(0, 0), (12, 30), (5, 30)], of="velocity").value == pytest.approx(
         13 * 3, rel=1e-12
     )
-    assert least_jerk_point(motion, 1, [(0, 0), (12, 30), (5, 30)]).value == pytest.approx(13 * 27, rel=1e-12)
+    assert least_point(motion, 1, [(0, 0), (12, 30), (5, 30)], of="jerk").value == pytest.approx(
+        13 * 27, rel=1e-12
+    )
 
 
 def test_speed_scales_value_and_bound_and_keeps_the_point():
@@ -178,13 +177,13 @@ def test_the_least_root_mean_square_is_the_zero_of_its_gradient_by_differences(s
     def square(at):
         return float((fine.point(4, tuple(at)).acceleration ** 2).sum(axis=1).mean())
 
-    found = least_rms_point(seven_r, 4, CUBE)
+    found = least_point(seven_r, 4, CUBE, measure="rms")
     assert found.sides == ()
     assert found.value == pytest.approx(np.sqrt(square(found.at)), rel=1e-12)
     slopes = [square(found.at + step) - square(found.at - step) for step in np.eye(3)]
     assert slopes == pytest.approx(np.zeros(3), abs=1e-6 * found.value**2)
     assert found.relative_gap < 1e-12
-    bounded = least_rms_point(seven_r, 4, [(-50, 50)] * 3)
+    bounded = least_point(seven_r, 4, [(-50, 50)] * 3, measure="rms")
     assert bounded.sides == ("v lowest", "w lowest")
     random = np.random.default_rng(2)
     assert min(np.sqrt(square(at)) for at in random.uniform(-50, 50, (200, 3))) >= bounded.bound

@@ -6,9 +6,9 @@ import io
 import pytest
 import typer
 
-from commands import sevenbar
 from sevenbar.commands.progress import STOPPED, progress_bar
 from sevenbar.errors import RequestError
+from tests.commands import sevenbar
 
 
 class Terminal(io.StringIO):

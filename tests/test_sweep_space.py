@@ -106,7 +106,7 @@ def test_each_form_of_values_is_read() -> None:
         ({"L1": "250"}, {}, "L1: '250' is not what a dimension takes"),
         ({"L1": [math.nan]}, {}, "L1: nan is not a finite number; give a finite one"),
         ({"L1": [None]}, {}, "L1: None is not a number; give a number or a text as '25 cm'"),
-        ({"L1": ["25 kg"]}, {}, "L1: '25 kg' is not a finite length; give 250 or 250mm"),
+        ({"L1": ["25 kg"]}, {}, "over: L1: '25 kg' is not a finite length; give 250 or 250mm"),
         ({"L1": span(1, 2)}, {"method": "grid"}, "L1: 1 to 2 is a span, which a grid does not walk; give "),
         ({"L1": span(1, 2)}, {}, "count: missing; a sobol sample needs one, as in 1000"),
         ({"L1": span(1, 2)}, {"count": 0}, "count: 0 is not a count; give 1 to 1073741824, or the method"),

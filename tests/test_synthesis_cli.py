@@ -2,11 +2,16 @@
 
 import csv
 import json
+import math
+import re
 
+import numpy as np
 import pytest
 
 import sevenbar as sb
 from commands import mistake, sevenbar
+from sevenbar.commands.given import numbers
+from sevenbar.errors import RequestError
 
 PAIRS = "input_deg,output_deg\n0,0\n20,31\n40,50\n60,64\n"
 
@@ -15,7 +20,7 @@ def test_a_function_is_printed_written_and_told_as_json(tmp_path):
     out = tmp_path / "new" / "folder"
     words = ("design", "function", "--y", "x^2", "--points", "7", "--designs", "2")
     run = sevenbar(*words, "--out", out, "--figures", "svg")
-    assert (run.returncode, run.stderr) == (0, "")
+    assert (run.returncode, run.stderr) == (0, "searching RSSRs for y = x^2 ..\n")
     for told in ("wanted    y = x^2", "transmission angle >= 30 deg", "L1 [mm]"):
         assert told in run.stdout
     names = {path.name for path in out.iterdir()}
@@ -48,7 +53,7 @@ def test_a_swing_is_printed_and_written(tmp_path):
     run = sevenbar(
         "design", "swing", "--swing", "60deg", "--time-ratio", "1.2", "--designs", "1", "--out", out
     )
-    assert (run.returncode, run.stderr) == (0, "")
+    assert (run.returncode, run.stderr) == (0, "searching crank-rockers with a swing of 60deg ..\n")
     assert {path.name for path in out.iterdir()} == {
         "design_1.toml",
         "design_1.png",
@@ -72,7 +77,7 @@ def test_a_swing_is_printed_and_written(tmp_path):
         ),
         (
             ("function", "--y", "x", "--x", "1-2"),
-            "--x: '1-2' is not a range; give two values, as in 0:1 or 1:10",
+            "--x: '1-2' is not a range; give two values, as in 0:1, 0:pi/2 or 0:90deg",
         ),
         (
             ("function", "--y", "x", "--input-range", "0:90furlong"),
@@ -106,9 +111,102 @@ def test_a_mistake_is_told_in_a_line_and_nothing_is_written(words, message, tmp_
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("text", "low", "high"),
+    [
+        ("0:90deg", 0.0, math.pi / 2),
+        ("0:90\u00b0", 0.0, math.pi / 2),
+        ("-30deg..0.5rad", -math.pi / 6, 0.5),
+        ("0:pi/2", 0.0, math.pi / 2),
+        ("-pi:2*pi", -math.pi, math.tau),
+        ("1:10", 1.0, 10.0),
+        ("0.1:2.6", 0.1, 2.6),
+        ("sqrt(2):1e2", math.sqrt(2), 100.0),
+    ],
+)
+def test_a_range_of_x_may_have_a_unit_or_be_a_formula(text, low, high):
+    assert numbers("--x", text) == pytest.approx((low, high), rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["0:90mm", "0:x", "0:1/0", "0:", "a:b", "0:__import__('os')", "0:1:2"])
+def test_a_range_of_x_that_is_none_is_refused(text):
+    with pytest.raises(RequestError, match=r"--x: .* is not a range; give two values, as in 0:1, 0:pi/2 or"):
+        numbers("--x", text)
+
+
+def test_degrees_are_not_taken_twice():
+    told = mistake("design", "function", "--y", "sind(x)", "--x", "0:90deg")
+    assert told == (
+        "--x: '0:90deg' counts in radians, and sind takes degrees; write sin, or leave the unit of x out"
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("y", "x"), [("sin(x)", "0:90deg"), ("sind(x)", "0:90"), ("sin(x)", "0:pi/2")])
+def test_a_sine_of_degrees_is_found(y, x, tmp_path):
+    out = tmp_path / "out"
+    run = sevenbar("design", "function", "--y", y, "--x", x, "--designs", "1", "--out", out)
+    assert run.returncode == 0, run.stderr
+    (design,) = json.loads((out / "summary.json").read_text(encoding="utf-8"))["designs"]
+    assert design["error_greatest_deg"] < 0.003
+    # as the written file says, it is used: the sine comes out at the rocker
+    text = (out / "design_1.toml").read_text(encoding="utf-8")
+    assert "# readings: input 0 to 90 deg for x from 0 to " in text
+    zero = {side: float(re.search(rf"# {side}_zero_deg = (\S+)", text)[1]) for side in ("input", "output")}
+    linkage = sb.load(out / "design_1.toml")
+    for reading in (0.0, 17.5, 30.0, 90.0):
+        rockers = np.degrees(linkage.output([math.radians(zero["input"] + reading)]).position[:, 0])
+        wanted = 90 * math.sin(math.radians(reading))
+        off = (rockers - zero["output"] - wanted + 180) % 360 - 180
+        assert np.abs(off).min() < 0.003
+
+
+@pytest.mark.slow
+def test_a_sine_of_degrees_taken_for_radians_is_hinted_at():
+    told = mistake("design", "function", "--y", "sin(x)", "--x", "0:90", "--designs", "1")
+    assert "sin takes radians; x goes to 90: write sind(x) or --x 0:90deg if these are degrees" in told
+    for way in ("a smaller least transmission angle", "a greater tolerance", "a narrower range of the input"):
+        assert way in told
+
+
+STOPPED = """
+import sevenbar.design.synthesis.function.generation as module
+own, seen = module.least_error, []
+def interrupted(kept):
+    seen.append(len(kept))
+    if len(seen) == {calls}:
+        raise KeyboardInterrupt
+    return own(kept)
+module.least_error = interrupted
+"""
+
+
+@pytest.mark.slow
+def test_ctrl_c_leaves_the_best_so_far_and_says_so(tmp_path):
+    words = ("design", "function", "--y", "x^2", "--designs", "5", "--out", "out")
+    run = sevenbar(*words, cwd=tmp_path, before=STOPPED.format(calls=3))
+    assert run.returncode == 130, run.stderr
+    assert "unfinished  stopped after 3 of 21 steps; these are the best so far" in " ".join(
+        run.stdout.split("\n")
+    )
+    text = (tmp_path / "out" / "design_1.toml").read_text(encoding="utf-8")
+    assert "# unfinished: stopped after 3 of 21 steps; these are the best so far" in text
+    assert json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))["unfinished"]
+
+
+@pytest.mark.slow
+def test_ctrl_c_before_anything_is_found_leaves_nothing(tmp_path):
+    words = ("design", "function", "--y", "sin(x)", "--x", "0:90", "--out", "out")
+    run = sevenbar(*words, cwd=tmp_path, before=STOPPED.format(calls=2))
+    assert run.returncode == 130
+    assert run.stderr.splitlines()[-1] == "sevenbar: stopped; nothing is written"
+    assert (run.stdout, list(tmp_path.iterdir())) == ("", [])
+
+
 @pytest.mark.slow
 def test_a_wish_that_cannot_be_met_writes_nothing(tmp_path):
     told = mistake("design", "swing", "--swing", "340", "--designs", "1", "--out", "out", cwd=tmp_path)
+    told = told.splitlines()[-1].removeprefix("sevenbar: ")
     assert told.startswith("design: no linkage found for swing 340 deg, time ratio 1")
     assert "nearest: swing" in told
     assert list(tmp_path.iterdir()) == []

@@ -13,13 +13,13 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.synthesis.closure import NAMES
-from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.report import synthesis_report
 from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import RequestError
+from sevenbar.text.expression import function_of
 
 QUARTER = (0.0, math.pi / 2)
 PAGE = Path(__file__).parent.parent / "docs" / "synthesis.md"
@@ -265,10 +265,17 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
     np.testing.assert_allclose(fit.errors(turned, 1)[0], fit.errors(z, 1)[0], atol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["expression", "precision"])
-def test_examples_in_docstrings_give_what_they_show(name):
-    module = importlib.import_module(f"sevenbar.design.synthesis.function.{name}")
-    assert doctest.testmod(module) == (0, {"expression": 1, "precision": 1}[name])
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        ("text.formulas_of_x", 2),
+        ("design.synthesis.function.precision", 1),
+        ("design.course", 3),
+    ],
+)
+def test_examples_in_docstrings_give_what_they_show(name, count):
+    module = importlib.import_module(f"sevenbar.{name}")
+    assert doctest.testmod(module) == (0, count)
 
 
 @pytest.mark.slow

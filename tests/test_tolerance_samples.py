@@ -1,5 +1,7 @@
 """Worst case, Monte Carlo and tolerances for a wanted error: against the ordinary analysis and statistics."""
 
+import contextlib
+import io
 import math
 
 import numpy as np
@@ -8,6 +10,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.design.tolerance.inverse import tolerances_for
 from sevenbar.design.tolerance.linear import linear_estimate
+from sevenbar.design.tolerance.report import Findings, tolerance_report
 from sevenbar.design.tolerance.samples import LEVELS, monte_carlo
 from sevenbar.design.tolerance.sensitivities import sensitivities
 from sevenbar.design.tolerance.tolerances import (
@@ -207,6 +210,44 @@ def test_the_worst_case_is_reached_at_the_corner_that_it_names():
         assert other <= deviation + 1e-12
 
 
+def test_all_corners_of_up_to_eight_dimensions_are_computed():
+    """The two worst corners on every row are those of the ordinary analysis of all 64 designs."""
+    linkage = sb.load("rssr")
+    worst = worst_case(sensitivities(linkage, samples=12), {"*": 8.0})
+    assert (worst.tried, worst.corners, worst.open) == (64, 64, 0)
+    nominal = linkage.motion(12).circuits[0].output
+    outputs = []
+    for corner in np.ndindex(*(2,) * 6):
+        ends = zip(linkage.dimensions, corner, strict=True)
+        changes = {name: linkage.dimensions[name] + (8.0, -8.0)[end] for name, end in ends}
+        outputs.append(made(linkage, **changes).motion(12).circuits[0].output - nominal)
+    by_hand = np.remainder(np.array(outputs) + np.pi, math.tau) - np.pi
+    np.testing.assert_allclose(worst.high, by_hand.max(axis=0), atol=1e-11)
+    np.testing.assert_allclose(worst.low, by_hand.min(axis=0), atol=1e-11)
+    # and with tolerances as great as these the derivatives name another one on some rows
+    signs = np.sign(worst.linear.slopes) * 8.0
+    named = [worst.deviations[(worst.changes == s).all(axis=1), k] for k, s in enumerate(signs)]
+    assert all(n.size == 1 for n in named)
+    assert (worst.high >= np.concatenate(named) - 1e-15).all()
+
+
+def test_of_more_than_eight_dimensions_it_is_reported_how_many_corners_were_not_tried():
+    worst = worst_case(sensitivities(sb.load("seven_r"), samples=12), {"*": 0.01})
+    own = int((worst.linear.tolerances.widths > 0).sum())
+    assert own > 8
+    assert worst.corners == 2**own
+    assert 2 <= worst.tried <= 2 * len(worst.linear.rows)
+    page = capture(lambda: tolerance_report().print(Findings(worst.linear, worst, None)))
+    assert f"of the {worst.tried} designs with every dimension at an end of its tolerance that the" in page
+    assert f"derivatives name; the other {worst.corners - worst.tried:,} were not tried" in page
+
+
+def capture(print_it):
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        print_it()
+    return " ".join(out.getvalue().split())
+
+
 def test_the_difference_from_the_true_corner_grows_with_the_tolerances():
     found = sensitivities(sb.load("rssr"))
     differences = [worst_case(found, {"*": width}).difference for width in (0.01, 0.1, 1.0)]
@@ -216,7 +257,15 @@ def test_the_difference_from_the_true_corner_grows_with_the_tolerances():
 
 def test_a_corner_that_does_not_close_is_no_number():
     worst = worst_case(sb.load("rssr"), {"L*": 50.0})
-    assert np.isnan(worst.high[worst.at]) or np.isnan(worst.low[worst.at])
+    assert np.isnan(worst.high[worst.at])
+    assert np.isnan(worst.low[worst.at])
+    assert 0 < worst.open < 8
+    # the design that is named has no pose at that input
+    named = made(sb.load("rssr"), **{**sb.load("rssr").dimensions, **worst.corner})
+    at = worst.linear.input[worst.at]
+    assert np.isnan(named.output([at]).position).all()
+    page = capture(lambda: tolerance_report().print(Findings(worst.linear, worst, None)))
+    assert f"{worst.open} of 8 designs with every dimension at an end of its tolerance do not close" in page
 
 
 def test_shares_are_those_of_the_variance():

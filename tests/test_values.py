@@ -16,11 +16,11 @@ import sevenbar as sb
 from sevenbar.arrays import Floats
 from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.wish import wish_of_function
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
+from sevenbar.text.expression import function_of
 
 SAMPLES = 24
 

@@ -10,7 +10,11 @@ import typer
 from sevenbar.commands.deliver import check_out, command_line, deliver
 from sevenbar.commands.given import angle, angles, limits_of, numbers
 from sevenbar.commands.options import Figures, Force, Json, figure_formats
-from sevenbar.errors import RequestError
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.unfinished import end_of_work
+from sevenbar.errors import RequestError, shown
+from sevenbar.text.formulas_of_x import IN_DEGREES, calls_in
+from sevenbar.text.units import ANGLES
 
 if TYPE_CHECKING:
     from sevenbar.design.synthesis.function.generation import Synthesis
@@ -32,8 +36,11 @@ Out = Annotated[
 
 
 def function(
-    y: Annotated[str | None, typer.Option(help="The function of x, as in 'x^2' or 'log10(x)'.")] = None,
-    x: Annotated[str, typer.Option(help="Range of x.")] = "0:1",
+    y: Annotated[
+        str | None,
+        typer.Option(help="The function of x, as in 'x^2', 'log10(x)' or 'sin(x)'; sind takes degrees."),
+    ] = None,
+    x: Annotated[str, typer.Option(help="Range of x: 0:1, 0:pi/2 or 0:90deg (radians then).")] = "0:1",
     table: Annotated[
         Path | None, typer.Option(help="CSV of pairs of angles in place of a function: input_deg,output_deg.")
     ] = None,
@@ -67,22 +74,29 @@ def function(
         )
     if table is not None and points is not None:
         raise RequestError("--points: pairs of a table are the points themselves; leave it out")
-    found = function_generation(
-        None if table is None else read_pairs(table),
-        function=y,
-        x_range=numbers("--x", x),
-        input_range=angles("--input-range", input_range),
-        output_range=angles("--output-range", output_range),
-        precision=points,
-        name=None if table is None else f"pairs of {table.name}",
-        limits=limits_of(transmission, size, motion_type, "mm"),
-        tolerance=angle("--tolerance", tolerance),
-        count=designs,
-        seed=seed_of(seed),
-    )
-    # a search that found nothing says why
-    found.required()
+    x_range = numbers("--x", x)
+    if y is not None:
+        refuse_degrees_twice(y, x)
+    wanted = f"y = {y}" if table is None else f"pairs of {table.name}"
+    with progress_bar(f"searching RSSRs for {wanted}") as progress:
+        found = function_generation(
+            None if table is None else read_pairs(table),
+            function=y,
+            x_range=x_range,
+            input_range=angles("--input-range", input_range),
+            output_range=angles("--output-range", output_range),
+            precision=points,
+            name=None if table is None else wanted,
+            limits=limits_of(transmission, size, motion_type, "mm"),
+            tolerance=angle("--tolerance", tolerance),
+            count=designs,
+            seed=seed_of(seed),
+            progress=progress,
+        )
+        # a search that found nothing says why
+        found.required()
     deliver(found, report, out, json=json, force=force)
+    end_of_work(found.unfinished)
 
 
 def swing(
@@ -103,16 +117,29 @@ def swing(
     from sevenbar.design.synthesis.function.swing import swing_generation
 
     report = _before(out, designs, figures, force)
-    found = swing_generation(
-        angle("--swing", swing),
-        time_ratio,
-        limits=limits_of(transmission, size, None, "mm"),
-        count=designs,
-        seed=seed_of(seed),
-    )
-    # a search that found nothing says why
-    found.required()
+    with progress_bar(f"searching crank-rockers with a swing of {swing}") as progress:
+        found = swing_generation(
+            angle("--swing", swing),
+            time_ratio,
+            limits=limits_of(transmission, size, None, "mm"),
+            count=designs,
+            seed=seed_of(seed),
+            progress=progress,
+        )
+        # a search that found nothing says why
+        found.required()
     deliver(found, report, out, json=json, force=force)
+    end_of_work(found.unfinished)
+
+
+def refuse_degrees_twice(y: str, x: str) -> None:
+    """Raises `RequestError` where sind and the like would take an x in radians."""
+    with_unit = any(unit in x for unit in (*ANGLES, "\u00b0"))
+    if with_unit and (called := sorted(calls_in(y) & IN_DEGREES.keys())):
+        raise RequestError(
+            f"--x: {shown(x)} counts in radians, and {called[0]} takes degrees; "
+            f"write {IN_DEGREES[called[0]]}, or leave the unit of x out"
+        )
 
 
 #: Most designs that one command gives.

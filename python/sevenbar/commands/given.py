@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.joint_text import joint_value
+from sevenbar.text.formulas_of_x import number_of
 from sevenbar.text.ranges import Place, split_range, three_numbers
 from sevenbar.text.units import amount, examples_of, sizes_of
 
@@ -71,8 +72,14 @@ def lengths(option: str, text: str, unit: str) -> tuple[float, float]:
 
 
 def numbers(option: str, text: str) -> tuple[float, float]:
-    """The two numbers of a range like 0:1."""
-    return _ends(option, text, sizes_of(""), "", "0:1 or 1:10")
+    """The two numbers of a range like 0:1, 0:pi/2 or 0:90deg; an angle with a unit counts in radians."""
+    if ends := split_range(text):
+        low, high = map(number_of, ends)
+        if low is not None and high is not None:
+            return low, high
+    raise RequestError(
+        f"{option}: {shown(text)} is not a range; give two values, as in 0:1, 0:pi/2 or 0:90deg"
+    )
 
 
 def limits_of(transmission: str, size: str | None, motion_type: str | None, unit: str) -> Limits:

@@ -22,7 +22,9 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.ranges import split_named, split_range
 
 
@@ -83,7 +85,10 @@ def path(
         raise RequestError("--phase: inputs have no say without --timing; give both, or leave --phase out")
     asked = point_of(point, link, at)
     if asked is None:
-        raise RequestError("--point: missing; give --point NAME, or --link with --at")
+        raise RequestError(
+            f"--point: missing; {missing_point(draft.linkage)}, or a place on a link, as in "
+            "--link 2 --at 300,40,0"
+        )
     task = path_task(
         draft,
         points,
@@ -97,9 +102,22 @@ def path(
         follow=words(follow or []),
     )
     check_counts(designs, starts, seed)
-    with progress_bar("designing") as progress:
+    with progress_bar(f"searching paths of {draft.linkage.name}") as progress:
         found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
-    deliver(PathDesigns(task, found, str(wanted), seed), report, out, json=json, force=force)
+    deliver(
+        PathDesigns(task, found.candidates, str(wanted), seed, found.unfinished),
+        report,
+        out,
+        json=json,
+        force=force,
+    )
+    end_of_work(found.unfinished)
+
+
+def missing_point(linkage: Linkage) -> str:
+    """Which point to give where none is."""
+    names = [point.name for point in linkage.points if point.link < len(linkage.joints)]
+    return f"give --point {' or '.join(names)}" if names else "the file names none, so add one to it"
 
 
 def parsed_bounds(given: list[str]) -> dict[str, tuple[str, str]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal, cast
 
 import typer
 
@@ -21,6 +21,7 @@ from sevenbar.commands.options import (
     Speed,
     figure_formats,
 )
+from sevenbar.commands.progress import progress_bar
 from sevenbar.description.draft import Draft
 from sevenbar.description.files import text_of
 from sevenbar.errors import RequestError, shown
@@ -28,7 +29,7 @@ from sevenbar.text.ranges import finite_number, split_list, split_named, split_r
 from sevenbar.text.units import amount, sizes_of
 
 if TYPE_CHECKING:
-    from sevenbar.design.points.least import LeastPoint
+    from sevenbar.design.points.least import LeastPoint, Rate
     from sevenbar.design.points.nearest import NearestPath
     from sevenbar.kinematics.motion import Motion
 
@@ -68,7 +69,7 @@ def point(
 ) -> None:
     """Find the point of a link with the least acceleration, or with a wanted path (extra 'design')."""
     from sevenbar.design.curve_table import read_curve
-    from sevenbar.design.points import nearest_path_point
+    from sevenbar.design.points import least_point, nearest_path_point
     from sevenbar.design.points.report import least_report, nearest_report
 
     formats = figure_formats(figures, out)
@@ -93,15 +94,20 @@ def point(
         check_out(of_curve, out, force=force)
         motion = _motion(loaded, 360, input_joint, speed, law)
         places, inputs = read_curve(curve, motion.linkage, motion.input)
-        nearest = nearest_path_point(
-            motion, link, places, sides, inputs=inputs, circuit=circuit, branch=branch
-        )
+        with progress_bar(f"searching a point of link {link} of {loaded.name}") as progress:
+            nearest = nearest_path_point(
+                motion, link, places, sides, inputs=inputs, circuit=circuit, branch=branch, progress=progress
+            )
         deliver(nearest, of_curve, out, json=json, force=force)
         return
     report = least_report(toml, called, formats)
     check_out(report, out, force=force)
     motion = _motion(loaded, 360, input_joint, speed, law)
-    found = _least(motion, link, sides, least or "acceleration", circuit, branch)
+    of, measure = _least(least or "acceleration")
+    with progress_bar(f"searching a point of link {link} of {loaded.name}") as progress:
+        found = least_point(
+            motion, link, sides, of=of, measure=measure, circuit=circuit, branch=branch, progress=progress
+        )
     deliver(found, report, out, json=json, force=force)
 
 
@@ -181,22 +187,8 @@ def _motion(
     return linkage.motion(samples, input=input_joint, speed=speed, law=read)
 
 
-def _least(
-    motion: Motion, link: int, box: list[tuple[float, float]], least: str, circuit: int, branch: int
-) -> LeastPoint:
-    from sevenbar.design.points import (
-        least_acceleration_point,
-        least_jerk_point,
-        least_rms_point,
-        least_velocity_point,
-    )
-
-    finders = {
-        "acceleration": least_acceleration_point,
-        "velocity": least_velocity_point,
-        "jerk": least_jerk_point,
-        "rms": least_rms_point,
-    }
-    if least not in finders:
+def _least(least: str) -> tuple[Rate, Literal["greatest", "rms"]]:
+    """The rate of a word of --least, and whether its greatest or its mean counts."""
+    if least not in LEAST:
         raise RequestError(f"--least: {shown(least)} is not offered; give one of {', '.join(LEAST)}")
-    return finders[least](motion, link, box, circuit=circuit, branch=branch)
+    return ("acceleration", "rms") if least == "rms" else (cast("Rate", least), "greatest")

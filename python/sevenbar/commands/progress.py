@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 STOPPED = 130
 
 
-class Shown:
+class WorkBar:
     """What was reported of one piece of work: a bar on a terminal, one plain line elsewhere."""
 
     def __init__(self, title: str, *, rate: bool) -> None:
@@ -60,12 +60,12 @@ class Shown:
 
 
 @contextmanager
-def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is written") -> Iterator[Shown]:
+def progress_bar(title: str, *, rate: bool = False, kept: str = "nothing is written") -> Iterator[WorkBar]:
     """Shows how far work is; with `rate` how many steps a second.
 
     Ctrl+C ends the command with the line "stopped; " and what is `kept`.
     """
-    shown = Shown(title, rate=rate)
+    shown = WorkBar(title, rate=rate)
     try:
         yield shown
     except KeyboardInterrupt:

@@ -19,7 +19,7 @@ from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
 
 if TYPE_CHECKING:
-    from sevenbar.description.held import Held
+    from sevenbar.description.held import HeldDimensions
     from sevenbar.sweep.result import Sweep
 
 #: Most linkages of a sweep that leaves no folder: what is made in minutes may be lost.
@@ -114,7 +114,7 @@ def _as_dict(found: Sweep) -> dict[str, Any]:
     return {**found.description, "totals": asdict(found.totals)}
 
 
-def _text(held: Held, found: Sweep) -> RenderableType:
+def _text(held: HeldDimensions, found: Sweep) -> RenderableType:
     """Counts by words, ranges of numbers, of all linkages."""
     totals = found.totals
     sampling = found.description["sampling"]

@@ -21,6 +21,7 @@ from sevenbar.commands.options import (
     figure_formats,
     words,
 )
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.units import amount, sizes_of
 
@@ -99,8 +100,19 @@ def tolerance(
         linear = tolerances_for(found, error, distribution=distribution, output=of, quantity=quantity)
     else:
         linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
-    exact = monte_carlo(found, linear, count, seed=seed) if count != 0 else None
-    deliver(Findings(linear, worst_case(found, linear), exact), report, out, json=json, force=force)
+    with progress_bar(f"designs within the tolerances of {loaded.name}") as progress:
+        # one bar for both
+        worst = worst_case(found, linear, progress=lambda done, total, _: progress(done, total + count))
+        tried, exact = worst.tried, None
+        if count != 0:
+            exact = monte_carlo(
+                found,
+                linear,
+                count,
+                seed=seed,
+                progress=lambda done, total, _: progress(tried + done, tried + total),
+            )
+    deliver(Findings(linear, worst, exact), report, out, json=json, force=force)
 
 
 def _wanted(text: str, unit: str) -> float:

@@ -14,7 +14,7 @@ MOST_NAMED = 8
 
 
 @dataclass(frozen=True)
-class Held:
+class HeldDimensions:
     """The dimensions that stay, those of them that the file leaves out, and those that follow.
 
     >>> import sevenbar as sb
@@ -40,6 +40,11 @@ class Held:
         return "; ".join(line for line in lines if line)
 
     @property
+    def left_to_the_program(self) -> bool:
+        """Whether the file leaves a dimension out that is held or follows here."""
+        return bool(self.left_out or self.follow)
+
+    @property
     def as_dict(self) -> dict[str, Any]:
         """The values (in the units of the file) of what stays, and the names of what the file leaves out."""
         return {
@@ -49,13 +54,13 @@ class Held:
         }
 
 
-def held_of(draft: Draft, moved: Collection[str]) -> Held:
+def held_of(draft: Draft, moved: Collection[str]) -> HeldDimensions:
     """What of a draft stays as it is while the dimensions `moved`, by name, change.
 
     Points and the speed are not among it: they move no joint.
     """
     own = [d for d in draft.dimensions if d.kind != "speed" and d.place[0] != "point" and d.name not in moved]
-    return Held(
+    return HeldDimensions(
         tuple(d for d in own if not d.follows),
         tuple(d.name for d in own if d.name in draft.held),
         tuple(d for d in own if d.follows),

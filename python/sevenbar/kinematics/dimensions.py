@@ -69,6 +69,20 @@ class Dimension:
         return value
 
 
+def read_at(option: str, dimension: Dimension, text: str) -> float:
+    """The value of a text given for a dimension; raises `RequestError` that names the option, not the file.
+
+    >>> import sevenbar as sb
+    >>> linkage = sb.load("rssr")
+    >>> read_at("over", dimensions_of(linkage.description, linkage)[2], "25 cm")
+    250.0
+    """
+    try:
+        return dimension.read(text)
+    except RequestError as error:
+        raise RequestError(f"{option}: {dimension.name}{str(error).removeprefix(dimension.key)}") from None
+
+
 def description_of(linkage: Loop) -> Mapping[str, Any]:
     """A linkage's own description; `RequestError` for one that was made without."""
     if not linkage.description:

@@ -168,6 +168,11 @@ class Solvable(Loop):
         raise NotImplementedError
 
     @property
+    def idle_links(self) -> frozenset[int]:
+        """The links that take part in them, counted from 1."""
+        raise NotImplementedError
+
+    @property
     def held(self) -> tuple[frozenset[int], list[int], int]:
         """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
         raise NotImplementedError

@@ -34,7 +34,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.description.held import Held, held_of
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
@@ -111,7 +111,7 @@ class Calibration(Printed):
     notes: tuple[str, ...]
 
     @cached_property
-    def held(self) -> Held:
+    def held(self) -> HeldDimensions:
         """The dimensions that stay as they were asked to, or follow."""
         moved = {p.name for p in self.parameters if p.status not in ("fixed", "follows")}
         return held_of(Draft.of_linkage(self.linkage).holding(self.follow), moved)

@@ -3,11 +3,9 @@
 Parameters z are the numbers of the description that move joints, in units of length and radians, and two
 offsets. The rows are followed from pose to pose as z changes, each on its own pass; a row that goes over a
 dead centre of the input on the way does not close. A coupler that follows the other lengths of an RSSR takes
-its derivatives from theirs,
+its derivatives from theirs (`kinematics.following`).
 
-    L2^2 = (L1 - M)^2 + L3^2 + N^2,     L2 dL2 = (L1 - M) (dL1 - dM) + L3 dL3 + N dN                      (1)
-
-Source: docs/theory_design.md, (1) and (2); Sun and Zhou, eq. (7).
+Source: docs/theory_design.md, (1) and (2).
 """
 
 from __future__ import annotations
@@ -21,7 +19,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.circuits import Integers
-from sevenbar.kinematics.geometry import following_coupler
+from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers, Slopes
 from sevenbar.measuring.compare import Comparison
 from sevenbar.measuring.measured import OUTPUTS
@@ -59,6 +57,7 @@ class CurveModel:
         q, status = circuit.q[own], circuit.status[own]
         self.places = _in_order(numbers)
         dimensions = [numbers.dimensions[k] for k in self.places]
+        self._follower = Following.among(dimensions) if self.follows else None
         self.names = [d.name for d in dimensions] + [f"{side}_offset" for side in OFFSETS]
         self.kinds: list[str] = [d.kind for d in dimensions]
         self.kinds += ["length" if slides else "angle" for slides in (ends.input_slides, ends.output_slides)]
@@ -150,24 +149,16 @@ class CurveModel:
         self._slopes, self._matrices = None, {}
 
     def filled(self, z: Floats) -> Floats:
-        """Parameters with those that follow the others in their place."""
-        for name in self.follows:
-            m, n, crank, rocker = (z[self.names.index(key)] for key in ("M", "N", "L1", "L3"))
-            z = z.copy()
-            z[self.names.index(name)] = following_coupler(m, n, crank, rocker)
-        return z
+        """Parameters with the one that follows the others in its place."""
+        return z if self._follower is None else self._follower.whole(z)
 
     def following(self, z: Floats) -> dict[int, Floats]:
-        """The derivatives (parameters,) of each parameter that follows the others, (1)."""
-        found = {}
-        for name in self.follows:
-            place = {key: self.names.index(key) for key in ("M", "N", "L1", "L3", name)}
-            row = np.zeros(len(z))
-            m, n, crank, rocker, coupler = (z[k] for k in place.values())
-            row[place["L1"]], row[place["M"]] = (crank - m) / coupler, (m - crank) / coupler
-            row[place["L3"]], row[place["N"]] = rocker / coupler, n / coupler
-            found[place[name]] = row
-        return found
+        """The derivatives (parameters,) of each parameter that follows the others."""
+        if self._follower is None:
+            return {}
+        row = np.zeros(len(z))
+        row[list(self._follower.leaders)] = self._follower.slopes(z)
+        return {self._follower.own: row}
 
     def _to(self, z: Floats) -> bool:
         """Moves the poses to parameters z; whether every row closes there."""

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits import Integers
-from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.dimensions import Dimension, read_at
 from sevenbar.text.ranges import split_grid, split_list, split_name, split_range
 
 #: Most values of one axis that are listed: the sweep's description holds each of them.
@@ -143,11 +143,7 @@ def axis_of(dimension: Dimension, given: Given) -> SweepAxis:
 def _value(dimension: Dimension, given: object) -> float:
     """A number in the file's unit, from a number or a text with a unit."""
     if isinstance(given, str):
-        try:
-            return dimension.read(given)
-        except RequestError as error:
-            # by the name that was given, not by the place in the file
-            raise RequestError(f"{dimension.name}{str(error).removeprefix(dimension.key)}") from None
+        return read_at("over", dimension, given)
     if isinstance(given, bool | np.bool_) or not isinstance(given, int | float | np.integer | np.floating):
         raise RequestError(
             f"{dimension.name}: {shown(given)} is not a number; give a number or a text as '25 cm'"

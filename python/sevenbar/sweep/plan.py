@@ -15,7 +15,7 @@ import numpy as np
 from sevenbar import __version__
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.description.held import Held, held_of
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.batches import simd_level
 from sevenbar.kinematics.linkage import Linkage
@@ -94,7 +94,7 @@ class SweepPlan:
         return tuple(MEASURES[m] if isinstance(m, str) else m for m in self.measures)
 
     @property
-    def held(self) -> Held:
+    def held(self) -> HeldDimensions:
         """What is the same of all linkages."""
         return held_of(self.draft, [axis.name for axis in self.space.axes])
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.description.held import Held, held_of
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
 from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
@@ -99,7 +99,7 @@ class Map(Printed):
         return self.draft.linkage
 
     @property
-    def held(self) -> Held:
+    def held(self) -> HeldDimensions:
         """What is the same all over the map."""
         return held_of(self.draft, [axis.name for axis in self.axes])
 

@@ -95,6 +95,8 @@ def measure_heights(
     """
     chosen = with_contours(measures)
     _check_take(take)
+    if isinstance(take, (int, np.integer)):
+        refuse_missing_circuit(of, int(take))
     wanted = None if levels is None else _levels(levels)
     nodes, kinds, triangles = _net(of)
     table = of.plane.values_at(nodes, chosen, take)
@@ -138,6 +140,17 @@ def _check_take(take: object) -> None:
     if take not in ("highest", "lowest") and not counts:
         raise RequestError(
             f"take: {shown(take)} is not offered; give highest, lowest, or the index of a circuit, from 0"
+        )
+
+
+def refuse_missing_circuit(of: Map, take: int) -> None:
+    """Raises `RequestError` for a circuit that no linkage on the map has."""
+    most = max((kind.circuits for kind in (*of.areas, of.design.kind)), default=0)
+    if take >= most:
+        has = "none has a circuit" if not most else f"they have at most {most}, 0 to {most - 1}"
+        raise RequestError(
+            f"take: {take} is a circuit that no linkage on the map has: {has}; give one of these, "
+            "highest or lowest"
         )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.dimensions import Dimension, read_at
 from sevenbar.text.ranges import split_named, split_range
 
 #: The form of a range, for messages.
@@ -90,7 +90,7 @@ def _axis(dimension: Dimension, given: Range) -> MapAxis:
         ends = split_range(given)
         if ends is None:
             raise RequestError(f"{where}: {shown(given)} is not a range; give LOW:HIGH, {EXAMPLE}")
-        low, high = (dimension.read(end) for end in ends)
+        low, high = (read_at("over", dimension, end) for end in ends)
     else:
         try:
             low, high = (float(end) for end in given)

@@ -1,14 +1,7 @@
 """Points of moving links: acceleration poles, least acceleration, wanted paths, inertia."""
 
 from sevenbar.design.points.inertia import Inertia, Mass, inertia
-from sevenbar.design.points.least import (
-    LeastPoint,
-    least_acceleration_point,
-    least_jerk_point,
-    least_point,
-    least_rms_point,
-    least_velocity_point,
-)
+from sevenbar.design.points.least import LeastPoint, least_acceleration_point, least_point
 from sevenbar.design.points.nearest import NearestPath, nearest_path_point
 from sevenbar.design.points.poles import AccelerationPoles, acceleration_poles
 
@@ -21,9 +14,6 @@ __all__ = [
     "acceleration_poles",
     "inertia",
     "least_acceleration_point",
-    "least_jerk_point",
     "least_point",
-    "least_rms_point",
-    "least_velocity_point",
     "nearest_path_point",
 ]

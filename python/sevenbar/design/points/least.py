@@ -16,6 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
+from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import ConeSolution, least_greatest
 from sevenbar.design.points.cycle import ORDERS, Cycle, box_of, cycle_of
 from sevenbar.design.points.polish import Polished, polished
@@ -127,7 +129,7 @@ def least_acceleration_point(
 
     `box` is ((low, high), (low, high), (low, high)) [length] in the coordinates in which points are written:
     (u, v, w) in Denavit-Hartenberg rows, the link's frame for `[rssr]`, the drawn pose for drawn joints.
-    `branch` is the pass of a circuit that rocks, which needs a law.
+    `branch` is the pass of a circuit that rocks, which needs a law. `least_point` has other rates and means.
 
     Raises `RequestError` for a link, box or circuit that does not fit, `MissingExtraError` without Clarabel.
 
@@ -139,40 +141,6 @@ def least_acceleration_point(
     return least_point(motion, link, box, of="acceleration", circuit=circuit, branch=branch)
 
 
-def least_velocity_point(
-    motion: Motion, link: int, box: npt.ArrayLike, *, circuit: int = 0, branch: int = 0
-) -> LeastPoint:
-    """The point whose greatest speed over the cycle is least; as `least_acceleration_point`."""
-    return least_point(motion, link, box, of="velocity", circuit=circuit, branch=branch)
-
-
-def least_jerk_point(
-    motion: Motion, link: int, box: npt.ArrayLike, *, circuit: int = 0, branch: int = 0
-) -> LeastPoint:
-    """The point whose greatest jerk over the cycle is least; as `least_acceleration_point`."""
-    return least_point(motion, link, box, of="jerk", circuit=circuit, branch=branch)
-
-
-def least_rms_point(
-    motion: Motion,
-    link: int,
-    box: npt.ArrayLike,
-    *,
-    of: Rate = "acceleration",
-    circuit: int = 0,
-    branch: int = 0,
-) -> LeastPoint:
-    """The point with the least root mean square by time of a rate; as `least_acceleration_point`.
-
-    >>> import sevenbar as sb
-    >>> motion = sb.load("seven_r").motion()
-    >>> box = [(-200, 200)] * 3
-    >>> bool(least_rms_point(motion, 4, box).value < least_acceleration_point(motion, 4, box).value)
-    True
-    """
-    return least_point(motion, link, box, of=of, measure="rms", circuit=circuit, branch=branch)
-
-
 def least_point(
     motion: Motion,
     link: int,
@@ -182,14 +150,28 @@ def least_point(
     measure: Literal["greatest", "rms"] = "greatest",
     circuit: int = 0,
     branch: int = 0,
+    progress: Progress = silent,
 ) -> LeastPoint:
-    """The point of a box with the least greatest, or least root mean square, of a rate."""
+    """The point of a box with the least greatest, or least root mean square by time, of a rate.
+
+    `progress` is called with (rounds done, at most how many, the best so far); the rest is as for
+    `least_acceleration_point`.
+
+        >>> import sevenbar as sb
+        >>> motion = sb.load("seven_r").motion()
+        >>> box = [(-200, 200)] * 3
+        >>> mean, greatest = (least_point(motion, 4, box, measure=word).value for word in ("rms", "greatest"))
+        >>> bool(mean < greatest)
+        True
+    """
     if of not in ORDERS[1:]:
         raise RequestError(f"of: {shown(of)} is not offered; give velocity, acceleration or jerk")
     if measure not in ("greatest", "rms"):
         raise RequestError(f"measure: {shown(measure)} is not offered; give greatest or rms")
     low, high = box_of(box)
     cycle = cycle_of(motion, link, circuit, branch, order=of)
+    refuse_idle_link(motion.linkage, cycle.link, "the motion of a point on it")
+    course = SearchCourse(1 if measure == "rms" else MOST_ROUNDS, progress)
     index, centre, half = ORDERS.index(of), (low + high) / 2, (high - low) / 2
     constant, gradient = cycle.rates.constant[index], cycle.rates.gradient[index]
     around = np.linalg.norm(cycle.rates.of(of, centre), axis=1).max() + np.abs(gradient @ half).max()
@@ -199,8 +181,9 @@ def least_point(
         inputs, weights, rounds, solver = np.array([]), np.array([]), 1, None
     else:
         at, value, bound, inputs, weights, rounds, solver = _least_greatest(
-            cycle, of, (low, high), free, around
+            cycle, of, (low, high), free, around, course
         )
+    course.end()
     before = tuple(
         Compared(p.name, p.at, _value(cycle, of, measure, np.array(p.at)))
         for p in motion.linkage.points
@@ -227,7 +210,7 @@ def least_point(
 
 
 def _least_greatest(
-    cycle: Cycle, of: Rate, box: tuple[Floats, Floats], free: Floats, around: float
+    cycle: Cycle, of: Rate, box: tuple[Floats, Floats], free: Floats, around: float, course: SearchCourse
 ) -> tuple[Floats, float, float, Floats, Floats, int, ConeSolution]:
     """Point, value, bound, inputs that decide, their weights, rounds, the cones' last solution."""
     index, (low, high) = ORDERS.index(of), box
@@ -256,6 +239,7 @@ def _least_greatest(
             deciding, shares = inputs, solved.weights
             if better is not None and best is better.at:
                 deciding, shares = better.inputs, better.weights
+        course.step(f"best: {value:.6g} {rate_unit(cycle, of)}")
         close = value - bound <= max(GAP * value, ZERO * around)
         if close or not cycle.closed or rounds == MOST_ROUNDS:
             break

@@ -17,6 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
+from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
 from sevenbar.design.points.squares import least_squares_in
@@ -89,12 +91,13 @@ def nearest_path_point(
     measure: Literal["rms", "greatest"] = "rms",
     circuit: int = 0,
     branch: int = 0,
+    progress: Progress = silent,
 ) -> NearestPath:
     """The point of link 1, 2, .. in a box whose path is nearest a curve of m places (m, 3).
 
     Places are in the report frame [length]. With `inputs` (m,) [rad, or length] the path shall be at each
     place at its input; without, it shall pass by each place at any: `measure` "rms" only. What the path does
-    away from them does not count.
+    away from them does not count. `progress` is called with (starts done, of how many, the best so far).
 
     Raises `RequestError` for arguments that do not fit, or inputs at which the circuit has no pose.
 
@@ -111,10 +114,12 @@ def nearest_path_point(
     if measure not in ("rms", "greatest"):
         raise RequestError(f"measure: {shown(measure)} is not offered; give rms or greatest")
     cycle = cycle_of(motion, link, circuit, branch, order="position")
+    refuse_idle_link(motion.linkage, cycle.link, "a path on it")
     if inputs is None:
         if measure != "rms":
             raise RequestError("measure: greatest needs the input of each place; give inputs, or measure rms")
-        return _untimed(cycle, wanted, low, high)
+        return _untimed(cycle, wanted, low, high, progress)
+    progress(0, 1, "")
     return _timed(cycle, wanted, _inputs(inputs, len(wanted)), (low, high), measure)
 
 
@@ -173,12 +178,23 @@ def _timed(
     return NearestPath(cycle, measure, at, wanted, rates.of("position", at), inputs, bound, 1, 1)
 
 
-def _untimed(cycle: Cycle, wanted: Floats, low: Floats, high: Floats) -> NearestPath:
+def _untimed(cycle: Cycle, wanted: Floats, low: Floats, high: Floats, progress: Progress) -> NearestPath:
     """Nearest rows and least squares in turn from a grid of starts; the best ends followed between rows."""
     grid = np.stack(np.meshgrid(*np.linspace(low, high, STARTS).T, indexing="ij"), axis=-1).reshape(-1, 3)
     starts = np.unique(grid, axis=0)
-    ends = sorted((_alternated(cycle, wanted, start, low, high) for start in starts), key=lambda end: end[0])
-    followed = [_followed(cycle, wanted, at, low, high) for _, at in ends[:FOLLOWED]]
+    course, unit = (
+        SearchCourse(len(starts) + min(FOLLOWED, len(starts)), progress),
+        cycle.motion.linkage.length_unit,
+    )
+    ends: list[tuple[float, Floats]] = []
+    for start in starts:
+        ends.append(_alternated(cycle, wanted, start, low, high))
+        course.step(f"best: rms {min(rms for rms, _ in ends):.4g} {unit}")
+    ends.sort(key=lambda end: end[0])
+    followed = []
+    for _, at in ends[:FOLLOWED]:
+        followed.append(_followed(cycle, wanted, at, low, high))
+        course.step(f"best: rms {min(rms for rms, *_ in followed):.4g} {unit}")
     _, at, inputs, path = min(followed, key=lambda end: end[0])
     side = float((high - low).max()) or 1.0
     agreeing = sum(float(np.abs(end - at).max()) < 1e-2 * side for _, end in ends)

@@ -12,7 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, short_way
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.closure import row_of, transmissions
+from sevenbar.design.synthesis.closure import row_of, transmission_slopes, transmissions
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.circuits import Circuit, Integers
@@ -32,6 +32,9 @@ PLACE_SLACK = 0.1
 
 #: Inputs over the used range at which the transmission angle is checked.
 RANGE_SAMPLES = 361
+
+#: Halvings between two of them, down to rounding.
+MOST_HALVINGS = 50
 
 #: By how much a limit may be missed through rounding: [rad] and parts of a length.
 LIMIT_ROUNDING = 1e-9
@@ -56,6 +59,8 @@ class Claim:
     errors: Floats
     error_unit: str = "deg"
     figures: Mapping[str, float] = field(default_factory=dict)
+    #: Whether the input turns fully at work, so that all of the turn counts, not only the way between poses.
+    whole_turn: bool = False
 
 
 @dataclass(frozen=True)
@@ -136,7 +141,10 @@ def checked(
     fault = _in_order(circuit, ways.position)
     if fault is not None:
         return fault
-    lowest = used_transmission(linkage, circuit, claim.inputs, ways.position)
+    if claim.whole_turn:
+        lowest = None if circuit.transmission is None else circuit.transmission.lowest
+    else:
+        lowest = used_transmission(linkage, circuit, claim.inputs, ways.position)
     lengths = [abs(d.value) for d in draft.dimensions if d.kind == "length"]
     found = Candidate(
         draft,
@@ -150,6 +158,11 @@ def checked(
         int(ways.branch[0]),
         ways.position,
     )
+    return within_limits(found, limits)
+
+
+def within_limits(found: Candidate, limits: Limits) -> Candidate | Refusal:
+    """A design that keeps the limits, or why it does not."""
     return _within(found, limits) or found
 
 
@@ -253,13 +266,22 @@ def used_transmission(linkage: Linkage, circuit: Circuit, inputs: Floats, positi
     """The least transmission angle [rad] over the used part of a pass.
 
     Of an RSSR given by its dimensions over the inputs from the first to the last; else that of the circuit.
+    The least sample within the range is followed to where the angle is least.
     """
     if linkage.form != "rssr" or circuit.input_column != 0:
         return None if circuit.transmission is None else circuit.transmission.lowest
     ends = inputs[0] + np.array([0.0, _travel(circuit, inputs, position)])
-    used = np.concatenate([np.linspace(ends.min(), ends.max(), RANGE_SAMPLES), inputs])
-    square = transmissions(row_of(linkage.dimensions)[None], used)[0].min()
-    return math.asin(math.sqrt(min(max(float(square), 0.0), 1.0)))
+    used = np.linspace(ends.min(), ends.max(), RANGE_SAMPLES)
+    row = row_of(linkage.dimensions)[None]
+    place = int(transmissions(row, used)[0].argmin())
+    low, high = used[max(place - 1, 0)], used[min(place + 1, RANGE_SAMPLES - 1)]
+    # the end of a range, or a place between two samples where the slope changes its sign
+    for _ in range(MOST_HALVINGS):
+        middle = (low + high) / 2
+        falls = transmission_slopes(row, np.array([middle]))[1][0, 0] < 0
+        low, high = (middle, high) if falls else (low, middle)
+    least = transmissions(row, np.array([used[place], low, high]))[0].min()
+    return math.asin(math.sqrt(min(max(float(least), 0.0), 1.0)))
 
 
 def _travel(circuit: Circuit, inputs: Floats, position: Floats) -> float:
@@ -297,6 +319,22 @@ def _within(found: Candidate, limits: Limits) -> Refusal | None:
     if limits.motion_type is not None and found.motion_type != limits.motion_type:
         return Refusal("motion type", f"is a {found.motion_type}, required is a {limits.motion_type}")
     return None
+
+
+def least_error(kept: Sequence[Candidate]) -> str:
+    """The least greatest error of designs in words, for a search on its way; empty where there is none."""
+    best = min(kept, key=lambda candidate: candidate.error_greatest, default=None)
+    if best is None:
+        return ""
+    unit = best.claim.error_unit
+    value = math.degrees(best.error_greatest) if unit == "deg" else best.error_greatest
+    return f"best: error {value:.3g} {unit}"
+
+
+def transmits_best(kept: Sequence[Candidate]) -> str:
+    """The greatest least transmission angle of designs in words; empty where there is none."""
+    best = max((candidate.transmission_lowest or 0.0 for candidate in kept), default=None)
+    return "" if best is None else f"best: transmission angle {math.degrees(best):.3g} deg"
 
 
 def tally(refusals: Iterable[Refusal]) -> str:

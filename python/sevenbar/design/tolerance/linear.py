@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.description.held import Held, held_of
+from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError
@@ -80,10 +80,10 @@ class Linear:
         return np.sqrt(self.slopes**2 @ self.tolerances.deviations(self.distribution) ** 2)
 
     @property
-    def held(self) -> Held:
+    def held(self) -> HeldDimensions:
         """The dimensions without a tolerance."""
-        told = zip(self.found.dimensions, self.tolerances.widths, strict=True)
-        return held_of(self.found.draft, [dimension.name for dimension, width in told if width > 0])
+        own = zip(self.found.dimensions, self.tolerances.widths, strict=True)
+        return held_of(self.found.draft, [dimension.name for dimension, width in own if width > 0])
 
     @property
     def greatest(self) -> int:

@@ -26,6 +26,9 @@ from sevenbar.reporting.page import Facts, drive_text, number_table
 #: Dimensions of a corner design that the page names; the JSON has all.
 MOST_NAMED = 8
 
+#: How corner designs are called.
+CORNERS = "designs with every dimension at an end of its tolerance"
+
 #: An effect relative to the greatest that is rounding.
 NO_EFFECT = 1e-9
 
@@ -48,11 +51,13 @@ def text(findings: Findings) -> RenderableType:
     unit = "rad" if found.input_turns else found.linkage.length_unit
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
-    if held := linear.held.text:
-        facts.add("held", held)
+    if linear.held.left_to_the_program:
+        facts.add("held", linear.held.text)
     facts.add("errors", f"independent, {linear.distribution}{spread}")
     facts.add("worst case", _worst_text(worst))
     facts.add("", _corner_text(worst))
+    if tried := _tried_text(worst):
+        facts.add("", tried)
     row = int(np.argmax(linear.deviation))
     three = 3 * float(plain(linear, linear.deviation)[row])
     facts.add(
@@ -100,6 +105,10 @@ def as_dict(findings: Findings) -> dict[str, Any]:
             "linear": float(linear.worst[worst.at]),
             "at_input": float(linear.input[worst.at]),
             "corner": worst.corner,
+            "corner_low": worst.corner_low,
+            "corners": worst.corners,
+            "corners_tried": worst.tried,
+            "corners_that_do_not_close": worst.open,
             "exact_high": float(worst.high[worst.at]),
             "exact_low": float(worst.low[worst.at]),
         },
@@ -224,10 +233,22 @@ def _corner_text(worst: WorstCase) -> str:
     design = ", ".join(named) + (f" and {more} more" if more else "")
     high, low = (float(plain(linear, side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
-        return f"the corner design ({design}) or its opposite does not close there, so this is no bound"
+        return (
+            f"{worst.open} of {worst.tried} {CORNERS} do not close there, one of them with {design}, "
+            "so this is no bound"
+        )
     share = 100 * worst.difference
     beside = f"{abs(share):.2g} % {'more' if share > 0 else 'less'} than linear"
-    return f"exactly {high:+.4g} with {design}; {low:+.4g} with the opposite errors: {beside}"
+    other = "the opposite errors" if worst.opposite else "other ends"
+    return f"exactly {high:+.4g} with {design}; {low:+.4g} with {other}: {beside}"
+
+
+def _tried_text(worst: WorstCase) -> str:
+    """Which corner designs were computed; empty where that is shown already."""
+    if worst.tried < worst.corners:
+        rest = worst.corners - worst.tried
+        return f"of the {worst.tried} {CORNERS} that the derivatives name; the other {rest:,} were not tried"
+    return "" if worst.open else f"of all {worst.corners} {CORNERS}"
 
 
 def _samples_text(exact: MonteCarlo) -> str:

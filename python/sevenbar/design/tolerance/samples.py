@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
@@ -131,12 +132,14 @@ def monte_carlo(
     distribution: str = "normal",
     output: str | None = None,
     quantity: str = "position",
+    progress: Progress = silent,
 ) -> MonteCarlo:
     """Exact deviations of an output for `count` designs with errors at random within their tolerances.
 
     Errors are independent and spread by `distribution`: uniform or triangular over the tolerance, or normal
     with the half width as three standard deviations, cut there. Each design is followed from the nominal one
-    along the same pass of the circuit. The rest is as for `linear_estimate`. Raises `RequestError` for a
+    along the same pass of the circuit. The rest is as for `linear_estimate`. `progress` is called with
+    (designs done, of how many, ""). Raises `RequestError` for a
     count below 2 and a seed that is none.
 
         >>> import sevenbar as sb
@@ -158,6 +161,7 @@ def monte_carlo(
     gap = np.zeros(changes.shape[1], dtype=bool)
     whole_turn = linear.found.circuit.goes_round
     block = max(1, BLOCK // len(linear.rows))
+    course = SearchCourse(len(exact), progress)
     for start in range(0, len(exact), block):
         part = slice(start, start + block)
         moved = changes[:, part].T
@@ -165,6 +169,7 @@ def monte_carlo(
         exact[part] = designs.deviations(moved, q)
         if whole_turn and len(linear.rows) == len(linear.status):
             gap[part] = _gaps(determinants)
+        course.step(done=len(moved))
     lost = gap | np.isnan(exact).any(axis=1)
     kept = exact[~lost]
     reasons, looked_at = _reasons(linear, changes.T[lost])

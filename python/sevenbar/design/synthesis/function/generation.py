@@ -15,23 +15,26 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, short_way
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
     Refusal,
     checked,
     distinct,
+    least_error,
     ranked,
     renamed,
     tally,
+    transmits_best,
 )
 from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
-from sevenbar.design.synthesis.function.expression import function_of
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.precision import designs_of, reflected, system, through
 from sevenbar.design.synthesis.function.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
 from sevenbar.errors import MissingExtraError, RequestError
+from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed
 
 #: What a design must keep to where nothing else is given.
@@ -69,6 +72,8 @@ class Synthesis(Printed):
     seed: int
     #: The wanted function, `None` for another wish.
     wish: Wish | None = None
+    #: The remark about a search that was stopped; empty for one that ended by itself.
+    unfinished: str = ""
 
     def required(self) -> tuple[Candidate, ...]:
         """The candidates; `RequestError` saying what was nearest where there are none."""
@@ -79,8 +84,26 @@ class Synthesis(Printed):
         raise RequestError(
             f"design: no linkage found for {self.wanted} with limits {self.limits.text()}; of "
             f"{self.searched} designs {self.fitted} were fitted, refused: {reasons}{nearest}; "
-            "ease the limits or the wish"
+            + "; ".join(self._to_ease())
         )
+
+    def _to_ease(self) -> list[str]:
+        """What may be given up so that a design is found, and what may be a mistake."""
+        faults = {refusal.fault for refusal in self.refusals}
+        ways = []
+        if "transmission" in faults or ("error" in faults and self.limits.transmission_lowest):
+            ways.append("a smaller least transmission angle (0 for none)")
+        if "size" in faults or ("error" in faults and self.limits.size is not None):
+            ways.append("a wider range of sizes")
+        if "motion type" in faults or ("error" in faults and self.wish and self.limits.motion_type):
+            ways.append("another motion type, or any")
+        if self.wish is None:
+            ways.append("a smaller swing, or a time ratio nearer to 1")
+        else:
+            ways += ["a greater tolerance of the error"] if "error" in faults else []
+            ways.append("a narrower range of the input, the output or x")
+        hint = None if self.wish is None else self.wish.hint
+        return ["try " + ", or ".join(ways), *([hint] if hint else [])]
 
 
 def function_generation(
@@ -97,13 +120,15 @@ def function_generation(
     count: int = 5,
     seed: int = 0,
     name: str | None = None,
+    progress: Progress = silent,
 ) -> Synthesis:
     """RSSR designs for `points`, (inputs, outputs) [rad], or for a `function` of x over ranges [rad].
 
     Three to seven pairs (to five with `zeros` [rad] given) are met exactly, more as nearly as can be. A
     function is approached over the whole range, or met at `precision` Chebyshev points. No design with a
-    greatest error above `tolerance` [rad] is given. The linkage is at zero + reading. Raises
-    `RequestError` for a wish that is none; one that cannot be met has no candidates.
+    greatest error above `tolerance` [rad] is given. The linkage is at zero + reading. `progress` is called
+    with (done, total, the best so far); Ctrl+C ends the search with what it has. Raises `RequestError` for a
+    wish that is none; one that cannot be met has no candidates.
 
         >>> found = function_generation(function="x^2", precision=3, count=1)
         >>> found.candidates[0].error_greatest < math.radians(1)
@@ -124,8 +149,16 @@ def function_generation(
         title = name or (f"y = {function}" if isinstance(function, str) else "y(x)")
         called = function_of(function) if isinstance(function, str) else function
         assert called is not None
-        wish = wish_of_function(called, x_range, input_range, output_range, points=precision, title=title)
-    return _found(wish, limits, tolerance, count, seed)
+        wish = wish_of_function(
+            called,
+            x_range,
+            input_range,
+            output_range,
+            points=precision,
+            title=title,
+            formula=function if isinstance(function, str) else None,
+        )
+    return _found(wish, limits, tolerance, count, seed, progress)
 
 
 def need_scipy() -> None:
@@ -139,29 +172,53 @@ def need_scipy() -> None:
         ) from None
 
 
-def _found(wish: Wish, limits: Limits, tolerance: float, count: int, seed: int) -> Synthesis:
+def _found(
+    wish: Wish, limits: Limits, tolerance: float, count: int, seed: int, progress: Progress
+) -> Synthesis:
+    course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
     rows, zeros = starts(wish, seed)
     fit = Fit(wish, limits)
-    chosen = _chosen(fit, rows, zeros, max(FITTED_LEAST, FITTED_EACH * count))
+    chosen = _chosen(fit, rows, zeros, course.total - 1)
+    course.step()
     kept: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
     by_transmission = wish.exact and wish.function is None
     key = (lambda c: -(c.transmission_lowest or 0.0)) if by_transmission else None
     best: list[Candidate] = []
-    # first the best of all; where starts end in one design, each with its own zero of the input
-    for hold in (False, True):
-        for point, before in _refined(fit, chosen, hold=hold):
-            error, result = _judged(wish, point, before, limits, tolerance)
-            if isinstance(result, Candidate):
-                kept.append(result)
-            else:
-                refused.append((error, result))
+    unfinished = ""
+    try:
+        # first the best of all; where starts end in one design, each with its own zero of the input
+        for hold in (False, True):
+            for fitted in _refined(fit, chosen, hold=hold):
+                if fitted is not None:
+                    error, result = _judged(wish, *fitted, limits, tolerance)
+                    if isinstance(result, Candidate):
+                        kept.append(result)
+                    else:
+                        refused.append((error, result))
+                course.step(transmits_best(kept) if by_transmission else least_error(kept))
+            best = distinct(ranked(kept, key), scale_free=True, count=count)
+            if len(best) == count:
+                break
+            if not hold:
+                course.longer(len(chosen))
+        course.end()
+    except KeyboardInterrupt:
+        if not kept:
+            raise
         best = distinct(ranked(kept, key), scale_free=True, count=count)
-        if len(best) == count:
-            break
+        unfinished = course.unfinished
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
-        wish.title, limits, tuple(renamed(best, wish.title)), refusals, len(rows), len(chosen), seed, wish
+        wish.title,
+        limits,
+        tuple(renamed(best, wish.title)),
+        refusals,
+        len(rows),
+        len(chosen),
+        seed,
+        wish,
+        unfinished,
     )
 
 
@@ -228,8 +285,11 @@ def _chosen(fit: Fit, rows: Floats, zeros: Floats, most: int) -> list[Estimate]:
     return chosen
 
 
-def _refined(fit: Fit, chosen: list[Estimate], *, hold: bool) -> Iterator[tuple[Estimate, float]]:
-    """The designs that starts lead to, with their greatest errors before these were equalised [rad]."""
+def _refined(fit: Fit, chosen: list[Estimate], *, hold: bool) -> Iterator[tuple[Estimate, float] | None]:
+    """The designs that starts lead to, with their greatest errors before these were equalised [rad].
+
+    `None` for a start that leads where another did.
+    """
     seen: list[Floats] = []
     for start in chosen:
         free = len(fit.packed(start)) - fit.wish.point_input.size - hold
@@ -240,6 +300,7 @@ def _refined(fit: Fit, chosen: list[Estimate], *, hold: bool) -> Iterator[tuple[
         near = start if hold else fit.least_squares(start)
         own = fit.packed(near)
         if any(np.abs(own - other).max() < ENDS_APART for other in seen):
+            yield None
             continue
         seen.append(own)
         before = float(np.abs(fit.errors(own, near.branch)[0]).max())

@@ -37,8 +37,14 @@ def text(found: Synthesis) -> RenderableType:
     """The designs for people."""
     facts = Facts()
     facts.add("wanted", found.wanted, "bold")
+    if found.wish is not None and found.wish.dials is not None:
+        facts.add("readings", found.wish.dials.text)
+    if found.wish is not None:
+        facts.add("", "crank = input zero + reading, rocker = output zero + reading")
     facts.add("limits", found.limits.text())
     facts.add("searched", f"{found.searched} designs, {found.fitted} refined, seed {found.seed}")
+    if found.unfinished:
+        facts.add("unfinished", found.unfinished, "bold yellow")
     if found.refusals:
         facts.add("refused", tally(found.refusals))
     rows = [candidate.columns for candidate in found.candidates]
@@ -70,11 +76,14 @@ def _cell(value: object) -> str:
 
 
 def as_dict(found: Synthesis) -> dict[str, Any]:
-    """The designs as tables and numbers."""
+    """The designs as tables and numbers; readings in radians."""
+    dials = None if found.wish is None else found.wish.dials
     return {
         "format": 1,
         "wanted": found.wanted,
+        "readings": None if dials is None else vars(dials),
         "limits": found.limits.text(),
+        "unfinished": found.unfinished or None,
         "seed": found.seed,
         "searched": found.searched,
         "refined": found.fitted,
@@ -91,8 +100,15 @@ def synthesis_report(count: int, command: str, figures: Sequence[str] = ("png",)
 
 def _head(command: str, found: Synthesis) -> list[str]:
     head = [f"wanted: {found.wanted}", f"limits: {found.limits.text()}", f"made by: {command}"]
+    if found.unfinished:
+        head.append(f"unfinished: {found.unfinished}")
+    if found.wish is not None and found.wish.dials is not None:
+        head.append(f"readings: {found.wish.dials.text}")
     if found.wish is not None:
-        head += ["crank = input_zero + reading of the input; rocker = output_zero + reading of the output"]
+        head += [
+            "to use it: fix both dials so that they read 0 with the crank at input_zero and the rocker at",
+            "output_zero, the angles below; crank = input_zero + reading, rocker = output_zero + reading",
+        ]
     return head
 
 

@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.course import Progress, SearchCourse, silent
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -28,6 +29,8 @@ from sevenbar.design.synthesis.candidates import (
     distinct,
     ranked,
     renamed,
+    transmits_best,
+    within_limits,
 )
 from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
 from sevenbar.design.synthesis.function.fitting import FREE
@@ -85,11 +88,6 @@ class SwingEnds:
         """The turn of the crank from the low to the high end [rad], in (0, 2 pi)."""
         return float((self.crank[1] - self.crank[0]) % math.tau)
 
-    @property
-    def time_ratio(self) -> float:
-        """Time of the slower stroke over that of the quicker."""
-        return max(self.stroke, math.tau - self.stroke) / min(self.stroke, math.tau - self.stroke)
-
 
 def ends_of_swing(row: Floats, branch: int) -> SwingEnds | None:
     """The ends of the swing of a design (6,) on a branch; `None` where crank or output does not fit."""
@@ -144,11 +142,13 @@ def swing_generation(
     limits: Limits = USUAL,
     count: int = 5,
     seed: int = 0,
+    progress: Progress = silent,
 ) -> Synthesis:
     """RSSR crank-rockers with a `swing` [rad] and a `time_ratio` >= 1, those that transmit best first.
 
-    The crank turns at constant speed; its transmission angle counts over the whole turn. Raises
-    `RequestError` for a wish that is none; one that cannot be met has no candidates.
+    The crank turns at constant speed; its transmission angle counts over the whole turn. `progress` is called
+    with (done, total, the best so far); Ctrl+C ends the search with what it has. Raises `RequestError` for a
+    wish that is none; one that cannot be met has no candidates.
 
         >>> found = swing_generation(math.radians(60), 1.2, count=1)
         >>> round(found.candidates[0].claim.figures["time_ratio"], 9)
@@ -172,20 +172,37 @@ def swing_generation(
         raise RequestError(f"designs: {count} is no number of designs; give 1 or more")
     wanted_text = f"swing {math.degrees(swing):g} deg, time ratio {time_ratio:g}"
     wish = _Wish(swing, math.tau * time_ratio / (1 + time_ratio), limits)
-    chosen, searched = _chosen(wish, max(FITTED_LEAST, FITTED_EACH * count), seed)
+    course = SearchCourse(1 + max(FITTED_LEAST, FITTED_EACH * count), progress)
+    chosen, searched = _chosen(wish, course.total - 1, seed)
+    course.step()
     kept: list[Candidate] = []
     refused: list[tuple[float, Refusal]] = []
-    for row, branch, ends in chosen:
-        far, result = _judged(wish.refined(row, branch, ends), branch, swing, time_ratio, limits, wanted_text)
-        if isinstance(result, Candidate):
-            kept.append(result)
-        else:
-            refused.append((far, result))
+    unfinished = ""
+    try:
+        for row, branch, ends in chosen:
+            far, result = _judged(wish, wish.refined(row, branch, ends), branch, time_ratio, wanted_text)
+            if isinstance(result, Candidate):
+                kept.append(result)
+            else:
+                refused.append((far, result))
+            course.step(transmits_best(kept))
+        course.end()
+    except KeyboardInterrupt:
+        if not kept:
+            raise
+        unfinished = course.unfinished
     order = ranked(kept, lambda c: -(c.transmission_lowest or 0.0))
     best = distinct(order, scale_free=True, mirrored=True, count=count)
     refusals = tuple(refusal for _, refusal in sorted(refused, key=lambda pair: pair[0]))
     return Synthesis(
-        wanted_text, limits, tuple(renamed(best, wanted_text)), refusals, searched, len(chosen), seed
+        wanted_text,
+        limits,
+        tuple(renamed(best, wanted_text)),
+        refusals,
+        searched,
+        len(chosen),
+        seed,
+        unfinished=unfinished,
     )
 
 
@@ -285,31 +302,30 @@ def _chosen(wish: _Wish, most: int, seed: int) -> tuple[list[tuple[Floats, int, 
 
 
 def _judged(
-    row: Floats, branch: int, swing: float, time_ratio: float, limits: Limits, wanted_text: str
+    wish: _Wish, row: Floats, branch: int, time_ratio: float, wanted_text: str
 ) -> tuple[float, Candidate | Refusal]:
-    """A design as the ordinary analysis finds it, and how far from the wish it is."""
-    ends = ends_of_swing(row, branch)
+    """A design as the ordinary analysis finds it, and how far from the wish it is [rad]."""
+    ends, limits = ends_of_swing(row, branch), wish.limits
     if ends is None:
         return math.inf, Refusal("assembly", "the crank does not turn fully, or the output does not rock")
-    far = abs(ends.swing - swing) + abs(ends.time_ratio - time_ratio)
-    if far > MET:
-        reached = f"swing {math.degrees(ends.swing):.4g} deg with time ratio {ends.time_ratio:.4g}"
-        return far, Refusal("error", reached)
+    far = abs(ends.swing - wish.swing) + abs(max(ends.stroke, math.tau - ends.stroke) - wish.slow)
     rows, zeros = reflected(row[None], np.zeros((1, 2)))
     row, turn = scaled(rows[0], limits.longest), zeros[0, 0]
     inputs = ends.crank[0] + turn + np.arange(LOOKED_AT) * math.tau / LOOKED_AT
     angles = outputs(row[None], inputs, branch)[0]
+    claim = Claim(inputs, angles, np.array([ends.swing - wish.swing]), "deg", whole_turn=True)
+    within = replace(limits, motion_type="crank-rocker")
+    free = checked(draft_of(row, wanted_text), claim, Limits(motion_type="crank-rocker"))
+    if isinstance(free, Refusal):
+        return far, free
+    circuit = free.draft.linkage.motion().circuits[free.circuit]
+    reached, ratio = circuit.swing or 0.0, circuit.time_ratio or math.inf
+    if abs(reached - wish.swing) > MET or abs(ratio - time_ratio) > MET:
+        return far, Refusal("error", f"swing {math.degrees(reached):.4g} deg with time ratio {ratio:.4g}")
     figures = {
-        "swing_deg": math.degrees(ends.swing),
-        "time_ratio": ends.time_ratio,
+        "swing_deg": math.degrees(reached),
+        "time_ratio": ratio,
         "input_at_low_deg": math.degrees((ends.crank[0] + turn) % math.tau),
         "input_at_high_deg": math.degrees((ends.crank[1] + turn) % math.tau),
     }
-    claim = Claim(inputs, angles, np.array([ends.swing - swing]), "deg", figures)
-    found = checked(draft_of(row, wanted_text), claim, replace(limits, motion_type="crank-rocker"))
-    if isinstance(found, Refusal):
-        return far, found
-    circuit = found.draft.linkage.motion().circuits[found.circuit]
-    if abs((circuit.swing or 0.0) - swing) > MET or abs((circuit.time_ratio or 0.0) - time_ratio) > MET:
-        return far, Refusal("error", "the ordinary analysis finds another swing or time ratio")
-    return far, found
+    return far, within_limits(replace(free, claim=replace(claim, figures=figures)), within)

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.design.synthesis.function.precision import FEWEST, FREE_ZEROS_MOST, chebyshev
 from sevenbar.errors import RequestError
+from sevenbar.text.formulas_of_x import greatest_angle
 from sevenbar.text.table import read_table
 
 #: Readings over the range at which a fit looks at the error: between them it rises by less than 1% of it.
@@ -24,6 +25,34 @@ DENSE_SAMPLES = 361
 
 #: Most pairs of readings that a fit takes.
 MOST_PAIRS = 100_000
+
+
+@dataclass(frozen=True)
+class Dials:
+    """What the two dials read: x and y of a function, and the angles [rad] from end to end of each."""
+
+    x: tuple[float, float]
+    y: tuple[float, float]
+    input: tuple[float, float]
+    output: tuple[float, float]
+
+    @property
+    def text(self) -> str:
+        """Both dials in words: "input 0 to 90 deg for x from 0 to 1, output ..".
+
+        >>> Dials((0, 1), (0, 2), (0, math.pi / 2), (0, math.pi)).text
+        'input 0 to 90 deg for x from 0 to 1, output 0 to 180 deg for y from 0 to 2'
+        """
+        parts = []
+        for side, angles, name, values in (
+            ("input", self.input, "x", self.x),
+            ("output", self.output, "y", self.y),
+        ):
+            first, last = map(math.degrees, angles)
+            parts.append(
+                f"{side} {first:g} to {last:g} deg for {name} from {values[0]:.6g} to {values[1]:.6g}"
+            )
+        return ", ".join(parts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +71,10 @@ class Wish:
     point_output: Floats
     function: Callable[[Floats], Floats] | None = None
     zeros: tuple[float, float] | None = None
+    #: The ranges of a function; `None` for pairs.
+    dials: Dials | None = None
+    #: What may be a mistake in a wish that cannot be met; `None` where nothing is.
+    hint: str | None = None
 
     @property
     def exact(self) -> bool:
@@ -62,11 +95,12 @@ def wish_of_function(
     *,
     points: int | None = None,
     title: str = "y(x)",
+    formula: str | None = None,
 ) -> Wish:
     """The wish for y(x): x goes over the input's range, y from its least to its greatest over the output's.
 
     Ranges in radians. `points` precision points by Chebyshev's spacing, to be met exactly; none for the
-    least error over the range. Raises `RequestError`.
+    least error over the range. `formula` is the function as it is written, for hints. Raises `RequestError`.
     """
     low, high = x_range
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
@@ -97,7 +131,21 @@ def wish_of_function(
     middle, half = (first + last) / 2, (last - first) / 2
     samples = middle - half * np.cos(np.linspace(0.0, math.pi, FIT_SAMPLES))
     at = np.empty(0) if points is None else chebyshev(first, last, points)
-    return Wish(title, samples, reading(samples), at, reading(at), reading)
+    dials = Dials((low, high), (least, most), input_range, output_range)
+    hint = None if formula is None else _hint(formula, x)
+    return Wish(title, samples, reading(samples), at, reading(at), reading, dials=dials, hint=hint)
+
+
+def _hint(formula: str, x: Floats) -> str | None:
+    """That an angle in degrees may have been taken for radians, where a sine goes round more than once."""
+    found = greatest_angle(formula, x)
+    if found is None or found[2] <= math.tau:
+        return None
+    name, argument, _ = found
+    return (
+        f"{name} takes radians; x goes to {x[-1]:g}: write {name}d({argument}) or --x {x[0]:g}:{x[-1]:g}deg "
+        "if these are degrees"
+    )
 
 
 def _reading(

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.candidates import Candidate, Refusal, distinct, ranked, renamed, tally
+from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.synthesis.candidates import (
+    Candidate,
+    Refusal,
+    distinct,
+    least_error,
+    ranked,
+    renamed,
+    tally,
+)
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.design.synthesis.path.check import checked_path
 from sevenbar.design.synthesis.path.refine import LOOK, Refined, refined
@@ -23,7 +33,15 @@ STARTS, MOST_STARTS, MOST_DESIGNS = 256, 65536, 50
 #: Of the starts so many for each design wanted are checked closer, and of these so many to the end.
 LOOKED_AT, TAKEN = 8, 3
 
-__all__ = ["MOST_POINTS", "STARTS", "generated", "path_generation", "path_task"]
+__all__ = ["MOST_POINTS", "STARTS", "PathFound", "generated", "path_generation", "path_task"]
+
+
+@dataclass(frozen=True, eq=False)
+class PathFound:
+    """The designs of a search, best first; `unfinished` says that it was stopped, empty where it ended."""
+
+    candidates: tuple[Candidate, ...]
+    unfinished: str
 
 
 def path_generation(
@@ -79,7 +97,7 @@ def path_generation(
         limits=limits,
         follow=follow,
     )
-    return generated(task, count=count, starts=starts, seed=seed)
+    return generated(task, count=count, starts=starts, seed=seed).candidates
 
 
 def generated(
@@ -88,37 +106,56 @@ def generated(
     count: int = 5,
     starts: int = STARTS,
     seed: int = 0,
-    progress: Callable[[int, int], None] | None = None,
-) -> tuple[Candidate, ...]:
-    """The designs of a task, as `path_generation` gives them; `progress` is called with (done, total)."""
+    progress: Progress = silent,
+) -> PathFound:
+    """The designs of a task; `progress` is called with (done, total, the best so far).
+
+    Ctrl+C ends the search with what it has.
+    """
     check_counts(count, starts, seed)
-    steps = starts + 1 + (LOOKED_AT + TAKEN) * count
-    found = seeds(task, starts, seed, lambda done: _tell(progress, done, steps))
+    course = SearchCourse(starts + 1 + (LOOKED_AT + TAKEN) * count, progress)
+    kept: list[Candidate] = []
+    unfinished = ""
+    try:
+        _search(task, count, starts, seed, course, kept)
+        course.end()
+    except KeyboardInterrupt:
+        if not kept:
+            raise
+        unfinished = course.unfinished
+    best = distinct(ranked(kept), scale_free=False, count=count)
+    return PathFound(tuple(renamed(best, task.draft.linkage.name)), unfinished)
+
+
+def _search(
+    task: PathTask, count: int, starts: int, seed: int, course: SearchCourse, kept: list[Candidate]
+) -> None:
+    """Adds the designs that pass the check to `kept`, one by one; `RequestError` where none does."""
+    found = seeds(task, starts, seed, course.step)
     rough = apart(task, found, LOOKED_AT * count)
-    done = starts + 1
+    course.step(done=starts + 1 - course.done)
     looked: list[Refined] = []
-    for i, one in enumerate(rough):
-        _tell(progress, done + i, steps)
+    unit = task.draft.linkage.length_unit
+    for one in rough:
         looks = [_looked(task, start) for start in (one, one.other) if start is not None]
         looked += [look for look in looks if look is not None]
+        nearest = min((look.rms for look in looked), default=None)
+        course.step("" if nearest is None else f"nearest: rms {nearest:.3g} {unit}")
+    course.step(done=starts + 1 + LOOKED_AT * count - course.done)
     # those in order first: the others are mostly refused
     looked.sort(key=lambda one: (task.timing is None and not _ordered(one), one.rms))
-    kept: list[Candidate] = []
     refusals: list[Refusal] = []
     for i, look in enumerate(looked):
         if len(distinct(ranked(kept), scale_free=False)) >= count and i >= TAKEN * count:
             break
-        _tell(progress, min(done + LOOKED_AT * count + i, steps), steps)
         answer = _answer(task, look)
         if isinstance(answer, Candidate):
             kept.append(answer)
         else:
             refusals.append(answer)
-    _tell(progress, steps, steps)
+        course.step(least_error(kept), done=int(course.done < course.total))
     if not kept:
         raise RequestError(_nothing(task, found, refusals))
-    best = distinct(ranked(kept), scale_free=False, count=count)
-    return tuple(renamed(best, task.draft.linkage.name))
 
 
 def _looked(task: PathTask, start: Seed) -> Refined | None:
@@ -142,11 +179,6 @@ def _answer(task: PathTask, look: Refined) -> Candidate | Refusal:
     """The design that a first look leads to, solved to the end and checked."""
     start = Seed(look.varied, look.inputs, look.poses, 0.0, _phase(task, look))
     return checked_path(task, refined(task, start) or look)
-
-
-def _tell(progress: Callable[[int, int], None] | None, done: int, total: int) -> None:
-    if progress is not None:
-        progress(done, total)
 
 
 def _phase(task: PathTask, look: Refined) -> float:

@@ -10,7 +10,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.errors import NotCoveredError
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers, Slopes
@@ -35,11 +34,6 @@ class PointLoop:
 
     def __init__(self, draft: Draft, point: Point, varied: Sequence[int] = ()) -> None:
         linkage = draft.linkage
-        if plane := next((joint for joint in linkage.joints if joint.row.has_plane), None):
-            raise NotCoveredError(
-                f"linkage: {plane.name} slides in a plane, and no path is sought with such a joint; "
-                "draw it as P, P and R"
-            )
         self._numbers = Numbers(linkage)
         self._place = [known.name for known in linkage.points].index(point.name)
         self.dimensions = self._numbers.dimensions

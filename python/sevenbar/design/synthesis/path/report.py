@@ -32,6 +32,8 @@ class PathDesigns:
     candidates: Sequence[Candidate]
     source: str
     seed: int
+    #: The remark about a search that was stopped; empty for one that ended by itself.
+    unfinished: str = ""
 
 
 def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
@@ -48,7 +50,7 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
         ),
         ("point", f"{task.point.name} on link {task.point.link}"),
         ("varied", f"{count} dimension{'s' * (count != 1)}: {names}"),
-        *([("held", task.held.text)] if task.held.text else []),
+        *([("held", task.held.text)] if task.held.left_to_the_program else []),
         ("ground", "anywhere in space" if task.place else "where the description has it"),
         ("limits", task.limits.text()),
     ]
@@ -73,6 +75,8 @@ def _head(command: str, found: PathDesigns) -> list[str]:
         lines.append(
             "placed: turned by turn_x, turn_y, turn_z (axis times angle), then shifted, it makes the path"
         )
+    if found.unfinished:
+        lines.append(f"unfinished: {found.unfinished}")
     return [*lines, f"made by: {command}"]
 
 
@@ -85,6 +89,8 @@ def text(found: PathDesigns) -> RenderableType:
     for label, text in _facts(task, found.source):
         facts.add(label, text, "bold" if label == "wanted" else "")
     facts.add("seed", str(found.seed))
+    if found.unfinished:
+        facts.add("unfinished", found.unfinished, "bold yellow")
     transmits = any(c.transmission_lowest is not None for c in candidates)
     heads = [f"greatest\nerror\n[{unit}]", f"RMS\nerror\n[{unit}]"]
     heads += ["least\ntransm.\n[deg]"] if transmits else []
@@ -138,4 +144,10 @@ def as_dict(found: PathDesigns) -> dict[str, Any]:
         }
         for i, candidate in enumerate(found.candidates, 1)
     ]
-    return {"format": 1, **dict(_facts(task, found.source)), "seed": found.seed, "designs": designs}
+    return {
+        "format": 1,
+        **dict(_facts(task, found.source)),
+        "seed": found.seed,
+        "unfinished": found.unfinished or None,
+        "designs": designs,
+    }

@@ -63,16 +63,16 @@ class Pass:
         return math.tau * self.circuit.turns if self.closed else 0.0
 
 
-def seeds(task: PathTask, count: int, seed: int, tell: Callable[[int], None] = lambda _: None) -> list[Seed]:
+def seeds(task: PathTask, count: int, seed: int, step: Callable[[], None]) -> list[Seed]:
     """The best matches of the description itself and of `count` starts within the bounds, best first.
 
     A linkage gives one for each of its circuits. Starts are Sobol's points, a quarter of them near the
-    description; `tell` is called with the number done.
+    description; `step` is called after each.
     """
     found: list[Seed] = []
-    for done, varied in enumerate(_starts(task, count, seed)):
-        tell(done)
+    for varied in _starts(task, count, seed):
         found += [one for one in looked_at(task, varied) if math.isfinite(one.error)]
+        step()
     return sorted(found, key=lambda one: one.error)
 
 

@@ -13,10 +13,11 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.description.draft import Draft
-from sevenbar.description.held import Held, held_of
+from sevenbar.description.held import HeldDimensions, held_of
+from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.design.synthesis.path.point import PointLoop
-from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
+from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.linkage import Linkage
@@ -74,7 +75,7 @@ class PathTask:
         return tuple(self.closure.dimensions[number] for number in self.varied)
 
     @property
-    def held(self) -> Held:
+    def held(self) -> HeldDimensions:
         """What does not change."""
         return held_of(self.draft, [dimension.name for dimension in self.dimensions])
 
@@ -145,12 +146,7 @@ def path_task(
         raise RequestError(
             "transmission: its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
         )
-    # the spin of an RSSR's coupler has a convention
-    if draft.linkage.kind != "RSSR" and own.link in draft.linkage.idle_links:
-        raise NotCoveredError(
-            f"point: the {draft.linkage.idle[0]} is not determined, so neither is a path on it; "
-            "give a point of another link"
-        )
+    refuse_idle_link(draft.linkage, own.link, "a path on it")
     task = PathTask(draft, own, wanted, closed, inputs, phase, place, (), np.empty(0), np.empty(0), limits)
     numbers = _varied(task, vary)
     task = replace(task, varied=numbers)
