@@ -339,7 +339,7 @@ def test_each_wrong_request_has_its_message(options, message):
 def test_fewer_values_than_dimensions_are_told():
     inputs, angle = measured_rssr(SKEW, count=100)
     with pytest.raises(
-        RequestError, match=r"3 measured values cannot tell [345] dimensions; measure more rows"
+        RequestError, match=r"3 measured values cannot identify [345] dimensions; measure at more inputs"
     ):
         calibrate(SKEW.linkage(), table(input=inputs[:3], angle=angle[:3]), hold=["M", "N", "D"],
                   offsets=["input", "output"])  # fmt: skip

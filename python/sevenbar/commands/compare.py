@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +11,7 @@ import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
+    Follow,
     Force,
     InputJoint,
     Json,
@@ -20,6 +20,7 @@ from sevenbar.commands.options import (
     figure_formats,
     words,
 )
+from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.joint_text import joint_value
 
@@ -119,6 +120,7 @@ def calibrate(
     hold: Annotated[
         list[str] | None, typer.Option(help="A dimension to be kept, or a pattern; may be repeated.")
     ] = None,
+    follow: Follow = None,
     offset: Annotated[
         list[str] | None,
         typer.Option(help="Find the zero of the input or of the output too; may be repeated."),
@@ -150,29 +152,35 @@ def calibrate(
     from sevenbar.measuring.report import calibration_report
     from sevenbar.measuring.rewrite import calibrated_toml
 
+    formats = figure_formats(figures, out)
     text = text_of(linkage)
-    report = calibration_report(partial(calibrated_toml, text), figure_formats(figures, out))
     loaded = sb.load(linkage)
-    check_out(report, out, force=force)
+    check_out(calibration_report(lambda _: "", formats), out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     if isinstance(measured, MeasuredExtremes):
         raise RequestError(
             f"{table}: lowest and highest values are too few to tell dimensions; give the measured rows"
         )
-    found = calibrated(
-        loaded,
-        measured,
-        ends,
-        free=words(free or ["*"]),
-        hold=words(hold or []),
-        offsets=words(offset or []),
-        speed=speed,
-        start=_start(loaded, ends.input, start),
-        circuit=circuit,
-        branch=branch,
-        confidence=confidence,
-    )
-    deliver(found, report, out, json=json, force=force)
+    begin = _start(loaded, ends.input, start)
+    with progress_bar(f"calibrating {loaded.name}") as progress:
+        found = calibrated(
+            loaded,
+            measured,
+            ends,
+            free=words(free or ["*"]),
+            hold=words(hold or []),
+            follow=words(follow or []),
+            offsets=words(offset or []),
+            speed=speed,
+            start=begin,
+            circuit=circuit,
+            branch=branch,
+            confidence=confidence,
+            progress=progress,
+        )
+        # read again before anything of it is reported
+        written = "" if out is None else calibrated_toml(text, found)
+    deliver(found, calibration_report(lambda _: written, formats), out, json=json, force=force)
 
 
 def _measured(

@@ -93,6 +93,8 @@ class Numbers:
         self.scales = np.where(self.turns, 1.0, self.size)
         #: Balls, counted among the joints, that stand as two turns.
         self.spun, self.held, self.spins = linkage.held
+        # a design is followed first and then asked for its derivatives: its motions are worked out once
+        self._last: tuple[bytes, Values] | None = None
         form, kinds, values = linkage.form, linkage.kind, self.values(self.nominal)
         axes = {
             ball: holding_axis(form, kinds, ball, linkage.spin_axes[linkage.joints[ball].name], values)
@@ -106,7 +108,11 @@ class Numbers:
 
     def values(self, p: Floats) -> Values:
         """The numbers p (k,) by their places, angles in radians."""
-        return Values({d.place: float(x) * d.scale for d, x in zip(self.dimensions, p, strict=True)})
+        key = p.tobytes()
+        if self._last is None or self._last[0] != key:
+            numbers = {d.place: float(x) * d.scale for d, x in zip(self.dimensions, p, strict=True)}
+            self._last = key, Values(numbers)
+        return self._last[1]
 
     def loop(
         self,
@@ -180,10 +186,9 @@ class NumberedLoop:
         factors = [numbers.dimensions[k].scale for k in self.only]
         moves, twists = [], []
         for place, product in enumerate(word.fixed if own else ()):
-            for key, twist in product.moves(values).items():
-                if key in own:
-                    moves.append((own[key], place))
-                    twists.append(factors[own[key]] * twist / scale)
+            for key, twist in product.moves(values, own).items():
+                moves.append((own[key], place))
+                twists.append(factors[own[key]] * twist / scale)
         pitches = [
             (own[key], joint, factors[own[key]] / math.tau / numbers.size)
             for joint, key in enumerate(step.pitch for step in word.steps)
@@ -225,9 +230,8 @@ class NumberedLoop:
         matrix = frame.pose(values)
         at = np.array(point.at) if place is None else vector(values, place)
         ways: dict[int, Floats] = {}
-        for key, twist in frame.moves(values).items() if own else ():
-            if key in own:
-                ways[own[key]] = matrix[:3, :3] @ (cross(twist[:3], at) + twist[3:])
+        for key, twist in frame.moves(values, own).items() if own else ():
+            ways[own[key]] = matrix[:3, :3] @ (cross(twist[:3], at) + twist[3:])
         keys = () if place is None else tuple((*place, k) for k in range(3))
         for k, key in enumerate(keys):
             if key in own:

@@ -16,7 +16,7 @@ Source: docs/theory.md, (1); docs/theory_design.md, (2).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from typing import Any, Protocol
@@ -289,14 +289,22 @@ class Product:
             return np.eye(4)
         return reduce(np.matmul, (values.pose(factor) for factor in self.factors))
 
-    def moves(self, values: Values) -> Moves:
-        """The twists (6,) by one of each number."""
+    def moves(self, values: Values, only: Container[Place] | None = None) -> Moves:
+        """The twists (6,) by one of each number, or of some alone."""
         found: Moves = {}
-        behind = np.eye(4)
+        behind, passed = np.eye(4), list[Factor]()
         for factor in reversed(self.factors):
-            for place, twist in _seen(behind, factor.moves(values)).items():
+            moves = factor.moves(values)
+            if only is not None:
+                moves = {place: twist for place, twist in moves.items() if place in only}
+            if moves:
+                # (2) goes through what lies behind only where something is there to go through it
+                for other in passed:
+                    behind = behind @ inverse(values.pose(other))
+                passed.clear()
+            for place, twist in _seen(behind, moves).items():
                 found[place] = found.get(place, 0.0) + twist
-            behind = behind @ inverse(values.pose(factor))
+            passed.append(factor)
         return found
 
 

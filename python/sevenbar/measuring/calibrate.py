@@ -1,18 +1,22 @@
 """The dimensions of a real linkage from its measured curve: least squares with exact sensitivities.
 
 With r the differences of measured and computed values relative to their noise and J their exact derivatives
-by the dimensions (`sevenbar.kinematics.sensitivity`), `|r|^2` is least by scipy's trust-region steps; then
+by the dimensions (`sevenbar.kinematics.sensitivity`), `|r|^2` is made least (`least_squares`); then
 
     s^2 = |r|^2 / (n - k),      covariance s^2 (J^T J)^-1,      value +- t(n - k) sqrt(covariance)         (1)
 
-with Student's t. Where several quantities were measured, the noise of each is taken from its differences.
+with Student's t, n being the places that were measured (`fit`). Where several quantities were measured, the
+noise of each is taken from its differences.
 
-What data cannot tell is held, not guessed. A direction v in the space of the dimensions (J v = 0 to rounding,
-or so small that the standard error along v exceeds `UNTOLD` of the linkage's size) changes the curve by
-nothing that could be seen: of an RSSR measured by its angles, making all lengths twice as long. For each such
-direction one dimension stays at its nominal value, and the report names it and those that undo its change;
-intervals of the others then hold for that value. A dimension whose change alone would open an overconstrained
-loop is held too.
+What data cannot identify is held, not guessed. A direction v in the space of the dimensions (J v = 0 to
+rounding, or so small that the standard error along v exceeds `fit.UNIDENTIFIED` of the linkage's size)
+changes the curve by nothing that could be seen: of an RSSR measured by its angles, making all lengths twice
+as long. For each such direction one dimension stays at its nominal value, and the report names it and those
+that undo its change; intervals of the others then hold for that value. A dimension whose change alone would
+open an overconstrained loop is held too.
+
+Where no circuit explains the rows, or no minimum is found, there is a `RequestError` with the cause and no
+calibration.
 
 Source: docs/theory_design.md, (10) and (11).
 """
@@ -21,53 +25,44 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from functools import cached_property
+from typing import Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError, NotCoveredError, RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Law
+from sevenbar.description.draft import Draft
+from sevenbar.description.held import HeldDimensions, held_of
+from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
+from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.sensitivity import Numbers, Slopes
-from sevenbar.measuring.compare import Comparison, compare, ends_of, inputs_of
-from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
+from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent
+from sevenbar.measuring.doubtful import EXACT, far_off, left_by_most, sentence
+from sevenbar.measuring.fit import CurveFit
+from sevenbar.measuring.measured import Ends, Measured
+from sevenbar.measuring.model import OFFSETS, CurveModel
+from sevenbar.measuring.passes import UNEXPLAINED
 from sevenbar.text.printing import Printed
 
-#: Zeros of the measured joints that may be free too: linkage input = measured input + input_offset,
-#: measured output = linkage output + output_offset.
-OFFSETS = ("input", "output")
-
-#: The order in which dimensions of a row are held where the data do not tell them all.
-ROW_ORDER = ("length", "twist", "angle", "offset", "pitch")
-
-#: Standard error [share of the linkage's size, or rad] beyond which a direction counts as not told: the curve
-#: bends over such a distance, so that (1), which takes it for straight, would mean nothing.
-UNTOLD = 0.03
-
-#: Singular value, relative to the greatest, that is zero up to rounding.
-ROUNDING = 1e-9
-
-#: A share in a direction below which a dimension does not take part in it.
-TAKES_PART = 1e-2
-
-#: Correlation of neighbouring residuals, in standard deviations of that of random ones, that is told of.
+#: Correlation of neighbouring residuals, in standard deviations of that of random ones, that is reported.
 FOLLOWS = 4.0
 
-#: How often the choice of what is held, or the noise of each quantity, is checked again.
-MOST_ROUNDS = 8
+#: `fixed` and `follows` as the caller wants it; `untold` is what the data do not identify.
+Status = Literal["calibrated", "fixed", "follows", "untold", "opens the loop"]
 
-Status = Literal["calibrated", "fixed", "untold", "opens the loop"]
+#: Called with the evaluations done, how many there will be (0: not known), and the best residual so far.
+Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True)
 class Parameter:
     """A dimension or an offset: nominal and calibrated value [length, rad], and how well it is known.
 
-    `error` is its standard error, `low` and `high` the ends of its interval; NaN where it was not calibrated.
+    `error` is its standard error, `low` and `high` the ends of its interval; NaN where it was not
+    calibrated, and where the rows are exact.
     `undone_by` names the dimensions whose changes undo one of an `untold` dimension.
     """
 
@@ -84,12 +79,14 @@ class Parameter:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Calibration(Printed):
-    """What a measured curve tells of a linkage's dimensions.
+    """What a measured curve shows of a linkage's dimensions.
 
     Arrays (n,) hold the rows that were used: `input` [rad, or length] as calibrated, `measured` as in the
     file, `computed` with the calibrated and `nominal` with the nominal dimensions, both with the offset of
     the output. `noise` is the standard deviation of each quantity's differences, `covariance` (k, k) that of
-    the calibrated parameters in their order.
+    the calibrated parameters in their order. `places` counts the rows without those that repeat an input;
+    `exact`: what is left is rounding, and no interval can be made of it. `follow` names what follows others;
+    `stretch` counts how often the input has turned back at a limit before a row.
     """
 
     linkage: Linkage
@@ -100,14 +97,24 @@ class Calibration(Printed):
     covariance: Floats
     confidence: float
     freedom: int
+    places: int
+    exact: bool
+    follow: tuple[str, ...]
     noise: Mapping[str, float]
-    line: npt.NDArray[np.int64]
+    line: Integers
+    stretch: Integers
     input: Floats
     measured: Mapping[str, Floats]
     computed: Mapping[str, Floats]
     nominal: Mapping[str, Floats]
     evaluations: int
     notes: tuple[str, ...]
+
+    @cached_property
+    def held(self) -> HeldDimensions:
+        """The dimensions that stay as they were asked to, or follow."""
+        moved = {p.name for p in self.parameters if p.status not in ("fixed", "follows")}
+        return held_of(Draft.of_linkage(self.linkage).holding(self.follow), moved)
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -123,7 +130,7 @@ class Calibration(Printed):
 
     @property
     def calibrated(self) -> tuple[Parameter, ...]:
-        """The parameters that the data tell."""
+        """The parameters that the data identify."""
         return tuple(p for p in self.parameters if p.status == "calibrated")
 
 
@@ -134,21 +141,26 @@ def calibrate(
     *,
     free: Sequence[str] = ("*",),
     hold: Sequence[str] = (),
+    follow: Sequence[str] = (),
     offsets: Sequence[str] = (),
     speed: float | str | None = None,
     start: float = 0.0,
     circuit: int | None = None,
     branch: int | None = None,
     confidence: float = 0.95,
+    progress: Progress | None = None,
 ) -> Calibration:
     """The dimensions that explain measured rows best, with their intervals.
 
     `free` names the dimensions to be found and `hold` those to be kept, by names or patterns ("length_*"):
     M, N, L1, L2, L3, D of an RSSR, length_1, offset_1, twist_1 .. of Denavit-Hartenberg rows, coordinates of
-    joints and axes as drawn. `offsets` of "input" and "output" frees the zeros of the two measured joints.
-    The others are as for `compare`. Raises `RequestError` for a wrong argument, too few rows and a linkage
-    made without a description, `NotCoveredError` for an output that spins idly, `MissingExtraError` without
-    scipy.
+    joints and axes as drawn. A coupler that the file leaves out is a rod with the length that closes its
+    pose, and a dimension like the others; in `follow` it follows from them. `offsets` of "input" and "output"
+    frees the zeros of the two measured joints. `progress(evaluations, 0, "residual 0.2 %")` is called on the
+    way. The others are as for `compare`.
+
+    Raises `RequestError` for a wrong argument, too few rows, rows that no circuit explains and a linkage made
+    without a description, `NotCoveredError` for an output that spins idly, `MissingExtraError` without scipy.
 
         >>> import sevenbar as sb
         >>> real = sb.rssr(M=700, N=700, L1=251, L3=550, D=0, L2=998)
@@ -168,382 +180,226 @@ def calibrate(
             raise RequestError(f"offset: {shown(word)} is not offered; give {' or '.join(OFFSETS)}")
     ends = ends_of(linkage) if ends is None else ends
     numbers = Numbers(linkage)
+    names = _named(numbers, free, hold, follow)
+    if follow:
+        Draft.of_linkage(linkage).holding(follow)
+    _refuse_what_stays(measured, ends)
+    evaluations, seen = 0, progress or (lambda _done, _total, _best: None)
+    seen(0, 0, "")
     align = [word for word, side in (("phase", "input"), ("offset", "output")) if side in offsets]
     before = compare(
         linkage, measured, ends, align=align, speed=speed, start=start, circuit=circuit, branch=branch
     )
-    model = _Model(numbers, before, inputs_of(measured, before.speed, start), offsets)
-    wanted = model.chosen(free, hold)
-    fit = _Fit(model, wanted)
-    untold = fit.run()
-    return _told(linkage, measured, before, model, fit, untold, confidence)
+    if circuit is not None or branch is not None:
+        _refuse_wrong_circuit(before, compare(linkage, measured, ends, align=align, speed=speed, start=start))
+    model = CurveModel(numbers, before, inputs_of(measured, before.speed, start), {*names, *follow}, follow)
+    wanted = [model.names.index(name) for name in names if name not in model.opening]
+    wanted += [model.names.index(f"{side}_offset") for side in OFFSETS if side in offsets]
+    if not wanted:
+        raise RequestError("free: nothing is left to be found; free a dimension or an offset")
+
+    def best(share: float) -> None:
+        nonlocal evaluations
+        evaluations += 1
+        seen(evaluations, 0, f"residual {per_cent(share)}")
+
+    fit = CurveFit(model, wanted, best)
+    unidentified = fit.run()
+    _refuse_unexplained(before, fit)
+    if fit.unfinished is not None:
+        raise fit.unfinished
+    return _calibration(measured, fit, unidentified, confidence)
 
 
-def _in_order(numbers: Numbers) -> list[int]:
-    """The numbers that move joints, not points alone, in the order in which they are held."""
+def _named(numbers: Numbers, free: Sequence[str], hold: Sequence[str], follow: Sequence[str]) -> list[str]:
+    """The dimensions that are to be found, in the order of the file."""
+    dimensions = [d.name for d in numbers.dimensions if d.place[0] != "point"]
+    for option, patterns in (("free", free), ("hold", hold)):
+        for pattern in patterns:
+            if not fnmatch.filter(dimensions, pattern):
+                raise RequestError(
+                    f"{option}: no dimension {shown(pattern)}; {suggestion(pattern, dimensions)}"
+                    f"this linkage has {', '.join(dimensions)}"
+                )
+    for name in follow:
+        for option, patterns in (("free", free), ("hold", hold)):
+            if name in patterns:
+                raise RequestError(f"follow: {name} is in --{option} too; give it in one of them")
+    return [
+        name
+        for name in dimensions
+        if any(fnmatch.fnmatchcase(name, pattern) for pattern in free)
+        and not any(fnmatch.fnmatchcase(name, pattern) for pattern in hold)
+        and name not in follow
+    ]
 
-    def order(k: int) -> tuple[int, int]:
-        place = numbers.dimensions[k].place
-        row = place[0] == "link" and isinstance(place[1], int)
-        return (int(place[1]), ROW_ORDER.index(str(place[2]))) if row else (0, k)
 
-    moving = [k for k, d in enumerate(numbers.dimensions) if d.place[0] != "point"]
-    return sorted(moving, key=order)
+def _refuse_what_stays(measured: Measured, ends: Ends) -> None:
+    for quantity in measured.outputs:
+        values = measured.values[quantity]
+        if np.ptp(values) <= EXACT * float(np.abs(values).max()):
+            raise RequestError(
+                f"{measured.source}: the {ends.word(quantity)} of {ends.output} is the same in all "
+                f"{len(measured)} rows: an output that does not move identifies no dimension; check which "
+                "joint and which column were measured"
+            )
+
+
+def _refuse_wrong_circuit(before: Comparison, freely: Comparison) -> None:
+    """Refuses a circuit or branch that explains nothing where another one does."""
+    given, other = before.chosen, freely.chosen
+    if other.explains and not given.explains:
+        raise RequestError(
+            f"{before.source}: {name_of(given)}, which was given, does not explain these data (residual "
+            f"{per_cent(given.residual)} of the measured range); {name_of(other)} does "
+            f"({per_cent(other.residual)}): leave --circuit and --branch out"
+        )
+
+
+def _refuse_unexplained(before: Comparison, fit: CurveFit) -> None:
+    computed = fit.model.computed(fit.z)
+    share = math.inf if computed is None else fit.share(computed)
+    if share > UNEXPLAINED:
+        raise RequestError(
+            f"{before.source}: no circuit explains these data; the best dimensions on "
+            f"{name_of(before.chosen)} leave a residual of {per_cent(share)} of the measured range; "
+            f"{causes(before, '--offset input,output')}"
+        )
 
 
 def _need_scipy() -> None:
     try:
-        import scipy.optimize
-        import scipy.stats  # noqa: F401
+        # its parts take a while to load, and are not needed before the end
+        import scipy  # noqa: F401
     except ImportError:
         raise MissingExtraError(
             "calibrate needs scipy and tomlkit; install them with: pip install 'sevenbar[calibrate]'"
         ) from None
 
 
-class _Model:
-    """The measured quantities as functions of all parameters, in units of the linkage's size and radians."""
-
-    def __init__(self, numbers: Numbers, before: Comparison, inputs: Floats, offsets: Sequence[str]) -> None:
-        chosen, ends = before.chosen, before.ends
-        self.before, self.offsets = before, tuple(offsets)
-        self.slides = ends.output_slides
-        self.speed = before.speed
-        count = len(inputs)
-        begin = inputs + chosen.phase + math.tau * chosen.turn
-        law = Law.of(np.arange(float(count)), begin, 1.0, 0.0)
-        motion = before.linkage.motion(input=ends.input, output=ends.output, law=law)
-        part = slice(chosen.branch * count, (chosen.branch + 1) * count)
-        circuit = motion.circuits[chosen.circuit]
-        self.places = _in_order(numbers)
-        self.output = circuit.output_column
-        loop = numbers.loop(circuit.input_column, only=self.places)
-        q = circuit.q[part]
-        # rates do not exist at a dead centre of the input, nor do sensitivities
-        self.rows = np.flatnonzero((circuit.status[part] != "dead-centre") & np.isfinite(q).all(axis=1))
-        self.begin = q[self.rows, loop.input] - chosen.phase
-        poses = numbers.poses(q[self.rows])
-        self.values = {q: before.measured[q][self.rows].copy() for q in before.outputs}
-        if "angle" in self.values:
-            self.values["angle"] += chosen.offset
-        self.order = max(OUTPUTS.index(q) for q in self.values)
-        dimensions = [numbers.dimensions[k] for k in self.places]
-        self.names = [d.name for d in dimensions] + ["input_offset", "output_offset"]
-        self.kinds: list[str] = [d.kind for d in dimensions]
-        self.kinds += ["length" if slides else "angle" for slides in (ends.input_slides, ends.output_slides)]
-        #: The size of one of the file's units, angles being in radians here.
-        self.units = np.array([d.scale for d in dimensions])
-        self.nominal = np.append(numbers.nominal[self.places] * self.units, [0.0, 0.0])
-        lengths = [kind in ("length", "pitch") for kind in self.kinds]
-        size = float(np.abs(self.nominal[lengths]).max(initial=0.0)) or 1.0
-        self.scales = np.where(lengths, size, 1.0)
-        self.first = self.nominal + np.array([0.0] * len(dimensions) + [chosen.phase, chosen.offset])
-        self._last: tuple[bytes, tuple[Floats, Slopes] | None] = (b"", None)
-        here = loop.slopes(poses, 0)
-        self._known = (loop, poses, here)
-        if here.idle[self.output]:
-            raise NotCoveredError(
-                f"calibrate: {ends.output} takes part in an idle motion, which the input does not tell; give "
-                "another output"
-            )
-        self.opening = frozenset(n for n, opens in zip(self.names, here.opening, strict=False) if opens)
-
-    def chosen(self, free: Sequence[str], hold: Sequence[str]) -> list[int]:
-        """The places of the parameters that are to be found."""
-        dimensions = self.names[:-2]
-        for option, patterns in (("free", free), ("hold", hold)):
-            for pattern in patterns:
-                if not fnmatch.filter(dimensions, pattern):
-                    raise RequestError(
-                        f"{option}: no dimension {shown(pattern)}; {suggestion(pattern, dimensions)}"
-                        f"this linkage has {', '.join(dimensions)}"
-                    )
-        named = [
-            name
-            for name in dimensions
-            if any(fnmatch.fnmatchcase(name, pattern) for pattern in free)
-            and not any(fnmatch.fnmatchcase(name, pattern) for pattern in hold)
-        ]
-        named += [f"{side}_offset" for side in OFFSETS if side in self.offsets]
-        if not named:
-            raise RequestError("free: nothing is left to be found; free a dimension or an offset")
-        return [self.names.index(name) for name in named if name not in self.opening]
-
-    def response(self, z: Floats) -> tuple[Floats, Slopes] | None:
-        """Poses and derivatives at parameters z; `None` where a row does not close on its pass."""
-        key = z.tobytes()
-        if self._last[0] == key:
-            return self._last[1]
-        loop, poses, here = self._known
-        p = loop.p.copy()
-        p[self.places] = z[:-2] / self.units
-        x = self.begin + z[-2]
-        ahead = np.einsum("nkc,k->nc", here.by_number[:, 0], (p - loop.p)[self.places])
-        ahead += here.by_input[:, 0] * (x - poses[:, loop.input])[:, None]
-        there = loop.numbers.loop(loop.input, p, self.places)
-        near = there.followed(x, poses, steps=ahead[None])[0][0]
-        if not np.isfinite(near).all():
-            near = loop.closed(x, poses, p)
-        found = None
-        if np.isfinite(near).all():
-            found = near, there.slopes(near, self.order)
-            self._known = (there, *found)
-        self._last = (key, found)
-        return found
-
-    def computed(self, z: Floats) -> dict[str, Floats] | None:
-        """Each measured quantity as computed, an angle within half a turn of the measured one."""
-        found = self.response(z)
-        if found is None:
-            return None
-        poses, here = found
-        values = {}
-        for quantity, measured in self.values.items():
-            order = OUTPUTS.index(quantity)
-            value = poses if order == 0 else here.rates[:, order - 1] * self.speed**order
-            value = value[:, self.output]
-            if quantity == "angle":
-                value = value + z[-1]
-                if not self.slides:
-                    value = value + math.tau * np.round((measured - value) / math.tau)
-            values[quantity] = value
-        return values
-
-    def slopes(self, z: Floats) -> dict[str, Floats]:
-        """The derivatives (n, parameters) of each measured quantity, by parameters in their scales."""
-        found = self.response(z)
-        if found is None:
-            raise ArithmeticError("derivatives were asked for where the loop does not close")
-        here = found[1]
-        slopes = {}
-        for quantity in self.values:
-            order = OUTPUTS.index(quantity)
-            aside = np.full(len(self.begin), float(quantity == "angle"))
-            by_number = here.by_number[:, order, :, self.output] / self.units
-            rates = [by_number, here.by_input[:, order, self.output, None]]
-            matrix = np.column_stack([*(r * self.speed**order for r in rates), aside])
-            slopes[quantity] = matrix * self.scales
-        return slopes
-
-
-class _Fit:
-    """Least squares over the parameters that the data tell, and the choice of these."""
-
-    def __init__(self, model: _Model, wanted: list[int]) -> None:
-        self.model, self.wanted = model, wanted
-        self.z = model.first.copy()
-        self.noise = {q: float(np.ptp(v)) or 1.0 for q, v in model.values.items()}
-        self.evaluations = 0
-        self.held: list[int] = []
-
-    @property
-    def free(self) -> list[int]:
-        return [k for k in self.wanted if k not in self.held]
-
-    @property
-    def count(self) -> int:
-        return len(self.model.begin) * len(self.model.values)
-
-    def residual(self, z: Floats) -> Floats:
-        """Computed less measured relative to the noise; NaN where the loop does not close."""
-        computed = self.model.computed(z)
-        if computed is None:
-            return np.full(self.count, np.nan)
-        values = self.model.values
-        return np.concatenate([(computed[q] - values[q]) / self.noise[q] for q in values])
-
-    def jacobian(self, columns: Sequence[int]) -> Floats:
-        """Derivatives (n, columns) of the residual at the present parameters."""
-        slopes = self.model.slopes(self.z)
-        return np.concatenate([slopes[q][:, columns] / self.noise[q] for q in slopes])
-
-    def run(self) -> dict[int, tuple[int, ...]]:
-        """Finds the parameters; gives what is held as the data do not tell it, and what undoes each."""
-        untold = self._untold(0.0)
-        for turn in range(MOST_ROUNDS):
-            self.held = list(untold)
-            self._weigh()
-            again = self._untold(self._deviation())
-            if turn >= MOST_ROUNDS // 2:
-                # a choice that would come and go stays
-                again = {k: again.get(k, untold.get(k, ())) for k in [*untold, *again]}
-            if set(again) == set(untold):
-                return again
-            untold = again
-        return untold
-
-    def _weigh(self) -> None:
-        """Least squares, the noise of each quantity being taken from its own differences."""
-        self.z = self.model.first.copy()
-        for _ in range(MOST_ROUNDS):
-            self._least_squares()
-            if len(self.noise) == 1:
-                return
-            parts = np.split(self.residual(self.z), len(self.noise))
-            share = math.sqrt(1 - len(self.free) / self.count)
-            floor = 1e-12
-            factors = [max(math.sqrt(float(np.mean(part**2))) / share, floor) for part in parts]
-            self.noise = {
-                q: noise * factor for (q, noise), factor in zip(self.noise.items(), factors, strict=True)
-            }
-            if max(abs(math.log(factor)) for factor in factors) < 1e-3:
-                return
-
-    def _least_squares(self) -> None:
-        from scipy.optimize import least_squares
-
-        free, scales = self.free, self.model.scales
-        if self.count <= len(free):
-            raise RequestError(
-                f"{self.model.before.source}: {self.count} measured values cannot tell {len(free)} "
-                "dimensions; measure more rows, or free fewer with --free or --hold"
-            )
-        if not free:
-            return
-
-        def spread(part: Floats) -> Floats:
-            z: Floats = self.z.copy()
-            z[free] = part * scales[free]
-            return z
-
-        def errors(part: Floats) -> Floats:
-            return self.residual(spread(part))
-
-        def slopes(part: Floats) -> Floats:
-            z = spread(part)
-            found = self.model.slopes(z)
-            return np.concatenate([found[q][:, free] / self.noise[q] for q in found])
-
-        result: Any = least_squares(
-            errors,
-            self.z[free] / scales[free],
-            jac=slopes,
-            method="trf",
-            ftol=1e-14,
-            xtol=1e-14,
-            gtol=1e-14,
-            max_nfev=200,
-        )
-        self.evaluations += int(result.nfev)
-        self.z = spread(result.x)
-
-    def _deviation(self) -> float:
-        """The standard deviation s of the residual, of parts of the noise."""
-        residual = self.residual(self.z)
-        return math.sqrt(float(residual @ residual) / max(self.count - len(self.free), 1))
-
-    def _untold(self, deviation: float) -> dict[int, tuple[int, ...]]:
-        """What the data cannot tell, given the residual's deviation, and what undoes a change of each."""
-        triangle = np.linalg.qr(self.jacobian(self.wanted), mode="r")
-        _, values, rows = np.linalg.svd(triangle, full_matrices=True)
-        values = np.concatenate([values, np.zeros(len(self.wanted) - len(values))])
-        blind = (values <= ROUNDING * values.max(initial=0.0)) | (deviation > UNTOLD * values)
-        directions = rows[blind].T
-        held: list[int] = []
-        left = directions.copy()
-        for _ in range(directions.shape[1]):
-            shares = np.linalg.norm(left, axis=1)
-            # zeros of the test bench are guesses, dimensions come from a drawing and stay
-            worth = shares * np.array([0.1 if self.wanted[k] >= len(self.model.names) - 2 else 1.0
-                                       for k in range(len(shares))])  # fmt: skip
-            place = next(k for k, w in enumerate(worth) if w >= 0.5 * worth.max())
-            held.append(place)
-            along = left[place] / np.linalg.norm(left[place])
-            left = left - np.outer(left @ along, along)
-        if not held:
-            return {}
-        own = directions @ np.linalg.inv(directions[held])
-        found = {}
-        for column, place in enumerate(held):
-            shares = np.abs(own[:, column])
-            others = [k for k in range(len(shares)) if k != place and shares[k] > TAKES_PART * shares.max()]
-            found[self.wanted[place]] = tuple(self.wanted[k] for k in others)
-        return dict(sorted(found.items()))
-
-
-def _told(
-    linkage: Linkage,
+def _calibration(
     measured: Measured,
-    before: Comparison,
-    model: _Model,
-    fit: _Fit,
-    untold: Mapping[int, tuple[int, ...]],
+    fit: CurveFit,
+    unidentified: Mapping[int, tuple[int, ...]],
     confidence: float,
 ) -> Calibration:
-    """The calibration that a finished fit comes to."""
-    from scipy.stats import t
+    """The calibration of a finished fit."""
+    from scipy.special import stdtrit
 
+    model, before = fit.model, fit.model.before
     free, scales = fit.free, model.scales
-    freedom = fit.count - len(free)
-    deviation = fit._deviation()
-    jacobian = fit.jacobian(free)
+    deviation, jacobian = fit.deviation(), fit.jacobian(free)
+    computed = model.computed(fit.z)
+    if computed is None:
+        raise ArithmeticError("the poses of a finished calibration were lost")
+    rms = {q: math.sqrt(float(np.mean((v - computed[q]) ** 2))) for q, v in model.values.items()}
+    exact = all(rms[q] <= EXACT * extent for q, extent in model.extents.items())
     _, values, rows = np.linalg.svd(jacobian, full_matrices=False)
     root = rows.T / values if len(free) else np.zeros((0, 0))
-    covariance = deviation**2 * (root @ root.T) * np.outer(scales[free], scales[free])
-    reach = float(t.ppf(0.5 + confidence / 2, freedom))
+    noise = math.nan if exact else deviation**2
+    covariance = noise * (root @ root.T) * np.outer(scales[free], scales[free])
+    reach = float(stdtrit(fit.freedom, 0.5 + confidence / 2))
+    following = model.following(fit.z)
     parameters = []
     for k, (name, kind) in enumerate(zip(model.names, model.kinds, strict=True)):
         nominal, value = float(model.nominal[k]), float(fit.z[k])
-        if k in free:
-            error = math.sqrt(covariance[free.index(k), free.index(k)])
+        if k in free or k in following:
+            way = following[k][free] if k in following else np.eye(len(model.names))[k][free]
+            error = math.sqrt(float(way @ covariance @ way))
+            status: Status = "calibrated" if k in free else "follows"
             ends = value - reach * error, value + reach * error
-            parameters.append(Parameter(name, kind, "calibrated", nominal, value, error, *ends))
-        elif k in untold:
-            undone = tuple(model.names[other] for other in untold[k])
+            parameters.append(Parameter(name, kind, status, nominal, value, error, *ends))
+        elif k in unidentified:
+            undone = tuple(model.names[other] for other in unidentified[k])
             parameters.append(Parameter(name, kind, "untold", nominal, value, undone_by=undone))
         elif name in model.opening:
             parameters.append(Parameter(name, kind, "opens the loop", nominal, value))
         elif k < len(model.names) - 2:
             parameters.append(Parameter(name, kind, "fixed", nominal, value))
-    computed, at_nominal = model.computed(fit.z), model.computed(model.first)
-    if computed is None or at_nominal is None:
-        raise ArithmeticError("the poses of a finished calibration were lost")
     return Calibration(
-        linkage=linkage,
+        linkage=before.linkage,
         ends=before.ends,
         source=before.source,
         before=before,
         parameters=tuple(parameters),
         covariance=covariance,
         confidence=confidence,
-        freedom=freedom,
+        freedom=fit.freedom,
+        places=fit.sites,
+        exact=exact,
+        follow=model.follows,
         noise={q: noise * deviation for q, noise in fit.noise.items()},
         line=measured.line[model.rows],
+        stretch=before.stretch[model.rows],
         input=model.begin + fit.z[-2],
         measured=model.values,
         computed=computed,
-        nominal=at_nominal,
+        nominal=model.at_first,
         evaluations=fit.evaluations,
-        notes=_notes(before, model, fit, computed),
+        notes=_notes(measured, fit, computed, exact=exact),
     )
 
 
-def _notes(before: Comparison, model: _Model, fit: _Fit, computed: Mapping[str, Floats]) -> tuple[str, ...]:
-    notes = [note for note in before.notes if "left out" not in note]
-    lost = len(before.line) - len(model.rows)
+def _notes(
+    measured: Measured, fit: CurveFit, computed: Mapping[str, Floats], *, exact: bool
+) -> tuple[str, ...]:
+    model, before = fit.model, fit.model.before
+    notes = list(before.about_rows)
+    if measured.left_out:
+        notes.append(f"{measured.left_out} rows without a number were left out")
+    lost = len(before.line) - len(model.rows) - len(fit.left_out)
     if lost:
         notes.append(
             f"{lost} of {len(before.line)} rows have inputs at which the nominal linkage does not close, or "
-            "stands at a dead centre; they are left out"
+            "is at a dead centre; they are left out"
         )
-    for quantity, measured in model.values.items():
-        residual = measured - computed[quantity]
-        residual = residual - residual.mean()
-        power = float(residual @ residual)
-        if power <= 0 or len(residual) < 20:
-            continue
-        follows = float(residual[1:] @ residual[:-1]) / power
-        if follows > FOLLOWS / math.sqrt(len(residual)):
-            notes.append(
-                f"neighbouring differences of the {quantity} follow each other (correlation {follows:.2f}): "
-                "what is left is not random, so something beside these dimensions is at work and the "
-                "intervals are too narrow"
-            )
-    if len(model.values) > 1:
+    if fit.left_out:
         notes.append(
-            "the intervals take the noise of angle, velocity and acceleration for independent; where one was "
-            "computed from another they are too narrow"
+            f"lines {', '.join(map(str, sorted(fit.left_out)))} lie beyond a limit of the input of the "
+            "linkage as calibrated; they are left out"
         )
+    if exact:
+        notes.append("the rows are exact: what is left is rounding, and no intervals can be made of it")
+    else:
+        notes += _far_off(fit, computed)
+        for quantity, values in model.values.items():
+            notes += _following(quantity, values - computed[quantity], EXACT * model.extents[quantity])
+        if len(model.values) > 1:
+            notes.append(
+                "the intervals take the noise of angle, velocity and acceleration for independent; where one "
+                "was computed from another they are too narrow"
+            )
     if not fit.free:
-        notes.append("the data tell none of the dimensions that were to be found")
+        notes.append("the data identify none of the dimensions that were to be found")
     return tuple(notes)
+
+
+def _far_off(fit: CurveFit, computed: Mapping[str, Floats]) -> list[str]:
+    """Rows that are far from where most of the others put the curve."""
+    model, before = fit.model, fit.model.before
+    left = left_by_most(fit.found(), fit.jacobian(fit.free))
+    slopes = model.slopes(fit.z)
+    notes = []
+    for part, quantity in zip(np.split(left, len(computed)), computed, strict=True):
+        apart = -part * fit.noise[quantity]
+        rows = far_off(apart, slopes[quantity][:, -2], model.extents[quantity])
+        if rows:
+            word, unit = before.ends.word(quantity), before.ends.unit(quantity)
+            notes.append(sentence(before.source, before.line[model.rows], rows, apart, word, unit))
+    return notes
+
+
+def _following(quantity: str, residual: Floats, rounding: float) -> list[str]:
+    """Whether neighbouring differences follow each other."""
+    residual = residual - residual.mean()
+    power = float(residual @ residual)
+    if len(residual) < 20 or power <= len(residual) * rounding**2:
+        return []
+    follows = float(residual[1:] @ residual[:-1]) / power
+    if follows <= FOLLOWS / math.sqrt(len(residual)):
+        return []
+    return [
+        f"neighbouring differences of the {quantity} follow each other (correlation {follows:.2f}): "
+        "what is left is not random, so something besides these dimensions is at work and the "
+        "intervals are too narrow"
+    ]

@@ -40,24 +40,12 @@ WIDE, NARROW, TALL = 6.4, 4.3, 6.2
 
 def shown(ends: Ends, quantity: str, values: Floats) -> Floats:
     """Values of a quantity as they are drawn: positions that turn in degrees, all else as it is."""
-    return np.degrees(values) if quantity in ("input", "angle") and turns(ends, quantity) else values
-
-
-def turns(ends: Ends, quantity: str) -> bool:
-    """Whether a quantity is that of a joint that turns."""
-    return ends.kind(quantity)[0] == "turn"
+    return np.degrees(values) if quantity in ("input", "angle") and ends.turns(quantity) else values
 
 
 def unit(ends: Ends, quantity: str) -> str:
     """The unit of `shown` values."""
-    return "deg" if quantity in ("input", "angle") and turns(ends, quantity) else ends.unit(quantity)
-
-
-def word(ends: Ends, quantity: str) -> str:
-    """A quantity of the output by its name."""
-    if quantity in ("input", "angle"):
-        return "angle" if turns(ends, quantity) else "position"
-    return quantity
+    return "deg" if quantity in ("input", "angle") and ends.turns(quantity) else ends.unit(quantity)
 
 
 def comparison_figure(comparison: Comparison) -> Figure:
@@ -69,7 +57,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
             x = shown(ends, "input", comparison.input)
             top, below = grid[:, column]
             curve = shown(ends, quantity, comparison.curve[quantity])
-            top.plot(shown(ends, "input", comparison.curve_input), curve, label="computed", **COMPUTED)
+            top.plot(shown(ends, "input", comparison.curve["input"]), curve, label="computed", **COMPUTED)
             _points(top, x, shown(ends, quantity, comparison.measured[quantity]), "measured")
             _points(below, x, shown(ends, quantity, comparison.difference(quantity)), "difference")
             _labels(grid[:, column], ends, quantity, ["measured minus\ncomputed"])
@@ -86,7 +74,9 @@ def calibration_figure(calibration: Calibration) -> Figure:
     with styled():
         figure, grid = _grid(len(calibration.outputs), (3.0, 1.2, 1.2))
         x = shown(ends, "input", calibration.input)
-        order = np.argsort(x, kind="stable")
+        order = np.lexsort([x, calibration.stretch])
+        # no line from one pass to another
+        ends_of_stretches = np.flatnonzero(np.diff(calibration.stretch[order])) + 1
         for column, quantity in enumerate(calibration.outputs):
             top, before, after = grid[:, column]
             sides: Mapping[str, Mapping[str, Floats]] = {
@@ -95,7 +85,8 @@ def calibration_figure(calibration: Calibration) -> Figure:
             }
             for name, look in (("nominal", NOMINAL), ("calibrated", COMPUTED)):
                 values = shown(ends, quantity, sides[name][quantity])
-                top.plot(x[order], values[order], label=name, **look)
+                line = (np.insert(v[order], ends_of_stretches, np.nan) for v in (x, values))
+                top.plot(*line, label=name, **look)
             measured = shown(ends, quantity, calibration.measured[quantity])
             _points(top, x, measured, "measured")
             for axes, name in ((before, "nominal"), (after, "calibrated")):
@@ -124,16 +115,16 @@ def _points(axes: Axes, x: Floats, y: Floats, label: str) -> None:
 
 def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> None:
     top, *below = column
-    name = word(ends, quantity)
+    name = ends.word(quantity)
     # with several columns the quantity must stand at each
     top.set_ylabel(quantity_label(ends.output, name, unit(ends, quantity)))
     for axes, text in zip(below, differences, strict=True):
         axes.set_ylabel(f"{text} [{unit(ends, quantity)}]")
         axes.yaxis.set_major_locator(MaxNLocator(4))
-    below[-1].set_xlabel(quantity_label(ends.input, word(ends, "input"), unit(ends, "input")))
+    below[-1].set_xlabel(quantity_label(ends.input, ends.word("input"), unit(ends, "input")))
     for axes in column:
         axes.grid(lw=0.6)
-        if turns(ends, "input"):
+        if ends.turns("input"):
             axes.xaxis.set_major_locator(DegreeLocator(9))
 
 

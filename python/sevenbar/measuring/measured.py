@@ -7,6 +7,7 @@ unit is not known, a row without a number and times that do not rise are reporte
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Iterable, Mapping
@@ -58,6 +59,19 @@ class Ends:
             return "time", 0
         slides = self.input_slides if quantity == "input" else self.output_slides
         return "slide" if slides else "turn", max(OUTPUTS.index(quantity), 0) if quantity in OUTPUTS else 0
+
+    def extent(self, quantity: str, values: Floats) -> float:
+        """The range of measured values (n,), of an angle a turn at most; 1 where they are all the same."""
+        extent = float(np.ptp(values)) or 1.0
+        return min(extent, math.tau) if quantity == "angle" and not self.output_slides else extent
+
+    def turns(self, quantity: str) -> bool:
+        """Whether a quantity is that of a joint that turns."""
+        return self.kind(quantity)[0] == "turn"
+
+    def word(self, quantity: str) -> str:
+        """A quantity of the output by its name."""
+        return "position" if quantity == "angle" and self.output_slides else quantity
 
     def unit(self, quantity: str) -> str:
         """The unit in which a quantity comes out."""

@@ -5,23 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from sevenbar.measuring.calibrate import Calibration, Parameter
-from sevenbar.measuring.compare import Comparison, per_cent
+from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
-from sevenbar.measuring.figures import calibration_figure, comparison_figure, turns, word
 from sevenbar.measuring.measured import Ends
+from sevenbar.measuring.passes import PassFit
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, json_text, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: Decimals of values that exact rows give.
+EXACT_DIGITS = 6
 
 #: The JSON has all candidates and notes; the page has as many candidates.
 MOST_CANDIDATES = 4
@@ -48,12 +53,12 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
         "measured", f"{comparison.source}, {rows} rows of {', '.join(_words(ends, comparison.outputs))}"
     )
     facts.add("drive", drive)
-    facts.add("explained by", _candidate(chosen.circuit, chosen.branch, chosen.residual), style="bold")
-    others = [
-        _candidate(c.circuit, c.branch, c.residual)
-        for c in comparison.candidates[1:]
-        if (c.circuit, c.branch) != (chosen.circuit, chosen.branch)
-    ]
+    facts.add("explained by", _candidate(chosen), style="bold")
+    others, named = [], [chosen]
+    for candidate in comparison.candidates[1:]:
+        if not any(alike(candidate, other) for other in named):
+            named.append(candidate)
+            others.append(_candidate(candidate))
     if others:
         more = len(others) - MOST_CANDIDATES
         tail = f"; {more} more" if more > 0 else ""
@@ -79,23 +84,25 @@ def calibration_text(calibration: Calibration) -> RenderableType:
     facts = Facts()
     facts.add(
         "measured",
-        f"{calibration.source}, {len(calibration.line)} rows of "
+        f"{calibration.source}, {_rows_and_places(calibration)} of "
         + ", ".join(_words(ends, calibration.outputs)),
     )
     speed = calibration.before.speed
     facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
-    facts.add("explained by", f"circuit {chosen.circuit}, branch {chosen.branch}")
+    facts.add("explained by", name_of(chosen))
     for quantity in calibration.outputs:
         before, after = (
             _rms(calibration.measured[quantity] - side[quantity])
             for side in (calibration.nominal, calibration.computed)
         )
         facts.add(
-            f"rms of the {word(ends, quantity)}",
+            f"rms of the {ends.word(quantity)}",
             f"{before:.4g} before, {after:.4g} after [{ends.unit(quantity)}]",
         )
     count = len(calibration.calibrated)
     facts.add("fitted", f"{count} parameters, {calibration.freedom} degrees of freedom")
+    if held := calibration.held.text:
+        facts.add("held", held)
     for parameter in calibration.parameters:
         if parameter.status == "untold":
             facts.add("not identifiable", unidentified_sentence(parameter, calibration))
@@ -106,6 +113,12 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         facts.add("note", note)
     title = Text(calibration.linkage.name, style="bold underline")
     return Group(title, facts.grid, Text(), _parameter_table(calibration))
+
+
+def _rows_and_places(calibration: Calibration) -> str:
+    """How many rows there are, and at how many places where some repeat an input."""
+    rows = len(calibration.line)
+    return f"{rows} rows" + (f" at {calibration.places} places" if calibration.places < rows else "")
 
 
 def unidentified_sentence(parameter: Parameter, calibration: Calibration) -> str:
@@ -144,14 +157,19 @@ def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, An
         "rows": len(comparison.line),
         "circuit": comparison.chosen.circuit,
         "branch": comparison.chosen.branch,
+        "branches": list(comparison.chosen.branches),
         "aligned": list(comparison.aligned),
         "phase": comparison.chosen.phase,
         "offset": comparison.chosen.offset,
-        "candidates": [vars(c) for c in comparison.candidates],
+        "candidates": [_candidate_dict(c) for c in comparison.candidates],
         "table": table,
         "differences": {q: vars(comparison.spread(q)) for q in comparison.outputs},
         "notes": list(comparison.notes),
     }
+
+
+def _candidate_dict(fit: PassFit) -> dict[str, Any]:
+    return {**vars(fit), "branches": list(fit.branches)}
 
 
 def calibration_dict(calibration: Calibration) -> dict[str, Any]:
@@ -166,8 +184,12 @@ def calibration_dict(calibration: Calibration) -> dict[str, Any]:
         "rows": len(calibration.line),
         "circuit": calibration.before.chosen.circuit,
         "branch": calibration.before.chosen.branch,
+        "branches": list(calibration.before.chosen.branches),
         "confidence": calibration.confidence,
         "degrees_of_freedom": calibration.freedom,
+        "places": calibration.places,
+        "exact": calibration.exact,
+        **calibration.held.as_dict,
         "parameters": [{**vars(p), "undone_by": list(p.undone_by)} for p in calibration.parameters],
         "covariance": {
             "parameters": [p.name for p in calibration.calibrated],
@@ -216,7 +238,16 @@ def _write_compared(comparison: Comparison | ExtremesComparison, path: Path) -> 
 
 
 def _comparison_figure(comparison: Comparison | ExtremesComparison) -> Figure | None:
+    # matplotlib takes longer to load than a comparison to make
+    from sevenbar.measuring.figures import comparison_figure
+
     return comparison_figure(comparison) if isinstance(comparison, Comparison) else None
+
+
+def _calibration_figure(calibration: Calibration) -> Figure:
+    from sevenbar.measuring.figures import calibration_figure
+
+    return calibration_figure(calibration)
 
 
 def calibration_report(
@@ -231,7 +262,7 @@ def calibration_report(
             "calibration.json": json_file(calibration_dict),
             "parameters.csv": _write_parameters,
             "rows.csv": columns_file(_calibrated_rows),
-            **figure_files("calibration", figures, calibration_figure),
+            **figure_files("calibration", figures, _calibration_figure),
         },
     )
 
@@ -304,15 +335,17 @@ def write_calibration(
 
 
 def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
-    return [word(ends, quantity) for quantity in quantities]
+    return [ends.word(quantity) for quantity in quantities]
 
 
-def _candidate(circuit: int, branch: int, residual: float) -> str:
-    return f"circuit {circuit}, branch {branch} (residual {per_cent(residual)})"
+def _candidate(fit: PassFit) -> str:
+    if fit.explains and fit.open_rows:
+        return f"{name_of(fit)} (residual {per_cent(fit.closed_residual)} where it closes)"
+    return f"{name_of(fit)} (residual {per_cent(fit.residual)})"
 
 
 def _value(ends: Ends, quantity: str, value: float) -> str:
-    if turns(ends, quantity):
+    if ends.turns(quantity):
         return f"{math.degrees(value):.4f}\u00b0"
     return f"{value:.6g} {ends.unit(quantity)}"
 
@@ -321,7 +354,7 @@ def _extents_table(extents: Sequence[Extent], ends: Ends) -> Table:
     """The paper's Table 1, a line for each of its three values of each quantity."""
     rows = (
         (
-            f"{word(ends, extent.quantity)} {name} [{ends.unit(extent.quantity)}]",
+            f"{ends.word(extent.quantity)} {name} [{ends.unit(extent.quantity)}]",
             f"{computed:.6g}",
             f"{measured:.6g}",
             f"{error:+.4g}",
@@ -337,7 +370,7 @@ def _spread_table(comparison: Comparison) -> Table:
     ends = comparison.ends
     rows = (
         (
-            f"{word(ends, quantity)} [{ends.unit(quantity)}]",
+            f"{ends.word(quantity)} [{ends.unit(quantity)}]",
             f"{spread.greatest:+.4g}",
             str(spread.line),
             f"{spread.rms:.4g}",
@@ -355,10 +388,13 @@ def _parameter_table(calibration: Calibration) -> Table:
     for p in calibration.parameters:
         label = f"{p.name} [{_parameter_unit(p, calibration.ends)}]".removesuffix(" []")
         nominal, value = _shown(p, p.nominal), _shown(p, p.value)
-        if p.status == "calibrated":
+        follows = p.status == "follows"
+        if p.status == "calibrated" or follows:
             reach = _shown(p, (p.high - p.low) / 2)
-            digits = _digits(reach)
-            cells = [f"{value:.{digits}f}", f"{reach:.{digits}f}", f"{value - nominal:+.{digits}f}", ""]
+            digits = EXACT_DIGITS if calibration.exact else _digits(reach)
+            plus_minus = "exact" if calibration.exact else f"{reach:.{digits}f}"
+            change = f"{value - nominal:+.{digits}f}"
+            cells = [f"{value:.{digits}f}", plus_minus, change, "follows" * follows]
         else:
             note = {"fixed": "held", "untold": "not identifiable"}.get(p.status, p.status)
             cells = [f"{value:.6g}", "-", "-", note]
@@ -401,7 +437,7 @@ def _rows(ends: Ends, line: Any, inputs: Any, sides: Mapping[str, Mapping[str, A
     columns = {"line": line, f"input_{_suffix(ends.unit('input'))}": inputs}
     for quantity in next(iter(sides.values())):
         for side, values in sides.items():
-            name = f"{word(ends, quantity)}_{side}_{_suffix(ends.unit(quantity))}"
+            name = f"{ends.word(quantity)}_{side}_{_suffix(ends.unit(quantity))}"
             columns[name] = values[quantity]
     return columns
 

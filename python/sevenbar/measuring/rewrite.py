@@ -4,37 +4,82 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from sevenbar.description.draft import Draft
+from sevenbar.description.files import loads
+from sevenbar.errors import RequestError, SevenbarError
+from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.calibrate import Calibration
+from sevenbar.measuring.compare import compare, per_cent
+from sevenbar.measuring.measured import Measured
+
+#: Share of the measured range by which the residual of the file may differ from that of the calibration.
+AGREES = 1e-6
 
 
 def calibrated_toml(text: str, calibration: Calibration) -> str:
     """The TOML text of a linkage with its calibrated dimensions in place of the nominal ones.
 
-    L2 of an RSSR is written out, since left out it would follow from the others. What the form has no key
-    for, the zeros of the measured joints, stands in the comment above. Raises `MissingExtraError` without
-    tomlkit.
+    L2 of an RSSR is written out, since left out it would follow from the others; it is left out where it was
+    to follow. What the form has no key for, the zeros of the measured joints, is in the comment above. The
+    text is read again, and the rows are compared with that linkage: `RequestError` where it does not explain
+    them as well. Raises `MissingExtraError` without tomlkit.
     """
     draft = Draft.of(text, "calibrated.toml")
     found = {p.name: p.value for p in calibration.calibrated if not p.name.endswith("_offset")}
-    if found and "L2" in calibration.linkage.dimensions:
+    if found and "L2" in calibration.linkage.dimensions and "L2" not in calibration.follow:
         found = {"L2": calibration.parameter("L2").value} | found
     units = {dimension.name: dimension.scale for dimension in draft.dimensions}
     written = draft.with_values({name: value / units[name] for name, value in found.items()}).toml()
-    return "".join(f"# {line}\n" for line in _head(calibration)) + "\n" + written
+    whole = "".join(f"# {line}\n" for line in _head(calibration)) + "\n" + written
+    _check(_read(whole), calibration)
+    return whole
+
+
+def _read(text: str) -> Linkage:
+    try:
+        return loads(text, "calibrated.toml")
+    except SevenbarError as error:
+        raise RequestError(
+            "calibrate: the dimensions that explain these data best make no linkage, so nothing is written: "
+            f"{error}"
+        ) from None
+
+
+def _check(linkage: Linkage, calibration: Calibration) -> None:
+    """Raises `RequestError` where a linkage does not explain the rows as the calibration does."""
+    before, ends = calibration.before, calibration.ends
+    aside = {p.name: p.value for p in calibration.parameters}.get("output_offset", before.chosen.offset)
+    values = {q: v - aside if q == "angle" else v for q, v in calibration.measured.items()}
+    rows = Measured(calibration.source, calibration.line, {"input": calibration.input, **values})
+    again = compare(linkage, rows, ends, speed=before.speed).chosen
+    parts = [
+        np.square((calibration.computed[q] - v) / ends.extent(q, v)) for q, v in calibration.measured.items()
+    ]
+    share = math.sqrt(float(np.mean(parts)))
+    if again.open_rows or not again.residual <= share + AGREES:
+        lines = f", and {again.open_rows} rows do not close" if again.open_rows else ""
+        raise RequestError(
+            "calibrate: the file, read again, does not explain the rows as the calibration does, so nothing "
+            f"is written: residual {per_cent(again.residual)} of the measured range, not "
+            f"{per_cent(share)}{lines}"
+        )
 
 
 def _head(calibration: Calibration) -> list[str]:
-    per_cent = f"{100 * calibration.confidence:g} %"
-    lines = [
-        f"Calibrated by sevenbar from {calibration.source}, {len(calibration.line)} rows. "
-        f"Half widths of {per_cent} intervals:"
-    ]
+    per_cent_words = f"{100 * calibration.confidence:g} %"
+    intervals = (
+        "Exact rows: no intervals." if calibration.exact else f"Half widths of {per_cent_words} intervals:"
+    )
+    lines = [f"Calibrated by sevenbar from {calibration.source}, {len(calibration.line)} rows. {intervals}"]
     for p in calibration.calibrated:
         degrees = p.kind == "angle"
         value, reach = ((math.degrees(v) if degrees else v) for v in (p.value, (p.high - p.low) / 2))
         unit = {"angle": " deg", "number": ""}.get(p.kind, f" {calibration.ends.length_unit}")
-        lines.append(f"  {p.name} = {value:.9g}{unit}, +- {reach:.2g}")
+        lines.append(f"  {p.name} = {value:.9g}{unit}" + ("" if calibration.exact else f", +- {reach:.2g}"))
+    if held := calibration.held.text:
+        lines.append(f"Held: {held}.")
     unidentified = [p.name for p in calibration.parameters if p.status == "untold"]
     if unidentified:
         lines.append(
