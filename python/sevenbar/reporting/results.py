@@ -124,8 +124,7 @@ def _(circuit: Circuit) -> str:
     def extent(ends: tuple[float, float] | None, show: Shown, *, as_limits: bool = False) -> str:
         if ends is None:
             return "full turns"
-        low, high, *word = show.range(*ends) if as_limits else map(show, ends)
-        return " ".join([f"{low} to {high}", *word])
+        return " to ".join(show.range(*ends) if as_limits else map(show, ends))
 
     def still(kind: str) -> str:
         places = [place(d.input, whole=True) for d in circuit.dead_centres if d.kind == kind]

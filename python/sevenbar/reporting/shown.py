@@ -17,12 +17,10 @@ class Shown:
             return f"{value:.6g} {self._unit}".rstrip()
         return degrees(value, whole=whole)
 
-    def range(self, low: float, high: float) -> tuple[str, ...]:
-        """The ends of a range, angles in [0, 360), and a word where it goes through 0."""
-        if self._unit != "rad" or high - low > math.tau:
-            return self(low), self(high)
-        ends = self(low, whole=True), self(high, whole=True)
-        return ends if low % math.tau <= high % math.tau else (*ends, "through 0\u00b0")
+    def range(self, low: float, high: float) -> tuple[str, str]:
+        """The ends of a range, angles in [0, 360) as limits are: from 350 to 20 degrees it goes through 0."""
+        whole = self._unit == "rad" and high - low <= math.tau
+        return self(low, whole=whole), self(high, whole=whole)
 
     def same(self, a: float, b: float) -> bool:
         """Whether two values are one place, to the digits that are shown."""

@@ -338,11 +338,6 @@ class _Quantity:
     only: Literal["", "list", "table"] = ""
     spare: bool = False
 
-    def line(self, cell: Texts) -> str:
-        """Its texts on one line; a word after the ends of a range is no end."""
-        ends = 2 if self.between == RANGE else len(cell)
-        return " ".join([self.between.join(cell[:ends]), *cell[ends:]])
-
     def label(self, end: str = "") -> str:
         return " ".join(word for word in (self.name, end, self.unit) if word)
 
@@ -501,7 +496,7 @@ def _lines(told: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Tex
             lines.append((quantity.label("min"), tuple(cell[0] for cell in cells)))
             lines.append((quantity.label("max"), tuple(cell[-1] for cell in cells)))
         else:
-            lines.append((quantity.label(), tuple(quantity.line(cell) for cell in cells)))
+            lines.append((quantity.label(), tuple(quantity.between.join(cell) for cell in cells)))
     return lines
 
 
@@ -521,7 +516,9 @@ def _side_by_side(motion: Motion) -> list[Sheet]:
 def _compared(motion: Motion, room: int) -> list[Sheet]:
     """What all circuits share, then one table: a row for each circuit, those that agree in one row."""
     told = _telling(motion, "table")
-    shared = [(quantity.label(), (quantity.line(cells[0]),)) for quantity, cells in told if _same(cells)]
+    shared = [
+        (quantity.label(), (quantity.between.join(cells[0]),)) for quantity, cells in told if _same(cells)
+    ]
     own = [(quantity, cells) for quantity, cells in told if not _same(cells)]
     sheets = [_list(motion, ["every circuit"], shared)] if shared else []
     if own:
