@@ -247,7 +247,8 @@ def _from_dimensions(form: LinkageForm, rssr: RssrForm) -> Linkage:
     return _linkage(
         form,
         "rssr",
-        tuple(Joint(kind, name) for name, kind in form.joints),
+        # the rocker turns against the ground about x, as the last joint of a drawing does
+        tuple(Joint(kind, name, backwards=name == "rocker") for name, kind in form.joints),
         points=(Point("A", 1, (rssr.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
         dimensions={**{key: getattr(rssr, key) for key in ("M", "N", "L1")}, "L2": rssr.coupler}
         | {key: getattr(rssr, key) for key in ("L3", "D")},
@@ -276,10 +277,17 @@ def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) 
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
     if problems:
         raise DescriptionError(problems, source)
+    last = len(drawn) - 1
     joints = tuple(
         # a joint U at zero is not the identity: it turns from its first axis to its second
-        Joint(joint.kind, name, joint.pitch or 0.0, between(*joint.axes) if joint.axes else 0.0)
-        for joint, name in zip(drawn, names, strict=True)
+        Joint(
+            joint.kind,
+            name,
+            joint.pitch or 0.0,
+            between(*joint.axes) if joint.axes else 0.0,
+            backwards=i == last,
+        )
+        for i, (joint, name) in enumerate(zip(drawn, names, strict=True))
     )
     points = (Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else ()
     return _linkage(form, "drawn", joints, points=points)

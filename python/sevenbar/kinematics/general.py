@@ -48,7 +48,7 @@ class GeneralLoop:
         parts = expanded(linkage)
         self._base, self._link = parts.base, parts.last
         self._core = _core.Loop(
-            parts.letters, np.array(parts.advances), parts.base, linkage.ground, np.array(parts.links)
+            parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links)
         )
         self._found: dict[int, Mobility] = {}
 
@@ -288,13 +288,15 @@ class Expanded(NamedTuple):
     """The joints as the core takes them, each about or along z of its frame.
 
     `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
-    between them; `last` the number of the last one of each joint of the linkage.
+    between them, `ground` (4, 4) the frame behind the last; `last` the number of the last one of each joint of the
+    linkage.
     """
 
     letters: str
     advances: list[float]
     base: Floats
     links: list[Floats]
+    ground: Floats
     last: list[int]
 
 
@@ -313,7 +315,8 @@ def expanded(linkage: Loop) -> Expanded:
         last.append(len(letters) - 1)
         if i < len(linkage.links):
             ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
-    return Expanded(letters, advances, fixed[0], fixed[1:], last)
+    ground = linkage.ground if ahead is STILL else linkage.ground @ inverse(ahead)
+    return Expanded(letters, advances, fixed[0], fixed[1:], ground, last)
 
 
 def size_of(linkage: Loop) -> float:
