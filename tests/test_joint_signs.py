@@ -171,7 +171,8 @@ def test_the_last_joint_drives_by_the_motion_of_its_link(kind):
         circuit = linkage.circuit(np.zeros(len(linkage.columns)), 720, input=name, speed=1.7)
         column = linkage.columns.index(name)
         ok = np.flatnonzero(circuit.status == "ok")
-        assert circuit.input_column == column and len(ok) > 2
+        assert circuit.input_column == column
+        assert len(ok) > 2
         np.testing.assert_allclose(circuit.dq[ok, column], 1.7, rtol=1e-15)
         for row in ok:
             want = [circuit.point(len(joints) - 1, tuple(mark)).position[row] for mark in marks]

@@ -34,7 +34,7 @@ def courses(t):
 
 def bodies_at(t):
     """Links that move so, by differences of fourth order of their frames; the ground moves on with the last joint."""
-    step = 2e-3
+    step = 5e-4
 
     def frames(at):
         moving = frames_of(OPEN, courses(at)[0])

@@ -288,8 +288,8 @@ class Expanded(NamedTuple):
     """The joints as the core takes them, each about or along z of its frame.
 
     `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
-    between them, `ground` (4, 4) the frame behind the last; `last` the number of the last one of each joint of the
-    linkage.
+    between them, `ground` (4, 4) the frame behind the last; `last` the number of the last one of each joint
+    of the linkage.
     """
 
     letters: str

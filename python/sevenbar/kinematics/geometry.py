@@ -26,8 +26,8 @@ Form = Literal["rssr", "rows", "drawn"]
 class Joint:
     """A joint: the letter of its kind, and its name.
 
-    `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U. `backwards`: its values
-    are those of the link before it against the link after it, as of the last joint of a drawing.
+    `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U. `backwards`: its
+    values are those of the link before it against the link after it, as of the last joint of a drawing.
     """
 
     kind: str

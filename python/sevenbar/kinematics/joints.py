@@ -59,8 +59,8 @@ class JointKind:
     `legend` is what figures call it, `words` are those that people write for it. `steps` stand in loop order,
     the last of all but a ball about or along z. `drawn_keys` are the keys that it needs as drawn beside its
     place, `row_keys` the numbers of a Denavit-Hartenberg row; a kind without them is written `as_rows`.
-    `shape` is how it is drawn and built, `adams` what ADAMS calls it. `numbered_back`: the names of its columns
-    count from its last step.
+    `shape` is how it is drawn and built, `adams` what ADAMS calls it. `numbered_back`: the names of its
+    columns count from its last step.
     """
 
     letter: str
@@ -114,7 +114,8 @@ class JointKind:
     def half_turn(self) -> tuple[int, int, int]:
         """The axis of the half turn that takes its frame to that of the joint `backwards`.
 
-        It reverses z. Of a joint with several axes, each of which is to be reversed, it makes two change places.
+        It reverses z. Where several axes of the frame count, two of them change places: reversed, all three
+        would make no frame.
         """
         if self.is_ball:
             return (1, 0, -1)
@@ -125,8 +126,8 @@ class JointKind:
         """The kind of a joint that counts the link before it against the link after it, in the turned frame.
 
         A ball turns about the same axes of the turned frame, and a joint in a plane turns first; both are
-        numbered from the last step. In other kinds the steps are on one axis, or each has a link of its own that
-        holds its axis: the order is that of the kind itself.
+        numbered from the last step. In other kinds the steps are on one axis, or each has a link of its own
+        that holds its axis: the order is that of the kind itself.
         """
         if self.has_plane:
             turn, one, other = Step("turn"), Step("slide", X), Step("slide", Y)

@@ -8,10 +8,10 @@ what stands behind a factor by the twist w dp in the frame there, and that goes 
 
     dF = F w dp,        F = A B:  w = Ad(B^-1) w_A + w_B                                                  (2)
 
-The last joint of a drawing counts the link before it against the ground, right-handed about its axes as they are
-written. It moves in a frame that is turned from the drawn one by half, so that its axes are reversed:
+The last joint of a drawing counts the link before it against the ground, right-handed about its axes as they
+are written. It moves in a frame that is turned from the drawn one by half, so that its axes are reversed:
 
-    Z_drawn(q)^-1 = H Z(q) H,        H = H^-1                                                               (3)
+    Z_kind(q)^-1 = H Z(q) H,        H = H^-1                                                              (3)
 
 A ball before a link that would spin idly stands here as the two turns that the core holds it to.
 
