@@ -116,8 +116,8 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
     return {
         "format": 1,
         "tree": path.name,
-        "about": "The joint that closes the loop. With the poses T of both links (that of the ground is 1) and "
-        "the joint's motion Z(q), T_parent parent.frame Z(q) = T_child child.frame; pose holds values of all "
+        "about": "The joint that closes the loop. With the poses T of both links (of the ground 1) and the "
+        "joint's motion Z(q), T_parent parent.frame Z(q) = T_child child.frame; pose holds values of all "
         "columns for which it does.",
         "units": {"length": "m", "angle": "rad"},
         "loop_joint": own | {"parent": sides[0], "child": sides[1]},

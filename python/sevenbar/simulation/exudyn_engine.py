@@ -210,8 +210,8 @@ class _Assembly:
         """Constrains the driven freedom alone; the joint itself has the other constraints."""
         drive = self.model.drive
         joint = self.model.connections[drive.connection]
-        # Exudyn slides along axes of its first body: where the body after carries them, that one is first, and
-        # the slide is the other way
+        # Exudyn slides along axes of its first body: where the body after carries them, that one is first,
+        # and the slide is the other way
         carried = joint.row.has_plane and joint.backwards and not drive.turns
         unit = (1.0 if drive.turns else self.model.size) * (-1.0 if carried else 1.0)
 

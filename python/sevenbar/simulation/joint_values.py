@@ -74,13 +74,13 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
         way = after[:, :3, 3] - before[:, :3, 3]
         local = np.einsum("nji,nj->ni", before[:, :3, :3], way)
         columns: list[tuple[Floats, Floats, Floats]] = []
-        turns = False
+        turned = False
         for step in () if joint.row.is_ball or joint.row.has_cross else joint.row.steps:
             # what stands behind a turn goes with it: across its axis that is the body after
-            behind = turns and step.axis != Z
+            behind = turned and step.axis != Z
             axis = (after if behind else before)[:, :3, step.axis]
             own = (bodies.spin[:, i], bodies.spin_rate[:, i]) if behind else (spin, spin_rate)
-            turns = turns or step.freedom == "turn"
+            turned = turned or step.freedom == "turn"
             if step.driven:
                 continue
             if step.freedom == "turn":
