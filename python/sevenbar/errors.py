@@ -36,6 +36,10 @@ class EngineError(SevenbarError):
     """A motion that another program could not follow; the text says what to try."""
 
 
+class AngleUnitWarning(UserWarning):
+    """Angles that look as if they were written in another unit; the answer takes them as they are."""
+
+
 @dataclass(frozen=True)
 class Problem:
     """One thing that is wrong in a description: its place and what is the matter."""

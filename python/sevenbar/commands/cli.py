@@ -5,18 +5,20 @@ from __future__ import annotations
 import importlib
 import sys
 import traceback
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, NoReturn, TextIO
 
 import typer
 import typer.core
 
 import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver, tell_written
-from sevenbar.commands.given import check_law, input_column, input_value, law_of, point_of
+from sevenbar.commands.given import agreed, check_law, input_column, input_value, law_of, point_of
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     Force,
     InputJoint,
@@ -34,7 +36,7 @@ from sevenbar.commands.options import (
     progress_bar,
     words,
 )
-from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.errors import AngleUnitWarning, RequestError, SevenbarError, shown
 from sevenbar.reporting.figures import KINDS, Places, write_figures
 from sevenbar.reporting.folder import check_targets
 from sevenbar.text.ranges import Place
@@ -109,6 +111,7 @@ def analyze(
     output: OutputJoint = None,
     speed: Speed = None,
     law: Law = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
     ] = None,
@@ -124,10 +127,15 @@ def analyze(
 
     report = motion_report(figure_formats(figures, out))
     check_law(law, speed)
+    if not json:
+        # the report has it
+        warnings.simplefilter("ignore", AngleUnitWarning)
     loaded = sb.load(linkage)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint)
-    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, law=read)
+    motion = loaded.motion(
+        samples, input=input_joint, output=output, speed=speed, law=read, agree=agreed(agree)
+    )
     elsewhere = []
     if animate is not None:
         film = _film(motion, animate, out, force=force)
@@ -175,6 +183,7 @@ def modes(
     input_joint: Annotated[
         str | None, typer.Option("--input", help="The joint that is held; the file's input by default.")
     ] = None,
+    agree: Agree = None,
     out: Annotated[Path | None, typer.Option(help="Draw all modes into this .png, .svg or .pdf.")] = None,
     force: Force = False,
     json: Json = False,
@@ -185,7 +194,8 @@ def modes(
     loaded = sb.load(linkage)
     column = input_column(loaded, input_joint)
     check_targets([] if out is None else [out], force=force)
-    found = loaded.assembly_modes(input_value("--at", at, loaded, input_joint), input=loaded.columns[column])
+    value = input_value("--at", at, loaded, input_joint)
+    found = loaded.assembly_modes(value, input=loaded.columns[column], agree=agreed(agree))
     if out is not None:
         from sevenbar.drawing import plot
 
@@ -208,6 +218,7 @@ def plot_(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    agree: Agree = None,
     figures: Figures = None,
     force: Force = False,
 ) -> None:
@@ -220,7 +231,7 @@ def plot_(
         if kind is not None and "point" in kind:
             raise RequestError("--kind: point needs a point; give --link and --at, as the linkage names none")
         kinds.remove("point")
-    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
+    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, agree=agreed(agree))
     written = write_figures(motion, out, kinds, points, circuit=circuit, figures=formats, force=force)
     tell_written(written, below=False)
 
@@ -274,8 +285,33 @@ def gallery(
         typer.echo(f"{name:<{width}}  {sb.load(name).name}")
 
 
+def _tell_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Writes a warning of ours as one line on the error stream, any other as Python does."""
+    ours = issubclass(category, AngleUnitWarning)
+    told = (
+        f"sevenbar: {message}\n"
+        if ours
+        else warnings.formatwarning(message, category, filename, lineno, line)
+    )
+    (file or sys.stderr).write(told)
+
+
 def main() -> NoReturn:
     """The program: exit 0 well, 2 the caller's mistake, 1 our own fault."""
+    with warnings.catch_warnings():
+        warnings.showwarning = _tell_warning
+        warnings.simplefilter("always", AngleUnitWarning)
+        _run()
+
+
+def _run() -> NoReturn:
     try:
         app(standalone_mode=True, prog_name="sevenbar")
     except SevenbarError as error:

@@ -9,8 +9,8 @@ import typer
 
 import sevenbar as sb
 from sevenbar.commands.deliver import tell_written
-from sevenbar.commands.given import input_value
-from sevenbar.commands.options import Force, InputJoint, OutputJoint, Samples, Source, Speed
+from sevenbar.commands.given import agreed, input_value
+from sevenbar.commands.options import Agree, Force, InputJoint, OutputJoint, Samples, Source, Speed
 from sevenbar.errors import RequestError
 
 
@@ -41,6 +41,7 @@ def export(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    agree: Agree = None,
     units: Annotated[
         str | None, typer.Option(help="Of tables: file (the default), or si for metres and radians.")
     ] = None,
@@ -58,7 +59,7 @@ def export(
     loaded = sb.load(linkage)
     value = None if at is None else input_value("--at", at, loaded, input_joint)
     written = write_export(
-        loaded.motion(samples, input=input_joint, output=output, speed=speed),
+        loaded.motion(samples, input=input_joint, output=output, speed=speed, agree=agreed(agree)),
         to,
         out,
         circuit=circuit,

@@ -16,6 +16,13 @@ Samples = Annotated[int, typer.Option(help="Inputs in a full turn.")]
 Figures = Annotated[
     list[str] | None, typer.Option(help="Format of the figures: png, svg, pdf; may be repeated.")
 ]
+Agree = Annotated[
+    float | None,
+    typer.Option(
+        help="Closure error up to which redundant constraints agree, in rad or relative to the size: "
+        "1e-9 by default, 1e-3 at most."
+    ),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
 InputJoint = Annotated[
     str | None, typer.Option("--input", help="The joint that drives; the file's by default.")

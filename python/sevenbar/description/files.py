@@ -7,6 +7,7 @@ import re
 import tomllib
 from pathlib import Path
 
+from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
 from sevenbar.errors import DescriptionError, Problem, shown
@@ -58,7 +59,9 @@ def loads(content: str, source: str = "text") -> Linkage:
         raise _unreadable(source, _told(error, content.split("\n"))) from None
     except RecursionError:
         raise _unreadable(source, "nested too deep; a linkage file has tables of plain keys only") from None
-    return from_description(raw, source)
+    linkage = from_description(raw, source)
+    warn_of_angles(raw, source)
+    return linkage
 
 
 #: What TOML's reader says of a place.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.proportions import disproportions
 from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
@@ -17,6 +18,7 @@ from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import unit
 from sevenbar.kinematics.word import Place, Values, between, word_of
+from sevenbar.text.units import number_in
 
 if TYPE_CHECKING:
     from sevenbar.description.schema import JointForm, LinkageForm, LinkForm, RssrForm
@@ -26,12 +28,12 @@ NO_LENGTH = 1e-12
 
 
 def rssr(
-    M: float,
-    N: float,
-    L1: float,
-    L3: float,
-    D: float = 0.0,
-    L2: float | None = None,
+    M: float | str,
+    N: float | str,
+    L1: float | str,
+    L3: float | str,
+    D: float | str = 0.0,
+    L2: float | str | None = None,
     *,
     name: str = "RSSR",
     length_unit: str = "mm",
@@ -40,8 +42,8 @@ def rssr(
     """The RSSR in the layout of Sun and Zhou: crank about z at height N, rocker about x at (M, D, 0).
 
     `A = (L1 cos alpha, L1 sin alpha, N)`, `B = (M, D + L3 cos beta, L3 sin beta)`, `|A - B| = L2`; lengths
-    in `length_unit`. L2 left out is `|A1 B1|`, `L2^2 = (L1 - M)^2 + L3^2 + N^2`. Raises `DescriptionError`
-    with all that is wrong.
+    in `length_unit`, or texts with a unit as in "70 cm". L2 left out is `|A1 B1|`,
+    `L2^2 = (L1 - M)^2 + L3^2 + N^2`. Raises `DescriptionError` with all that is wrong.
 
         >>> import sevenbar as sb
         >>> sb.rssr(M=700, N=700, L1=250, L3=550, D=0).motion().motion_type
@@ -52,12 +54,13 @@ def rssr(
     dimensions = {"M": M, "N": N, "L1": L1, "L3": L3, "D": D}
     if L2 is not None:
         dimensions["L2"] = L2
+    numbers = {key: _read(value, length_unit) for key, value in dimensions.items()}
     raw = {
         "format": 1,
         "name": name,
         "length_unit": length_unit,
         "drive": {"speed": _plain(speed)},
-        "rssr": {key: _plain(value) for key, value in dimensions.items()},
+        "rssr": numbers,
     }
     return from_description(raw)
 
@@ -74,7 +77,9 @@ def from_axes(
 
     Each joint is a mapping with `kind` (a letter), `at` (three coordinates), `axis` (three numbers;
     `axes`, two of them, for U; none for S), `pitch` (length per turn) for H, and perhaps `name`. Link i lies
-    between joints i and i + 1, the last is the ground. Every joint is at zero in this pose.
+    between joints i and i + 1, the last is the ground. Every joint is at zero in this pose. Coordinates and
+    pitches are in `length_unit`, or texts as in "12 mm", "8 mm/turn". A joint at the ground, first or last,
+    counts its link against the ground.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_axes([
@@ -91,8 +96,8 @@ def from_axes(
         "name": name,
         "length_unit": length_unit,
         "drive": {"speed": _plain(speed)},
-        "joint": _plain(joints),
-        "point": _plain(points),
+        "joint": _lengths(joints, length_unit),
+        "point": _lengths(points, length_unit),
     }
     return from_description(raw)
 
@@ -100,11 +105,11 @@ def from_axes(
 def from_dh(
     joints: str,
     *,
-    length: Sequence[float],
-    twist: Sequence[float],
-    offset: Sequence[float | None],
-    angle: Sequence[float | None] | None = None,
-    pitch: Sequence[float | None] | None = None,
+    length: Sequence[float | str],
+    twist: Sequence[float | str],
+    offset: Sequence[float | str | None],
+    angle: Sequence[float | str | None] | None = None,
+    pitch: Sequence[float | str | None] | None = None,
     names: Sequence[str] | None = None,
     name: str = "linkage",
     length_unit: str = "mm",
@@ -115,7 +120,9 @@ def from_dh(
 
     `A_i = Rz(theta_i) Tz(offset_i) Tx(length_i) Rx(twist_i)`, joint i stands before link i, and the product
     of all is the identity. `joints` has a letter R, P or H for each joint. Lengths and offsets are in
-    `length_unit` and may be negative, angles in radians. The variable of R and H is theta, that of P the
+    `length_unit` and may be negative, angles in radians; or texts with a unit, as in "45 mm", "80 deg". A
+    twist of more than a turn gets an `AngleUnitWarning`. The last joint turns the ground relative to the link
+    before it, as the paper's does. The variable of R and H is theta, that of P the
     offset, its theta being the fixed `angle`; `pitch` is the length per turn of H, whose offset is its value
     at theta = 0. What a joint has not (the offset of P, the angle of R and H, the pitch of R and P) is `None`
     or 0. A point is `{"name": .., "link": .., "at": (u, v, w)}`: from where the link before meets the joint's
@@ -126,11 +133,16 @@ def from_dh(
         >>> bennett = sb.from_dh("RRRR", length=[1, 2, 1, 2], twist=twists, offset=[0, 0, 0, 0])
         >>> bennett.columns
         ('theta_1', 'theta_2', 'theta_3', 'theta_4')
+        >>> square = sb.from_dh("RRRR", length=[1] * 4, twist=["30 deg"] * 4, offset=[0] * 4)
+        >>> square.dimensions["twist_1_deg"]
+        30.0
 
     Source: docs/conventions.md, (1); the 7R paper's loop and its u, v, w.
     """
     columns = {"length": length, "twist": twist, "offset": offset, "angle": angle, "pitch": pitch}
-    rows = _rows(joints, {key: _plain(values) for key, values in columns.items()}, _plain(names))
+    units = {"twist": "rad", "angle": "rad", "pitch": f"{length_unit}/turn"}
+    numbers = {key: _read(values, units.get(key, length_unit)) for key, values in columns.items()}
+    rows = _rows(joints, numbers, _plain(names))
     raw = {
         "format": 1,
         "name": name,
@@ -138,9 +150,11 @@ def from_dh(
         "angle_unit": "rad",
         "drive": {"speed": _plain(speed)},
         "link": rows,
-        "point": _plain(points),
+        "point": _lengths(points, length_unit),
     }
-    return from_description(raw)
+    linkage = from_description(raw)
+    warn_of_angles(raw)
+    return linkage
 
 
 def _rows(joints: object, columns: Mapping[str, Any], names: Any) -> list[dict[str, Any]]:
@@ -172,6 +186,29 @@ def _miscounted(values: object, count: int) -> str:
     if not isinstance(values, list):
         return f"{shown(values)} is not a list; give {count}, one for each joint"
     return "" if len(values) == count else f"{len(values)} given for {count} joints; give {count}"
+
+
+def _read(value: Any, unit: str) -> Any:
+    """Numbers as a file would hold them, those of texts with a unit that fits in this one; others stay."""
+    plain = _plain(value)
+    if isinstance(plain, list):
+        return [_read(one, unit) for one in plain]
+    number = number_in(unit, plain)
+    return plain if number is None else number
+
+
+def _lengths(tables: Any, length_unit: str) -> Any:
+    """Tables of joints or points with the texts of their lengths read."""
+    units = {"at": length_unit, "pitch": f"{length_unit}/turn"}
+    plain = _plain(tables)
+    if not isinstance(plain, list):
+        return plain
+    return [
+        {key: _read(value, units[key]) if key in units else value for key, value in table.items()}
+        if isinstance(table, dict)
+        else table
+        for table in plain
+    ]
 
 
 def _plain(value: Any) -> Any:

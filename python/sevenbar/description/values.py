@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
@@ -98,6 +98,25 @@ def _text(value: object) -> str:
     if not isinstance(value, str) or not value.strip() or len(value) > 200 or not value.isprintable():
         raise refuse(f"{shown(value)} is not a name; give some text in quotes, at most 200 characters")
     return value.strip()
+
+
+def one_word(end: str) -> Callable[[object], object]:
+    """A check that refuses a list where one joint is the input or the output of the linkage."""
+
+    def choose(value: object) -> object:
+        if isinstance(value, list) and len(value) != 1:
+            what = f"{shown(value)} are {len(value)} {end}s" if value else f"{shown(value)} names no {end}"
+            raise refuse(
+                f"{what}; a linkage has one {end} here, so give one joint, as in {end_example(value)}"
+                + ("; with two inputs lock one of them: leave that joint out" if end == "input" else "")
+            )
+        return value
+
+    def end_example(value: list[object]) -> str:
+        first = next((name for name in value if isinstance(name, str)), "crank")
+        return shown(first)
+
+    return choose
 
 
 def _speed(value: object, info: ValidationInfo) -> float:

@@ -24,7 +24,7 @@ from sevenbar.kinematics.sensitivity import sensitivity_of
 
 T = TypeVar("T")
 
-#: The closure error [rad, or parts of the size] up to which redundant constraints agree.
+#: The closure error [rad, or parts of the size] up to which redundant constraints agree by default.
 AGREE = _core.AGREE
 
 #: Rank six, and the one that is driven.
@@ -43,17 +43,17 @@ SAME_LIMIT = 1e-6
 class GeneralLoop:
     """The solver of one loop. Some joints are several for the core, so links are counted anew there."""
 
-    def __init__(self, linkage: Solvable) -> None:
-        self._linkage = linkage
+    def __init__(self, linkage: Solvable, agree: float = AGREE) -> None:
+        self._linkage, self._agree = linkage, agree
         parts = expanded(linkage)
         self._base, self._link = parts.base, parts.last
         self._core = _core.Loop(
-            parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links)
+            parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links), agree
         )
         self._found: dict[int, Mobility] = {}
 
-    def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable]]:
-        return GeneralLoop, (self._linkage,)
+    def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable, float]]:
+        return GeneralLoop, (self._linkage, self._agree)
 
     @property
     def size(self) -> float:
@@ -147,7 +147,8 @@ class GeneralLoop:
         q, residual, completeness, misfits = self._solve(
             column, partial(self._core.assembly_modes, column, value)
         )
-        return Modes(q, residual * self.size, completeness, self._linkage.columns, value, np.array(misfits))
+        columns = self._linkage.columns
+        return Modes(q, residual * self.size, completeness, columns, value, np.array(misfits), self._agree)
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""
@@ -183,6 +184,7 @@ class GeneralLoop:
             search=search_from(raw.search, linkage.columns),
             redundant=mobility.redundant,
             law=law,
+            agree=self._agree,
         )
 
     def circuit(

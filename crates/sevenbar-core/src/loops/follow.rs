@@ -3,7 +3,6 @@
 use super::chain::{Chain, Configuration, Joint};
 use super::curve::{self, Curve, End, Node, Stand};
 use super::dense::{COLUMNS, Columns, dot, length};
-use super::polish::AGREE;
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};
 
@@ -320,7 +319,7 @@ impl Walk<'_> {
         let chain = self.chain;
         let curve = &mut self.curves[walker];
         let last = curve.nodes.len() - 1;
-        if next.open > AGREE {
+        if next.open > chain.agree {
             return Some(End::Open);
         }
         curve.nodes[last].step = step;

@@ -9,7 +9,7 @@ use super::follow::{self, Start};
 use super::found::{Found, Search};
 use super::modes::Completeness;
 use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
-use super::polish::{NO_RANK, rank, unyielding};
+use super::polish::{rank, unyielding};
 
 /// Modes of a loop without screws at an input; where more are found, curves of them are, and few are followed at once.
 pub(super) const MOST_MODES: usize = 16;
@@ -149,7 +149,7 @@ impl Curves {
     /// Looks at the rank of a pose.
     pub fn find_at(&mut self, chain: &Chain, pose: &Configuration) {
         let columns = chain.screws(pose);
-        let rank = rank(&singular_values(&columns).0, NO_RANK);
+        let rank = rank(&singular_values(&columns).0, chain.no_rank());
         self.find(chain, &columns, rank);
     }
 
@@ -186,7 +186,7 @@ impl Curves {
             }
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
-            let rank = rank(&values, NO_RANK);
+            let rank = rank(&values, chain.no_rank());
             if chain.columns - rank != 1 {
                 // on a surface every pose is like this one
                 let isolated =

@@ -63,6 +63,7 @@ mod tests;
 mod turnings;
 
 pub use assembly::{Modes, modes};
+pub use chain::AGREE;
 pub use circuit::Circuit;
 pub use counting::{Count, Open, Uncounted};
 pub use description::Loop;
@@ -74,5 +75,4 @@ pub use modes::Completeness;
 pub use motion::{ChangePoint, Motion, Through, circuit_through, mobility, motion};
 pub use number_slopes::slopes;
 pub use numbers::{Advance, Design, Move, NumberedLoop, NumberedPoint};
-pub use polish::AGREE;
 pub use rows::{ROW_NUMBERS, Rows, joint_table, point};

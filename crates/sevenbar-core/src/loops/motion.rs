@@ -166,7 +166,7 @@ pub fn circuit_through(
     let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
     let rough = rows::configuration(linkage, values);
     let Some(Settled { at: pose, .. }) =
-        polish(chain, driver.inner, &rough, PUT_RIGHT).filter(Settled::agrees)
+        polish(chain, driver.inner, &rough, PUT_RIGHT).filter(|s| s.agrees)
     else {
         return Some(Through::Apart(chain.residual(&chain.place(&rough))));
     };

@@ -4,7 +4,6 @@ use super::chain::{Chain, Configuration};
 use super::curve::{self, Curve, End, Node};
 use super::dense::{COLUMNS, combined, dot, length};
 use super::follow;
-use super::polish::AGREE;
 use super::rates::ORDERS;
 use super::row::{self, Row, Solved, UNIT};
 use super::row_lanes::{Near, rows_near};
@@ -144,7 +143,7 @@ impl<'a> Passes<'a> {
         ));
         // the misfit of redundant constraints changes between its nodes
         let closed = if self.chain.is_redundant() {
-            2.0 * AGREE
+            2.0 * self.chain.agree
         } else {
             ROW_CLOSED
         };

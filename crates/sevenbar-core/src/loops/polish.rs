@@ -2,7 +2,7 @@
 //!
 //! A loop with redundant constraints closes by its exact dimensions alone: numbers that are rounded leave it open everywhere, though by
 //! next to nothing. Newton's method, by least squares, then settles where what is left is borne by wrenches to which no joint yields.
-//! Such a pose counts as closed while its misfit is below [`AGREE`], and so does a node of a circuit. What joints could close must
+//! Such a pose counts as closed while its misfit is below what the chain takes to agree, and so does a node of a circuit. What joints could close must
 //! be closed to rounding, in every loop.
 
 use super::chain::{Chain, Configuration};
@@ -12,16 +12,9 @@ use super::rotations::squared_up;
 /// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
 pub(super) const CLOSED: f64 = 1e-11;
 
-/// The closure error [rad, or parts of the size] up to which redundant constraints agree: a nanometre in a metre, far below what can be
-/// made or measured, and far above rounding.
-pub const AGREE: f64 = 1e-9;
-
-/// The misfit [rad, or parts of the size] up to which it is told that redundant constraints alone keep a pose open: what a path to a
-/// real solution may leave of joints that are not there.
-const NEARLY: f64 = 1e-5;
-
-/// Singular values below this part of the greatest are zero: those that a misfit within [`AGREE`] may bring.
-pub(super) const NO_RANK: f64 = 10.0 * AGREE;
+/// The misfit [rad, or parts of the size] up to which it is told that redundant constraints alone keep a pose open: links of 100 mm cut
+/// to a hundredth of a millimetre.
+const NEARLY: f64 = 1e-4;
 
 /// A move [rad, or parts of the size] after which the next would be rounding.
 const SETTLED: f64 = 1e-12;
@@ -42,13 +35,8 @@ pub(super) struct Settled {
     pub at: Configuration,
     /// The closure error that is left in redundant constraints [rad, or parts of the size].
     pub misfit: f64,
-}
-
-impl Settled {
     /// Whether its redundant constraints agree, so that it is a mode.
-    pub fn agrees(&self) -> bool {
-        self.misfit < AGREE
-    }
+    pub agrees: bool,
 }
 
 /// The rank of columns with these singular values, falling, where those below a part of the greatest are zero.
@@ -121,7 +109,7 @@ pub(super) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         .iter()
         .fold(0.0, |m: f64, d| m.max(d.abs()));
     let misfit = misfit(chain, &at)?;
-    (gone <= reach).then_some(Settled { at, misfit })
+    (gone <= reach).then_some(Settled { at, misfit, agrees: misfit < chain.agree })
 }
 
 /// The same where the other joints have freedoms to spare: each step is the shortest of those that lead as near.
@@ -149,7 +137,7 @@ pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configurati
         }
         let mut columns = chain.screws(&at);
         columns[input].fill(0.0);
-        let by = least_squares(&columns, &placed.error.map(|e| -e), NO_RANK);
+        let by = least_squares(&columns, &placed.error.map(|e| -e), chain.no_rank());
         let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
         if !longest.is_finite() {
             return None;
@@ -177,11 +165,11 @@ fn misfit(chain: &Chain, at: &Configuration) -> Option<f64> {
     let error = &placed.error;
     let left = error.iter().map(|e| e * e).sum::<f64>().sqrt();
     // turned right round, the error tells nothing
-    if !chain.is_redundant() || left.is_nan() || residual > NEARLY {
+    if !chain.is_redundant() || left.is_nan() || residual > NEARLY.max(chain.agree) {
         return None;
     }
     let columns = chain.screws(at);
-    let rank = rank(&singular_values(&columns).0, NO_RANK.max(10.0 * left));
+    let rank = rank(&singular_values(&columns).0, chain.no_rank().max(30.0 * left));
     if chain.columns - rank != 1 {
         return None;
     }
