@@ -91,7 +91,7 @@ REFUSING: dict[str, Callable[[str], object]] = {
 
 
 def test_every_table_of_the_page_has_its_reader():
-    assert set(tables()) == {*READERS, "word", "option"}
+    assert set(tables()) == {*READERS, "word", "option", "call"}
 
 
 @pytest.mark.parametrize("kind", READERS)
@@ -100,6 +100,13 @@ def test_every_example_means_what_the_page_says(kind: str):
     assert rows
     for text, meaning in rows:
         assert READERS[kind](text) == meaning
+
+
+def test_a_text_in_python_has_the_message_of_the_page():
+    for call, text, message in tables()["call"]:
+        with pytest.raises(RequestError) as caught:
+            getattr(LINKAGE, call)(text)
+        assert str(caught.value) == message
 
 
 def test_names_and_values_are_parted_as_the_page_says():

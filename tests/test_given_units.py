@@ -1,4 +1,4 @@
-"""Numbers that come with their unit, and numbers that look as if they came in another one."""
+"""Numbers that come with their unit, and numbers that may have come in another one."""
 
 import math
 import warnings
@@ -83,7 +83,7 @@ def test_a_text_without_a_unit_that_fits_is_refused(given):
         lambda: sb.load("seven_r").circuit([given] * 7),
     ):
         with pytest.raises(
-            RequestError, match=r"is no number with a unit that fits; give one as in '30 deg', or a"
+            RequestError, match=r"is not a number with a unit that fits; give one as in '30 deg', or a"
         ):
             call()
     with pytest.raises(DescriptionError, match=r"link\[2\]\.twist: "):

@@ -37,7 +37,7 @@ class EngineError(SevenbarError):
 
 
 class AngleUnitWarning(UserWarning):
-    """Angles that look as if they were written in another unit; the answer takes them as they are."""
+    """Angles that may have been written in another unit; the answer takes them as they are."""
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ fn no_input(column: usize) -> PyErr {
 impl Loop {
     /// From the joints' letters R P H S, the advance of each for a radian (H), the frames of the first joint and of the ground's
     /// side of the last, each (4, 4), and the transforms of the moving links (n - 1, 4, 4); redundant constraints agree up to a closure
-    /// error [rad, or parts of the size].
+    /// error [rad, or relative to the size].
     #[new]
     #[pyo3(signature = (letters, advances, base, ground, links, agree=loops::AGREE))]
     fn new(

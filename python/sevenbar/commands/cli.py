@@ -295,12 +295,12 @@ def _tell_warning(
 ) -> None:
     """Writes a warning of ours as one line on the error stream, any other as Python does."""
     ours = issubclass(category, AngleUnitWarning)
-    told = (
+    text = (
         f"sevenbar: {message}\n"
         if ours
         else warnings.formatwarning(message, category, filename, lineno, line)
     )
-    (file or sys.stderr).write(told)
+    (file or sys.stderr).write(text)
 
 
 def main() -> NoReturn:

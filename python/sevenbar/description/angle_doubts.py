@@ -1,4 +1,4 @@
-"""Angles that look as if they were written in another unit: a doubt, which the answer does not wait for."""
+"""Angles that may have been written in another unit: a doubt, which the answer does not wait for."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ def warn_of_angles(description: Mapping[str, Any], source: str = "") -> None:
     if not doubt:
         return
     unit = description.get("angle_unit", "deg")
-    told = (
+    text = (
         f'{source}: {doubt} (angle_unit is "{unit}")'
         if source
         else f"{doubt} (numbers are in radians; '80 deg' is a text with its unit)"
     )
-    warnings.warn(told, AngleUnitWarning, stacklevel=3)
+    warnings.warn(text, AngleUnitWarning, stacklevel=3)

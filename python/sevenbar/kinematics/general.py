@@ -24,7 +24,7 @@ from sevenbar.kinematics.sensitivity import sensitivity_of
 
 T = TypeVar("T")
 
-#: The closure error [rad, or parts of the size] up to which redundant constraints agree by default.
+#: The closure error [rad, or relative to the size] up to which redundant constraints agree by default.
 AGREE = _core.AGREE
 
 #: Rank six, and the one that is driven.

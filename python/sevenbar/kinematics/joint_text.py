@@ -36,10 +36,10 @@ def given_number(key: str, value: object, unit: str) -> object:
         return value
     number = number_in(unit, value)
     if number is None:
-        example = "'30 deg'" if unit == "rad" else f"'12 {unit}'"
+        example = "one as in '30 deg'" if unit == "rad" else f"one as in '12 {unit}'"
         plain = "radians" if unit == "rad" else unit
         raise RequestError(
-            f"{key}: {shown(value)} is no number with a unit that fits; give one as in {example}, "
+            f"{key}: {shown(value)} is not a number with a unit that fits; give {example}, "
             f"or a number in {plain}"
         )
     return number

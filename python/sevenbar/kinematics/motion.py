@@ -23,14 +23,14 @@ from sevenbar.kinematics.geometry import Loop
 from sevenbar.text.printing import Printed
 from sevenbar.text.units import LENGTHS
 
-#: The least and the greatest closure error [rad, or parts of the size] up to which redundant constraints may
-#: be taken to agree: rounding is near the one, and another linkage near the other.
+#: The least and the greatest closure error [rad, or relative to the size] up to which redundant constraints
+#: may be taken to agree: rounding is near the one, and another linkage near the other.
 LEAST_AGREE, MOST_AGREE = 1e-12, 1e-3
 
 #: What is proposed is greater than the closure error on the rows by this: there may be more between them.
 NEAR_ENOUGH = 2.0
 
-#: Inputs in a turn at which that error is looked for.
+#: Inputs in a turn at which that error is computed.
 NEAR_SAMPLES = 72
 
 #: A loop of so many freedoms moves without redundant constraints.
@@ -107,7 +107,7 @@ class Modes(Printed):
     input: float
     #: Other poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
     misfits: Floats = field(default_factory=_none)
-    #: The closure error [rad, parts of the size] up to which they agree; NaN where nothing is redundant.
+    #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
     agree: float = math.nan
 
     @property
@@ -271,7 +271,7 @@ class Motion(Printed):
     search: Search
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...]
-    #: The closure error [rad, parts of the size] up to which redundant constraints agree.
+    #: The closure error [rad, relative to the size] up to which redundant constraints agree.
     agree: float
     law: Law | None = None
 
@@ -301,7 +301,7 @@ class Motion(Printed):
     def near_motion(self) -> NearMotion | None:
         """By how little a linkage without a circuit misses a motion; `None` where it has one, or misses more.
 
-        It is worked out when it is asked for, up to a closure error of 1e-3 of the size.
+        It is worked out on demand, up to a closure error of 1e-3 of the size.
 
         >>> import sevenbar as sb
         >>> rows = {"length": [50, 98.48] * 2, "twist": ["30 deg", "100 deg"] * 2, "offset": [0] * 4}

@@ -210,7 +210,7 @@ def _units(motion: Motion) -> tuple[str, str]:
 
 def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     """The rows as written, one a link, to the last digit if `exact`; a joint's own value is no dimension."""
-    told = _every_digit if exact else "{:.6g}".format
+    digits = _every_digit if exact else "{:.6g}".format
     unit = linkage.length_unit
     columns = {
         "length": f"length [{unit}]",
@@ -228,7 +228,7 @@ def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     for place, joint in enumerate(linkage.joints, start=1):
         own = {"angle": "angle_deg"}.get(joint.row.moving_key, "offset")
         cells = [
-            told(numbers[key][place]) if place in numbers[key] else "moves" if key == own else "-"
+            digits(numbers[key][place]) if place in numbers[key] else "moves" if key == own else "-"
             for key in kept
         ]
         ground = " (ground)" if place == len(linkage.joints) else ""

@@ -76,7 +76,7 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
         columns: list[tuple[Floats, Floats, Floats]] = []
         turned = False
         for step in () if joint.row.is_ball or joint.row.has_cross else joint.row.steps:
-            # what stands behind a turn goes with it: across its axis that is the body after
+            # what is behind a turn goes with it: across its axis that is the body after
             behind = turned and step.axis != Z
             axis = (after if behind else before)[:, :3, step.axis]
             own = (bodies.spin[:, i], bodies.spin_rate[:, i]) if behind else (spin, spin_rate)

@@ -12,8 +12,8 @@ use crate::number::Number;
 use crate::rigid::{Pose, norm};
 use crate::vectors::{LANES, Vector};
 
-/// The closure error [rad, or parts of the size] up to which redundant constraints agree where nothing else is asked for: a nanometre in
-/// a metre, far below what can be made or measured, and far above rounding.
+/// The closure error [rad, or relative to the size] up to which redundant constraints agree by default: a nanometre in a metre, far below
+/// what can be made or measured, and far above rounding.
 pub const AGREE: f64 = 1e-9;
 
 /// Most balls in seven columns.
@@ -49,7 +49,7 @@ pub(super) struct Chain {
     pub columns: usize,
     /// The sum of the links' lengths.
     pub around: f64,
-    /// The closure error [rad, or parts of the size] up to which redundant constraints agree.
+    /// The closure error [rad, or relative to the size] up to which redundant constraints agree.
     pub agree: f64,
     /// Turns of which one half counts: in the other stand the same poses, with links that spin idly turned over.
     pub halves: Vec<Half>,
@@ -142,7 +142,15 @@ impl Chain {
             columns += joint.columns();
         }
         let around = links.iter().map(|l| norm(l.translation)).sum();
-        Self { joints, first, links, columns, around, agree: AGREE, halves: Vec::new() }
+        Self {
+            joints,
+            first,
+            links,
+            columns,
+            around,
+            agree: AGREE,
+            halves: Vec::new(),
+        }
     }
 
     /// How many joints are balls.
@@ -174,10 +182,14 @@ impl Chain {
         10.0 * self.agree
     }
 
-    /// How far from real, and from where it closes, a solution may lie [rad, or parts of the size] that closes within what agrees, where
-    /// more than usual was asked for: two that meet part by the root of what parts them.
+    /// How far from real, and from where it closes, a solution may lie [rad, or relative to the size] that closes within what agrees, where
+    /// that is more than the default: two that meet part by the root of what parts them.
     pub fn looseness(&self) -> f64 {
-        if self.agree > AGREE { self.agree.sqrt() } else { 0.0 }
+        if self.agree > AGREE {
+            self.agree.sqrt()
+        } else {
+            0.0
+        }
     }
 
     /// The columns that are angles of joints with one axis.

@@ -12,7 +12,7 @@ use super::rotations::squared_up;
 /// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
 pub(super) const CLOSED: f64 = 1e-11;
 
-/// The misfit [rad, or parts of the size] up to which it is told that redundant constraints alone keep a pose open: links of 100 mm cut
+/// The misfit [rad, or relative to the size] up to which a pose counts as kept open by redundant constraints alone: links of 100 mm cut
 /// to a hundredth of a millimetre.
 const NEARLY: f64 = 1e-4;
 

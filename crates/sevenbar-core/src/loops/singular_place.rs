@@ -206,7 +206,13 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
             open += value * value;
         }
     }
-    Place { at: *at, free: split.free, forms: found, open: f64::sqrt(open), agree: chain.agree }
+    Place {
+        at: *at,
+        free: split.free,
+        forms: found,
+        open: f64::sqrt(open),
+        agree: chain.agree,
+    }
 }
 
 /// The directions that screws of a rank leave free, and the wrenches that see a motion and those that do not.
