@@ -176,6 +176,18 @@ def arrows(graph: Graph) -> list[tuple[Name, Name]]:
     return sorted((name, other) for name, known in graph.items() for other in known)
 
 
+def folders(root: Path, graph: Graph, parent: Name) -> list[list[str]]:
+    """Files, lines and arrows of the folders of a folder of the core: each below those that know it."""
+    rooms = squeezed(graph, parent)
+    rows = []
+    for room in sorted(rooms, key=lambda room: (len(_reached(rooms, room)), room)):
+        files = sorted((root / PARTS["core, Rust"][0]).joinpath(*room).rglob("*.rs"))
+        count = sum(len(file.read_text("utf-8").splitlines()) for file in files)
+        known = ", ".join(sorted(other[-1] for other in rooms[room]))
+        rows.append([_dotted(room), str(len(files)), f"{count:,}", known])
+    return rows
+
+
 def upward(rooms: Graph, root: Path) -> list[tuple[Name, Name]]:
     """The arrows against the order of pyproject.toml, or between two rooms that it lists as independent."""
     linter = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"]
@@ -205,7 +217,8 @@ def text(root: Path) -> str:
         told += [f"{language}, up: {_dotted(a)} -> {_dotted(b)}" for a, b in up or ()]
         told += [f"{language}, circle: {', '.join(map(_dotted, circle))}" for circle in found]
     heads = ["", "modules", "rooms", "floors", "arrows", "arrows up", "circles"]
-    return "\n\n".join([*parts, table(heads, rows), *(["\n".join(told)] if told else [])])
+    loops = table(["the core's loops", "files", "lines", "knows"], folders(root, graphs["Rust"], ("loops",)))
+    return "\n\n".join([*parts, table(heads, rows), loops, *(["\n".join(told)] if told else [])])
 
 
 def _dotted(name: Name) -> str:

@@ -75,9 +75,10 @@ def test_the_module_map_has_a_line_for_each_module_of_the_package_and_the_core()
     folders = [line for line in lines if line.startswith("**`")]
     modules = [path for path in PACKAGE.rglob("*.py") if path.parent != PACKAGE]
     packages = list(PACKAGE.glob("*/__init__.py"))
-    rust = [path for path in CORE.rglob("*.rs") if path.name != "tests.rs"]
+    rust = [path for path in CORE.rglob("*.rs") if path.stem not in ("mod", "tests")]
+    rust_folders = list(CORE.rglob("mod.rs"))
     assert len(rows) == len(modules) - len(packages) + len(rust)
-    assert len(folders) == len(packages) + len([*PACKAGE.glob("*.py")]) - 1
+    assert len(folders) == len(packages) + len([*PACKAGE.glob("*.py")]) - 1 + len(rust_folders)
     assert [line for line in rows + folders if not re.search(r"[\w`)\]][.:](?: \|)?$", line)] == []
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.errors import DescriptionError
+from sevenbar.errors import DescriptionError, shown
 from test_forms import toml
 
 EXAMPLE = (Path(__file__).parent.parent / "examples" / "seven_r.toml").read_text(encoding="utf-8")
@@ -408,3 +408,11 @@ def test_a_length_beside_which_the_others_are_lost_is_refused_by_name(text, mess
 )
 def test_lengths_that_can_be_seen_beside_each_other_are_taken(text):
     assert sb.loads(text, "f.toml")
+
+
+def test_values_too_large_to_print_are_named_in_plain_words():
+    deep = {}
+    for _ in range(100_000):
+        deep = {"M": deep}
+    assert shown(deep) == "a value too large to print"
+    assert shown(10**5000) == "a number too large to print"

@@ -11,31 +11,35 @@ from test_layers import CORE, code_of
 
 SOURCE = CORE / "src"
 
-#: From below. The module of a folder comes after its files: it only hands on what they hold.
+#: From below; a folder is followed by its files. Its own module comes after them: it only hands on what they hold.
 IN_ORDER = """
 error outcome number simd vector_math vectors random taylor twofold trigonometric rigid parallel
 
-rssr::linkage rssr::pair rssr::rates rssr::domain rssr::extremes rssr::frames rssr::motion rssr::circuits
-rssr::batch rssr::lines rssr::classify rssr::measures
-rssr
+rssr: linkage pair rates domain extremes frames motion circuits batch lines classify measures
 
-loops::dense loops::flat loops::rotations loops::screws loops::chain loops::kinds loops::rates loops::spun
-loops::spin_axis
-loops::idle loops::reduce loops::description loops::polish loops::many_starts
-
-loops::complex_frame loops::lanes loops::closure loops::poles loops::phases loops::continuation
-loops::straight loops::circle loops::locating loops::geometry loops::starts loops::chain_closure loops::modes
-loops::other_input loops::afar loops::survey loops::sectors loops::counting
-
-loops::curve loops::follow loops::on_curve loops::turnings loops::join loops::meetings loops::singular_place
-loops::change_points loops::arcs loops::found loops::known_curves loops::search
-
-loops::row loops::row_lanes loops::passes loops::extremes loops::rows loops::assembly loops::circuit
-loops::motion loops::measures
-loops::motions loops::numbers loops::number_slopes
+loops::equation: dense rotations flat screws chain kinds lanes complex_frame closure
+loops::rates: velocities turns points
+loops::mobility: rank idle singular_place
+loops::numbers: twists numbered_loop slopes
+loops::description: spun spin_axis reduce described_loop joint_values
+loops::modes: phases continuation straight circle poles geometry starts chain_closure polish many_starts finder assembly
+loops::branch_points: locating other_input afar survey sectors counting
+loops::circuits: curve follow on_curve turnings join meetings change_points arcs found known_curves search
+loops::motions: row row_lanes passes extremes rows circuit motion measures
 loops
 """
-ORDER = IN_ORDER.split()
+
+
+def in_order(text: str) -> list[str]:
+    """The modules of a text of lines `module module` and `folder: file file`."""
+    order = []
+    for line in text.splitlines():
+        folder, colon, files = line.rpartition(": ")
+        order += [f"{folder}::{file}" for file in files.split()] + [folder] if colon else line.split()
+    return order
+
+
+ORDER = in_order(IN_ORDER)
 
 USE = re.compile(r"\buse\s+([^;]+);")
 PATH = re.compile(r"\b(?:crate|super|self)(?:::\w+)+")
@@ -118,6 +122,14 @@ def test_the_methods_of_a_type_of_the_loops_stand_in_its_own_file() -> None:
             assert set(METHODS.findall(text)) <= set(TYPE.findall(text)), module
 
 
+def test_each_file_of_the_loops_lies_in_a_folder_whose_first_line_is_an_equation() -> None:
+    for module, file in FILES.items():
+        if module.startswith("loops::"):
+            first = (file.parent / "mod.rs").read_text(encoding="utf-8").partition("\n")[0]
+            assert file.parent.name != "loops", module
+            assert re.match(r"//! .*`[^`]*=[^`]*`", first), module
+
+
 def test_no_file_is_longer_than_a_reader_keeps_in_mind() -> None:
     lengths = {module: len(file.read_text(encoding="utf-8").splitlines()) for module, file in FILES.items()}
     assert {module: length for module, length in lengths.items() if length > 500} == {}
@@ -127,16 +139,21 @@ def test_no_file_is_longer_than_a_reader_keeps_in_mind() -> None:
     ("code", "named"),
     [
         ("use crate::rigid::{Pose, Vec3};", {"rigid"}),
-        ("pub(super) use super::chain::Chain;", {"loops::chain"}),
-        ("use super::{dense::{self, dot}, curve::Curve as C};", {"loops::dense", "loops::curve"}),
-        ("fn f() { super::rates::carry(); crate::simd::level() }", {"simd", "loops::rates"}),
+        ("pub(super) use super::passes::Passes;", {"loops::motions::passes"}),
+        (
+            "use crate::loops::{equation::dense::{self, dot}, circuits::curve::Curve as C};",
+            {"loops::equation::dense", "loops::circuits::curve"},
+        ),
+        ("fn f() { super::rows::point(); crate::simd::level() }", {"simd", "loops::motions::rows"}),
         ("use std::f64::consts::TAU; let x = self.chain.first;", set()),
-        ("use super::super::outcome::RowStatus;", {"outcome"}),
+        ("use super::super::rates::points::link_twist;", {"loops::rates::points"}),
+        ("use super::super::super::outcome::RowStatus;", {"outcome"}),
     ],
 )
 def test_each_way_to_name_a_module_is_seen(code: str, named: set[str]) -> None:
-    assert named_by("loops::row", code, is_folder=False) == named
+    assert named_by("loops::motions::row", code, is_folder=False) == named
 
 
 def test_a_folder_names_its_files() -> None:
-    assert named_by("loops", "mod chain; pub use chain::Chain;", is_folder=True) == {"loops::chain"}
+    code = "mod equation; pub use equation::chain::Chain;"
+    assert named_by("loops", code, is_folder=True) == {"loops::equation::chain"}

@@ -36,20 +36,37 @@ def test_a_circle_of_siblings_is_found_at_every_depth_and_no_chain_is_one():
 
 def test_a_use_of_rust_is_read_with_its_braces(tmp_path: Path):
     source = tmp_path / "crates" / "sevenbar-core" / "src"
-    (source / "loops").mkdir(parents=True)
+    for folder in ("equation", "circuits"):
+        (source / "loops" / folder).mkdir(parents=True)
     files = {
         "lib.rs": "pub mod rigid;\npub mod loops;",
-        "rigid.rs": "// use crate::loops::chain;\nuse std::f64;",
-        "loops/mod.rs": "mod chain;\nmod walk;\npub use chain::Chain;\nuse super::rigid::Pose;",
-        "loops/chain.rs": "use crate::{rigid::{Pose, Vec3 as V}, loops::walk::Step};\n"
+        "rigid.rs": "// use crate::loops::equation;\nuse std::f64;",
+        "loops/mod.rs": "mod equation;\nmod circuits;\npub use equation::Chain;\nuse super::rigid::Pose;",
+        "loops/equation/mod.rs": "pub(super) mod chain;",
+        "loops/equation/chain.rs": "use crate::{rigid::{Pose, Vec3 as V}, loops::circuits::walk::Step};\n"
         "#[cfg(test)]\nmod tests {\n    use crate::elsewhere::Thing;\n}",
-        "loops/walk.rs": "fn step() -> super::chain::Chain { unreachable!() }",
+        "loops/circuits/mod.rs": "mod step;\npub(super) mod walk;",
+        "loops/circuits/step.rs": "use super::walk::Walk;",
+        "loops/circuits/walk.rs": "fn step() -> super::super::equation::chain::Chain { unreachable!() }",
     }
     for name, text in files.items():
         (source / name).write_text(text)
-    assert structure.rust_graph(tmp_path) == graph(
-        rigid="", loops="rigid", loops__chain="rigid loops.walk", loops__walk="loops.chain"
+    found = structure.rust_graph(tmp_path)
+    assert found == graph(
+        rigid="",
+        loops="rigid",
+        loops__equation="",
+        loops__equation__chain="rigid loops.circuits.walk",
+        loops__circuits="",
+        loops__circuits__step="loops.circuits.walk",
+        loops__circuits__walk="loops.equation.chain",
     )
+    assert structure.circles(found) == [[("loops", "circuits"), ("loops", "equation")]]
+    (source / "loops/equation/chain.rs").write_text("use crate::rigid::Pose;\n")
+    assert structure.folders(tmp_path, structure.rust_graph(tmp_path), ("loops",)) == [
+        ["loops.equation", "2", "2", ""],
+        ["loops.circuits", "3", "4", "equation"],
+    ]
 
 
 def test_the_package_has_no_circle_and_no_arrow_up_and_an_arrow_up_is_seen():

@@ -36,8 +36,13 @@ def _of_package() -> Iterator[str]:
 
 def _of_core() -> Iterator[str]:
     yield "\n### The Rust core\n"
-    files = sorted(path for path in CORE.rglob("*.rs") if path.name != "tests.rs")
-    yield table(("module", ""), [(code(_below(path, CORE)), rust_line(path)) for path in files])
+    for folder in [CORE, *sorted(path.parent for path in CORE.rglob("mod.rs"))]:
+        if folder != CORE:
+            own = folder / "mod.rs"
+            yield f"\n**`{_below(own, CORE)}`** {rust_line(own)}\n"
+        files = sorted(path for path in folder.glob("*.rs") if path.stem not in ("mod", "tests"))
+        if files:
+            yield table(("module", ""), [(code(_below(path, folder)), rust_line(path)) for path in files])
 
 
 def _layers() -> list[str]:

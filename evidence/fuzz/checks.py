@@ -86,7 +86,9 @@ def judged(linkage: sb.Linkage, rng: np.random.Generator, seen: Counter[str]) ->
         _no_numbers_missing(circuit.link_motion(link).rotation, placed, "rotation of a link")
     if motion.circuits:
         independently_closed(linkage, motion)
-        circuits_are_distinct(motion)
+        if not motion.search.unfollowed:
+            circuits_are_distinct(motion)
+    seen.update(f"short {words}" for words in reported_short(motion))
     seen["circuits"] += len(motion.circuits)
     seen[f"completeness {motion.completeness}"] += 1
     written_down(motion)
@@ -103,6 +105,18 @@ def judged(linkage: sb.Linkage, rng: np.random.Generator, seen: Counter[str]) ->
         circuits_have_modes(motion, modes, at)
         seen["modes"] += len(modes)
     return motion.motion_type
+
+
+def reported_short(motion: sb.Motion) -> list[str]:
+    """What a result itself reports as not done; what it claims besides is judged."""
+    search = motion.search
+    found = {
+        "modes from which no motion could be followed": search.unfollowed,
+        "poses that close but for redundant constraints": search.misfits.size,
+        "circuits that are not known to close": sum(not circuit.closed for circuit in motion),
+        "modes found by a search": motion.completeness == "searched",
+    }
+    return [words for words, count in found.items() if count]
 
 
 def of_motion(motion: sb.Motion) -> None:
@@ -262,9 +276,7 @@ def circuits_have_modes(motion: sb.Motion, modes: sb.Modes, at: float) -> None:
 
 def modes_are_on_circuits(motion: sb.Motion, modes: sb.Modes) -> None:
     """Each mode at one of the inputs of the rows is a pose of a row, or stands alone."""
-    if motion.completeness == "searched" or motion.search.misfits.size or motion.motion_type in WITHOUT:
-        return
-    if any(not circuit.closed for circuit in motion):
+    if motion.motion_type in WITHOUT or reported_short(motion):
         return
     turns = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "turn")
     slides = _columns(motion.linkage, lambda owner, kind: owner != "S" and kind == "slide")

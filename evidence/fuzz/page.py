@@ -67,6 +67,8 @@ def written(plain: Mapping[str, Any]) -> str:
         "Motion types, all ways together, and the rows of those that went one by one:",
         _counts(ways, "type ", "motion type"),
         _counts(ways, "row ", "status of a row"),
+        "Results that report what they lack:",
+        _counts(ways, "short ", "reported"),
         "Kinds of general loops:",
         _counts(ways, "kind ", "joints"),
         "## What the files came to",
@@ -106,9 +108,10 @@ def _checked() -> str:
         "jerk, points, links.",
         "Limits rise and lie within a turn; the motion type fits the limits, the ranges and the circuits.",
         "A circuit whose input turns fully has its modes at any input.",
-        "Each mode at an input of the rows lies on a circuit or at a change point, where modes are algebraic "
-        "and circuits close.",
-        "No well-conditioned row lies on two circuits; no row exceeds the extremes of velocity and "
+        "Each mode at an input of the rows lies on a circuit or at a change point, unless the result reports "
+        "what it lacks (counted below).",
+        "No well-conditioned row lies on two circuits, unless modes are reported from which no motion could "
+        "be followed; no row exceeds the extremes of velocity and "
         "acceleration.",
         "The report's JSON has no NaN, its text no `nan`; measures are finite or absent.",
         "A refusal is lines of text, each with its place, printable, without words for programmers.",

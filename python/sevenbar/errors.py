@@ -73,7 +73,7 @@ def shown(value: object, longest: int = 60) -> str:
     try:
         text = str(value) if isinstance(value, date | time) else repr(value)
     except (RecursionError, ValueError):  # nested without end; an integer too long to print
-        text = f"a {type(value).__name__} too large to print"
+        text = f"{'a number' if isinstance(value, int) else 'a value'} too large to print"
     if "\n" in text:  # of what prints itself in several lines
         text = " ".join(text.split())
     return text if len(text) <= longest else text[: longest - 3] + "..."

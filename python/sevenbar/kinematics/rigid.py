@@ -56,7 +56,8 @@ def half_turn(axis: npt.ArrayLike) -> Floats:
     [[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
     """
     a = np.asarray(axis, dtype=np.float64)
-    return pose(2.0 * np.outer(a, a) / float(a @ a) - np.eye(3))
+    # no -0
+    return pose(2.0 * np.outer(a, a) / float(a @ a) - np.eye(3) + 0.0)
 
 
 def unit(vector: npt.ArrayLike) -> Floats:

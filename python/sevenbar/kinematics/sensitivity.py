@@ -5,7 +5,7 @@ dimension is a joint that is held. The core has the screws of both, and solves
 
     A dq/dp = -sum B,        B the screws of one number p, A those of the joints that follow the input    (1)
 
-and the same for rates (`crates/sevenbar-core/src/loops/numbers.rs`). A number with a part of B that no joint
+and the same for rates (`crates/sevenbar-core/src/loops/numbers`). A number with a part of B that no joint
 can follow opens the loop if it changes alone: that of an overconstrained linkage.
 
 Idle freedoms are held by the core's rule; where it has none, one of the joints that take part is held at each

@@ -1,14 +1,14 @@
 //! The numerical work on loops with known answers.
 
-use super::chain::{Chain, Configuration, Joint};
-use super::curve::{self, Curve, End};
-use super::dense::{Columns, singular_values};
-use super::follow;
-use super::join;
-use super::many_starts::same;
-use super::modes::{ModeFinder, random_pose};
-use super::passes::Passes;
-use super::rotations::{rotation, squared_up};
+use crate::loops::circuits::curve::{self, Curve, End};
+use crate::loops::circuits::follow;
+use crate::loops::circuits::join;
+use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::equation::dense::{Columns, singular_values};
+use crate::loops::equation::rotations::{rotation, squared_up};
+use crate::loops::modes::finder::{ModeFinder, random_pose};
+use crate::loops::modes::many_starts::same;
+use crate::loops::motions::passes::Passes;
 use crate::random::Random;
 use crate::rigid::Pose;
 

@@ -1,0 +1,328 @@
+//! Curves that pass change points: each arc between two of them once, and arcs that pass smoothly joined.
+
+use super::change_points::{self, AT_POINT, ChangePoint};
+use super::curve::{Curve, End, Node, measure};
+use super::follow::{self, Start, Stop};
+use super::on_curve::lies_on;
+use super::turnings::begun_at;
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::dense::{COLUMNS, Columns, length};
+use std::f64::consts::TAU;
+
+/// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
+const MOST_ROUNDS: usize = 32;
+
+/// No change point is looked for again so near to a pose [rad, or parts of the size] that had none, nor at all after so many of them:
+/// such a loop is degenerate throughout.
+const TRIED: f64 = 1e-3;
+const MOST_FAILED: usize = 16;
+
+/// Norm of the screws' inverse from which a place may lie beside a change point.
+const NARROW: f64 = 1e4;
+
+/// A way out of a change point: which one, and which of its rays.
+type Ray = (usize, usize);
+
+/// A curve between two change points; none at an end that has another reason.
+struct Arc {
+    curve: Curve,
+    /// Where it begins and ends.
+    ends: [Option<Ray>; 2],
+}
+
+/// Change points and the arcs between them.
+#[derive(Default)]
+pub(crate) struct Arcs {
+    pub points: Vec<ChangePoint>,
+    arcs: Vec<Arc>,
+    /// For each point and ray whether its arc is known, or there is none.
+    done: Vec<Vec<bool>>,
+    /// Where walks ended and there is none.
+    failed: Vec<Configuration>,
+    /// How many of the points the arcs end at, where they come by.
+    respected: usize,
+    /// The most freedoms with which the loop moves out of a pose that was looked at.
+    pub finite: usize,
+}
+
+impl Arcs {
+    /// The change point that a pose is at.
+    pub fn at(&self, chain: &Chain, pose: &Configuration) -> Option<usize> {
+        self.points
+            .iter()
+            .position(|p| length(&chain.difference(&p.at, pose)) < AT_POINT * p.cut)
+    }
+
+    /// Whether a mode is a place of an arc, or one of the points.
+    pub fn hold(&self, chain: &Chain, mode: &Configuration) -> bool {
+        self.at(chain, mode).is_some() || self.arcs.iter().any(|a| lies_on(chain, &a.curve, mode))
+    }
+
+    /// Whether there is any motion out of the points.
+    pub fn is_empty(&self) -> bool {
+        self.arcs.is_empty()
+    }
+
+    pub fn stops(&self) -> Vec<Stop> {
+        self.points.iter().map(ChangePoint::stop).collect()
+    }
+
+    /// Whether there is a change point at or near a pose, known or now found.
+    pub fn learn(
+        &mut self,
+        chain: &Chain,
+        pose: &Configuration,
+        wished: &[usize],
+        stuck: bool,
+    ) -> Option<usize> {
+        if let Some(known) = self.at(chain, pose) {
+            return Some(known);
+        }
+        let tried = |at: &Configuration| length(&chain.difference(at, pose)) < TRIED;
+        if self.failed.len() >= MOST_FAILED || self.failed.iter().any(tried) {
+            return None;
+        }
+        let Some(found) = change_points::change_point(chain, pose, wished, stuck) else {
+            if stuck {
+                self.failed.push(*pose);
+            }
+            return None;
+        };
+        self.finite = self.finite.max(found.finite);
+        // on a surface every pose is like this one
+        if found.finite > 1 && found.rays.is_empty() {
+            return None;
+        }
+        if let Some(known) = self.at(chain, &found.at) {
+            return Some(known);
+        }
+        self.done.push(vec![false; found.rays.len()]);
+        self.points.push(found);
+        Some(self.points.len() - 1)
+    }
+
+    /// Follows every ray of every point, and of those that they lead to; gives closed curves that passed the points by.
+    pub fn complete(&mut self, chain: &Chain, wished: &[usize]) -> Vec<Curve> {
+        let mut passing = Vec::new();
+        for _ in 0..MOST_ROUNDS {
+            self.cut(chain);
+            let rays: Vec<Ray> = (0..self.points.len())
+                .flat_map(|p| (0..self.done[p].len()).map(move |r| (p, r)))
+                .filter(|&(p, r)| !self.done[p][r])
+                .collect();
+            if rays.is_empty() {
+                break;
+            }
+            let starts: Vec<Start> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
+            let followed = follow::follow(chain, &starts, &self.stops());
+            let count = self.points.len();
+            for curve in followed.iter().filter(|c| c.end == End::Singular) {
+                for end in curve.ends() {
+                    self.learn(chain, end, wished, true);
+                }
+            }
+            // those that come by the points that they have led to are followed once more, to end there
+            let fresh = self.stops().split_off(count);
+            for (ray, curve) in rays.into_iter().zip(followed) {
+                if !curve.nodes.iter().any(|n| is_at(chain, n, &fresh)) {
+                    self.take(chain, ray, curve, &mut passing);
+                }
+            }
+        }
+        passing
+    }
+
+    fn take(&mut self, chain: &Chain, (point, ray): Ray, curve: Curve, passing: &mut Vec<Curve>) {
+        if std::mem::replace(&mut self.done[point][ray], true) {
+            return;
+        }
+        match curve.end {
+            End::Closed => passing.push(curve),
+            End::Open => {}
+            End::Singular | End::Far => {
+                let [first, last] = curve.ends();
+                let end = self.at(chain, last).filter(|&p| p == point).map(|p| (p, ray));
+                let begin = self.at(chain, first).and_then(|p| {
+                    (0..self.done[p].len())
+                        .find(|&r| {
+                            !self.done[p][r] && lies_on(chain, &curve, &self.points[p].rays[r].start.0)
+                        })
+                        .map(|r| (p, r))
+                });
+                if let Some((p, r)) = begin {
+                    self.done[p][r] = true;
+                }
+                self.arcs.push(Arc { curve, ends: [begin, end] });
+            }
+        }
+    }
+
+    /// Takes back arcs that run through points that were not known when they were followed.
+    fn cut(&mut self, chain: &Chain) {
+        let points = self.stops().split_off(self.respected);
+        self.respected = self.points.len();
+        let done = &mut self.done;
+        self.arcs.retain(|arc| {
+            let through = |n: &Node| is_at(chain, n, &points);
+            // an arc that begins where it ends has one node
+            let inner = arc.curve.nodes.get(1..arc.curve.nodes.len() - 1);
+            let cut = inner.is_some_and(|nodes| nodes.iter().any(through));
+            if cut {
+                for (p, r) in arc.ends.iter().flatten() {
+                    done[*p][*r] = false;
+                }
+            }
+            !cut
+        });
+    }
+
+    /// The arc that goes on smoothly beyond an end, and which of its ends is there.
+    fn beyond(&self, end: Option<Ray>) -> Option<(usize, usize)> {
+        let (point, ray) = end?;
+        let next = Some((point, self.points[point].partner[ray]?));
+        self.arcs
+            .iter()
+            .enumerate()
+            .find_map(|(k, arc)| arc.ends.iter().position(|e| *e == next).map(|side| (k, side)))
+    }
+
+    /// The smooth curves that the arcs make together, on which the given column rises: in all, or at first where that says nothing.
+    pub fn joined(&self, chain: &Chain, rising: usize) -> Vec<Curve> {
+        let stops = self.stops();
+        let mut used = vec![false; self.arcs.len()];
+        let mut curves = Vec::new();
+        for first in 0..self.arcs.len() {
+            if used[first] {
+                continue;
+            }
+            // back to where it begins, or round
+            let (mut begin, mut side) = (first, 0);
+            for _ in 0..self.arcs.len() {
+                match self.beyond(self.arcs[begin].ends[side]) {
+                    Some((arc, end)) if !used[arc] => (begin, side) = (arc, 1 - end),
+                    _ => break,
+                }
+                if (begin, side) == (first, 0) {
+                    break;
+                }
+            }
+            let mut row: Vec<(usize, usize)> = Vec::new();
+            let (mut arc, mut entered) = (begin, side);
+            let closed = loop {
+                used[arc] = true;
+                row.push((arc, entered));
+                match self.beyond(self.arcs[arc].ends[1 - entered]) {
+                    None => break false,
+                    Some(next) if next == (begin, side) => break true,
+                    Some((next, _)) if used[next] => break false,
+                    Some(next) => (arc, entered) = next,
+                }
+            };
+            let curve = self.join(chain, &row, closed, &stops);
+            if falls(&curve, rising) {
+                // the other way, each arc entered where it was left
+                row.reverse();
+                row.iter_mut().for_each(|(_, entered)| *entered = 1 - *entered);
+                curves.push(self.join(chain, &row, closed, &stops));
+            } else {
+                curves.push(curve);
+            }
+        }
+        curves
+    }
+
+    /// One curve of arcs, each entered at one of its ends, turns counted on.
+    fn join(&self, chain: &Chain, row: &[(usize, usize)], closed: bool, stops: &[Stop]) -> Curve {
+        let mut nodes: Vec<Node> = Vec::new();
+        let mut middle = 0;
+        let mut end = End::Closed;
+        for (n, &(k, entered)) in row.iter().enumerate() {
+            let arc = &self.arcs[k];
+            let turned = (entered == 1).then(|| follow::turned_round(chain, &arc.curve, stops));
+            let curve = turned.as_ref().unwrap_or(&arc.curve);
+            let turns = nodes
+                .last()
+                .map_or([0.0; COLUMNS], |last| counted_on(chain, last, &curve.nodes[0]));
+            nodes.extend(curve.nodes.iter().map(|node| shifted(node, &turns)));
+            if n == 0 {
+                middle = nodes.len() / 2;
+            }
+            if n + 1 < row.len() || closed {
+                nodes.push(self.crossing(chain, arc.ends[1 - entered], nodes[nodes.len() - 1]));
+            } else {
+                end = curve.end;
+            }
+        }
+        if closed {
+            let turns = counted_on(chain, &nodes[nodes.len() - 1], &nodes[0]);
+            nodes.push(shifted(&nodes[0], &turns));
+        }
+        measure(chain, &mut nodes);
+        let curve = Curve { nodes, end };
+        if closed { begun_at(&curve, middle) } else { curve }
+    }
+
+    /// The node of a change point that an arc runs into by a ray, its turns as in the arc's last node.
+    fn crossing(&self, chain: &Chain, end: Option<Ray>, last: Node) -> Node {
+        let (point, ray) = end.unwrap_or_else(|| unreachable!());
+        let point = &self.points[point];
+        let mut at = point.at;
+        let by = chain.difference(&last.at, &at);
+        for c in 0..COLUMNS {
+            at.values[c] = last.at.values[c] + by[c];
+        }
+        let tangent = point.rays[ray].tangent().map(|t| -t);
+        Node::crossing(at, tangent, AT_POINT * point.cut)
+    }
+}
+
+/// Whether a node lies where walks end that run into one of some points.
+fn is_at(chain: &Chain, node: &Node, points: &[Stop]) -> bool {
+    let near = |p: &Stop| length(&chain.difference(&p.at, &node.at)) < p.radius;
+    points.iter().any(near)
+}
+
+fn falls(curve: &Curve, column: usize) -> bool {
+    let (first, last) = (&curve.nodes[0], &curve.nodes[curve.nodes.len() - 1]);
+    let gained = last.at.values[column] - first.at.values[column];
+    if curve.end == End::Closed && gained.abs() > 1.0 {
+        gained < 0.0
+    } else {
+        first.rates[0][column] < 0.0
+    }
+}
+
+/// Whole turns that bring a node next to another.
+fn counted_on(chain: &Chain, last: &Node, next: &Node) -> Columns {
+    std::array::from_fn(|c| {
+        if c < chain.columns && chain.is_turn(c) {
+            TAU * ((last.at.values[c] - next.at.values[c]) / TAU).round()
+        } else {
+            0.0
+        }
+    })
+}
+
+fn shifted(node: &Node, turns: &Columns) -> Node {
+    let mut out = *node;
+    for c in 0..COLUMNS {
+        out.at.values[c] += turns[c];
+    }
+    out
+}
+
+/// Where a curve nearly loses rank without an end: a place of it at each least distance.
+pub(super) fn narrow_places(curve: &Curve) -> Vec<Configuration> {
+    let norm = |k: usize| curve.nodes.get(k).map_or(0.0, |n| n.inverse_norm);
+    (0..curve.nodes.len())
+        .filter(|&k| norm(k) > NARROW && norm(k) >= norm(k + 1) && (k == 0 || norm(k) >= norm(k - 1)))
+        .map(|k| curve.nodes[k].at)
+        .collect()
+}
+
+/// Whether a curve is one that an arc is part of.
+pub(super) fn contains(chain: &Chain, curve: &Curve, arcs: &Arcs) -> bool {
+    arcs.arcs
+        .iter()
+        .any(|a| lies_on(chain, curve, a.curve.plainest()))
+}

@@ -1,0 +1,410 @@
+//! Curves walked eight side by side in vector lanes, each until it comes back or cannot go on.
+
+use super::curve::{self, Curve, End, Node, Stand};
+use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::equation::dense::{COLUMNS, Columns, dot, length};
+use crate::simd::{self, Kernel};
+use crate::vectors::{self, LANES, LaneKernel, Vector};
+
+/// Shorter steps mean a place where the curve is not smooth: a change point.
+const SHORTEST: f64 = 1e-10;
+
+/// Norm of the screws' inverse beyond which rounding moves a place by more than its distance from where the curve is not smooth.
+const BLIND: f64 = 3e7;
+
+/// Most nodes of a curve, 43 MB; an ordinary circuit has some hundreds, three screws over 50 rad 70,000.
+const MOST_NODES: usize = 100_000;
+
+/// The same of a piece between starts, which many walk at once; a longer one is left to the ordinary way.
+const MOST_PIECE_NODES: usize = 5_000;
+
+/// Slides [share of the size] and screws [rad] are not followed farther than this.
+const FARTHEST: f64 = 50.0;
+
+/// A closed configuration and the direction in which to leave it.
+pub(super) type Start = (Configuration, Columns);
+
+/// A pose at which walks end, and how near to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stop {
+    pub at: Configuration,
+    pub radius: f64,
+}
+
+/// Follows the motions through closed configurations until they come back; those that do not, from end to end.
+pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
+    let mut curves = walk(chain, starts, stops);
+    let open: Vec<usize> = (0..curves.len())
+        .filter(|&k| !matches!(curves[k].end, End::Closed | End::Open))
+        .collect();
+    // once more from the end it ran into; a long curve is held once only
+    let ends: Vec<Start> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
+    for &k in &open {
+        curves[k].nodes = Vec::new();
+    }
+    for (k, curve) in open.into_iter().zip(walk(chain, &ends, stops)) {
+        curves[k] = curve;
+    }
+    curves
+}
+
+/// Whether a slide or screw is farther out than curves are followed.
+pub(super) fn is_far(chain: &Chain, at: &Configuration) -> bool {
+    let far = |(joint, &c): (&Joint, &usize)| {
+        !matches!(joint, Joint::Turn | Joint::Ball(_)) && at.values[c].abs() > FARTHEST
+    };
+    chain.joints.iter().zip(&chain.first).any(far)
+}
+
+/// The curve walked the other way: its own nodes where each step is certain that way too.
+pub(crate) fn turned_round(chain: &Chain, curve: &Curve, stops: &[Stop]) -> Curve {
+    curve::reversed(chain, curve)
+        .unwrap_or_else(|| walk(chain, &[back_from_end(curve)], stops).swap_remove(0))
+}
+
+fn walk(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
+    walk_until(chain, starts, stops, false).0
+}
+
+/// Each motion until it comes to the next of the starts, its own or another, and which that is.
+pub(super) fn pieces(chain: &Chain, starts: &[Start]) -> (Vec<Curve>, Vec<Option<usize>>) {
+    walk_until(chain, starts, &[], true)
+}
+
+fn walk_until(
+    chain: &Chain,
+    starts: &[Start],
+    stops: &[Stop],
+    any: bool,
+) -> (Vec<Curve>, Vec<Option<usize>>) {
+    let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
+    let mut reached = vec![None; starts.len()];
+    let walk = Walk { chain, starts, stops, any, curves: &mut curves, reached: &mut reached };
+    match starts.len() {
+        0 => {}
+        // one curve has nothing beside it, and vector code would be slower
+        1 => simd::dispatch(walk),
+        _ => vectors::dispatch(walk),
+    }
+    (curves, reached)
+}
+
+/// The start, its turns counted on, where it lies in the step from a node: with the step that leads there.
+fn returned(chain: &Chain, first: &Node, from: &Node) -> Option<(f64, Node)> {
+    if !curve::may_pass(chain, from, &first.at) || dot(&first.rates[0], &from.rates[0]) < 0.5 {
+        return None;
+    }
+    let along = curve::passes_through(chain, from, &first.at)?;
+    // the start itself, with the turns made on the way
+    let mut end = *first;
+    for c in 0..chain.columns {
+        if chain.is_turn(c) {
+            let here = from.at.values[c] + from.gone(c, along);
+            let turn = std::f64::consts::TAU;
+            end.at.values[c] += turn * ((here - first.at.values[c]) / turn).round();
+        }
+    }
+    Some((along, end))
+}
+
+fn back_from_end(curve: &Curve) -> Start {
+    let last = &curve.nodes[curve.nodes.len() - 1];
+    (last.at, last.rates[0].map(|t| -t))
+}
+
+/// Walks eight curves side by side.
+struct Walk<'a> {
+    chain: &'a Chain,
+    starts: &'a [Start],
+    stops: &'a [Stop],
+    /// Whether any start ends a curve, or its own only.
+    any: bool,
+    curves: &'a mut [Curve],
+    /// The start to which each came.
+    reached: &'a mut [Option<usize>],
+}
+
+impl LaneKernel for Walk<'_> {
+    #[inline(always)]
+    fn run<V: Vector>(mut self) {
+        let count = self.starts.len();
+        let mut walker = [usize::MAX; LANES];
+        for (lane, w) in walker.iter_mut().enumerate().take(count) {
+            *w = lane;
+        }
+        let mut waiting = LANES.min(count);
+        let mut here = self.begun::<V>(&walker);
+        let mut split = self.split(&here.node);
+        for lane in 0..LANES {
+            self.record(walker[lane], split[lane]);
+        }
+        // curves may come to starts that have not yet been left
+        for block in (LANES..count).step_by(LANES) {
+            let mut later = [usize::MAX; LANES];
+            for (lane, w) in later.iter_mut().enumerate().take(count - block) {
+                *w = block + lane;
+            }
+            let begun = self.begun::<V>(&later);
+            let nodes = self.split(&begun.node);
+            for lane in 0..LANES {
+                self.record(later[lane], nodes[lane]);
+            }
+        }
+        let mut growth = [0.0; LANES];
+        let mut step = curve::likely(self.chain, &here.node, V::load(&growth)).store();
+        while walker.iter().any(|&w| w < count) {
+            let tried = curve::step(self.chain, &here, V::load(&step));
+            let (mut allowed, tube) = (tried.allowed.store(), tried.tube.store());
+            growth = tried.growth.store();
+            split = self.split(&tried.next.node);
+            for lane in 0..LANES {
+                // not a number is no allowance either
+                if !(allowed[lane] >= 0.0 && split[lane].inverse_norm.is_finite()) {
+                    allowed[lane] = -1.0;
+                }
+            }
+            let mut fresh = [false; LANES];
+            for lane in 0..LANES {
+                if walker[lane] >= count {
+                    continue;
+                }
+                let end = if allowed[lane] >= 0.0 {
+                    self.stepped(walker[lane], (step[lane], tube[lane]), split[lane])
+                } else {
+                    too_short(step[lane])
+                };
+                if let Some(end) = end {
+                    self.curves[walker[lane]].end = end;
+                    walker[lane] = if waiting < count { waiting } else { usize::MAX };
+                    waiting += 1;
+                    fresh[lane] = walker[lane] != usize::MAX;
+                }
+            }
+            let mask = V::load(&allowed);
+            replace(&mut here, mask, &tried.next, self.chain.ball_count());
+            if fresh.contains(&true) {
+                let begun = self.begun::<V>(&walker);
+                let mut mask = [-1.0; LANES];
+                for lane in (0..LANES).filter(|&k| fresh[k]) {
+                    mask[lane] = 1.0;
+                }
+                replace(&mut here, V::load(&mask), &begun, self.chain.ball_count());
+            }
+            for lane in (0..LANES).filter(|&k| fresh[k]) {
+                growth[lane] = 0.0;
+            }
+            let likely = curve::likely(self.chain, &here.node, V::load(&growth)).store();
+            for lane in 0..LANES {
+                step[lane] = if allowed[lane] >= 0.0 || fresh[lane] {
+                    likely[lane]
+                } else {
+                    shortened(step[lane], likely[lane])
+                };
+            }
+        }
+    }
+}
+
+impl Kernel for Walk<'_> {
+    #[inline(always)]
+    fn run<const FUSED: bool>(mut self) {
+        let (at, before) = &self.starts[0];
+        let mut here = curve::stand(self.chain, at, before);
+        self.record(0, here.node);
+        let mut step = curve::likely(self.chain, &here.node, 0.0);
+        loop {
+            let tried = curve::step(self.chain, &here, step);
+            let allowed = tried.allowed >= 0.0 && tried.next.node.inverse_norm.is_finite();
+            let end = if allowed {
+                here = tried.next;
+                self.stepped(0, (step, tried.tube), here.node)
+            } else {
+                too_short(step)
+            };
+            if let Some(end) = end {
+                self.curves[0].end = end;
+                return;
+            }
+            let likely = curve::likely(self.chain, &here.node, tried.growth);
+            step = if allowed { likely } else { shortened(step, likely) };
+        }
+    }
+}
+
+/// The step after one that was refused.
+fn shortened(step: f64, likely: f64) -> f64 {
+    // what is likely may be not a number
+    if likely < 0.5 * step && likely > 0.05 * step {
+        likely
+    } else {
+        0.5 * step
+    }
+}
+
+/// The end of a curve whose steps have become too short.
+fn too_short(step: f64) -> Option<End> {
+    (step < SHORTEST || step.is_nan()).then_some(End::Singular)
+}
+
+impl Walk<'_> {
+    /// The stands at the starts of walkers; a lane without one has the first's.
+    #[inline(always)]
+    fn begun<V: Vector>(&self, walker: &[usize; LANES]) -> Stand<V> {
+        let mut each = [Configuration::ZERO; LANES];
+        let mut directions = [[0.0; LANES]; COLUMNS];
+        for lane in 0..LANES {
+            let (at, direction) = self.starts.get(walker[lane]).unwrap_or(&self.starts[0]);
+            each[lane] = *at;
+            for c in 0..COLUMNS {
+                directions[c][lane] = direction[c];
+            }
+        }
+        let mut before = [V::splat(0.0); COLUMNS];
+        for c in 0..COLUMNS {
+            before[c] = V::load(&directions[c]);
+        }
+        let at = Configuration::beside(&each, self.chain.ball_count());
+        curve::stand(self.chain, &at, &before)
+    }
+
+    /// The lanes of a node.
+    #[inline(always)]
+    fn split<V: Vector>(&self, node: &Node<V>) -> [Node; LANES] {
+        let blank = Node {
+            at: Configuration::ZERO,
+            rates: [[0.0; COLUMNS]; 3],
+            step: 0.0,
+            tube: 0.0,
+            inverse_norm: 0.0,
+            slopes: [0.0; 2],
+            across: 0.0,
+            far: 0.0,
+            open: 0.0,
+        };
+        let mut out = [blank; LANES];
+        let places = node.at.apart(self.chain.ball_count());
+        for k in 0..LANES {
+            out[k].at = places[k];
+        }
+        for c in 0..COLUMNS {
+            for order in 0..3 {
+                let lanes = node.rates[order][c].store();
+                for k in 0..LANES {
+                    out[k].rates[order][c] = lanes[k];
+                }
+            }
+        }
+        let (norm, slope, sway) = (
+            node.inverse_norm.store(),
+            node.slopes[0].store(),
+            node.slopes[1].store(),
+        );
+        let (across, far, open) = (node.across.store(), node.far.store(), node.open.store());
+        for k in 0..LANES {
+            out[k].inverse_norm = norm[k];
+            out[k].slopes = [slope[k], sway[k]];
+            (out[k].across, out[k].far, out[k].open) = (across[k], far[k], open[k]);
+        }
+        out
+    }
+
+    fn record(&mut self, walker: usize, node: Node) {
+        if let Some(curve) = self.curves.get_mut(walker) {
+            curve.nodes.push(node);
+        }
+    }
+
+    /// Adds the node of a step; tells if the curve ends with it.
+    fn stepped(&mut self, walker: usize, (step, tube): (f64, f64), next: Node) -> Option<End> {
+        let chain = self.chain;
+        let curve = &mut self.curves[walker];
+        let last = curve.nodes.len() - 1;
+        if next.open > chain.agree {
+            return Some(End::Open);
+        }
+        curve.nodes[last].step = step;
+        curve.nodes[last].tube = tube;
+        let mut nearest: Option<(f64, Node, usize)> = None;
+        let ends = if self.any {
+            0..self.starts.len()
+        } else {
+            walker..walker + 1
+        };
+        for end in ends {
+            // it has left its own first steps behind
+            if (end != walker || last > 3)
+                && let Some((along, node)) = returned(
+                    chain,
+                    &self.curves[end].nodes[0],
+                    &self.curves[walker].nodes[last],
+                )
+                && nearest.as_ref().is_none_or(|n| along < n.0)
+            {
+                nearest = Some((along, node, end));
+            }
+        }
+        let curve = &mut self.curves[walker];
+        if let Some((along, node, end)) = nearest {
+            curve.nodes[last].step = along;
+            curve.nodes.push(node);
+            self.reached[walker] = Some(end);
+            return Some(End::Closed);
+        }
+        curve.nodes.push(next);
+        let stopped = |s: &Stop| {
+            let off = chain.difference(&next.at, &s.at);
+            // one that it has just left lies behind
+            length(&off) < s.radius && dot(&off, &next.rates[0]) > 0.0
+        };
+        if next.inverse_norm > BLIND || self.stops.iter().any(stopped) {
+            return Some(End::Singular);
+        }
+        let curve = &self.curves[walker];
+        let start = &curve.nodes[0].at;
+        let far = chain.joints.iter().zip(&chain.first).any(|(joint, &c)| {
+            // a curve that is followed back from its end begins beyond
+            let farthest = FARTHEST.max(start.values[c].abs());
+            !matches!(joint, Joint::Turn | Joint::Ball(_)) && next.at.values[c].abs() > farthest
+        });
+        let most = if self.any { MOST_PIECE_NODES } else { MOST_NODES };
+        (far || curve.nodes.len() > most).then_some(End::Far)
+    }
+}
+
+/// Takes over the lanes of another where a number is not negative.
+#[inline(always)]
+fn replace<V: Vector>(here: &mut Stand<V>, mask: V, other: &Stand<V>, balls: usize) {
+    let (node, new) = (&mut here.node, &other.node);
+    take(mask, &mut node.at.values, &new.at.values);
+    for b in 0..balls {
+        take(
+            mask,
+            node.at.balls[b].as_flattened_mut(),
+            new.at.balls[b].as_flattened(),
+        );
+    }
+    take(mask, node.rates.as_flattened_mut(), new.rates.as_flattened());
+    take(mask, &mut node.slopes, &new.slopes);
+    let mut scalars = [node.inverse_norm, node.across, node.far, node.open];
+    take(
+        mask,
+        &mut scalars,
+        &[new.inverse_norm, new.across, new.far, new.open],
+    );
+    [node.inverse_norm, node.across, node.far, node.open] = scalars;
+    take(mask, here.screws.as_flattened_mut(), other.screws.as_flattened());
+    take(
+        mask,
+        here.inverse.0.as_flattened_mut(),
+        other.inverse.0.as_flattened(),
+    );
+}
+
+/// Takes new numbers over in the lanes where another is not negative.
+#[inline(always)]
+fn take<V: Vector>(mask: V, old: &mut [V], new: &[V]) {
+    let none = V::splat(-f64::MIN_POSITIVE);
+    for (x, y) in old.iter_mut().zip(new) {
+        *x = mask.if_greater(none, *y, *x);
+    }
+}

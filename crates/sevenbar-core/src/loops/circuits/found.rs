@@ -1,0 +1,54 @@
+//! What a search of a loop's circuits came to.
+
+use crate::loops::branch_points::counting::{Count, Uncounted};
+use crate::loops::modes::finder::Completeness;
+
+/// How freely a loop moves, as found in its poses.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Rank of the joints' screws, idle freedoms aside.
+    pub rank: usize,
+    /// Wrenches that the redundant constraints bear, a basis: force and moment in the frame of the first joint.
+    pub redundant: Vec<[f64; 6]>,
+    /// Freedoms of the motion as found.
+    pub finite: usize,
+}
+
+/// Where modes were looked for, and what was found out about them.
+#[derive(Clone, Debug)]
+pub struct Search {
+    /// How freely the loop moves; `None` where it was not found in any pose.
+    pub found: Option<Found>,
+    /// How completely the modes at the values looked at are known.
+    pub completeness: Completeness,
+    /// Columns at whose values all modes were found.
+    pub columns: Vec<usize>,
+    /// How many values of each.
+    pub values: usize,
+    /// Modes there that run into a place where the motion is not smooth, or do not move.
+    pub unfollowed: usize,
+    /// By how much redundant constraints keep other poses there open, least first [rad, or parts of the size].
+    pub misfits: Vec<f64>,
+    /// The account of the branch points of the first column, or why there is none.
+    pub count: Result<Count, Uncounted>,
+}
+
+impl Search {
+    /// Before anything was looked at.
+    pub(crate) fn new(completeness: Completeness) -> Self {
+        Self {
+            found: None,
+            completeness,
+            columns: Vec::new(),
+            values: 0,
+            unfollowed: 0,
+            misfits: Vec::new(),
+            count: Err(Uncounted::Searched),
+        }
+    }
+
+    /// Whether all branch points of the first column are accounted for.
+    pub fn is_counted(&self) -> bool {
+        self.count.as_ref().is_ok_and(|c| c.open.is_empty())
+    }
+}

@@ -1,0 +1,13 @@
+//! `e(q) = 0` followed over the reals along `A t = 0`, `|t| = 1`: every curve of a chain, and the change points at which curves meet.
+
+mod arcs;
+mod change_points;
+pub(super) mod curve;
+pub(super) mod follow;
+pub(super) mod found;
+pub(super) mod join;
+pub(super) mod known_curves;
+mod meetings;
+mod on_curve;
+pub(super) mod search;
+pub(super) mod turnings;

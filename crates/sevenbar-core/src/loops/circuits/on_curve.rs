@@ -1,0 +1,62 @@
+//! Whether a pose is a place of a curve that is known.
+
+use super::curve::{self, Curve, Node, REACH};
+use crate::loops::equation::chain::{Chain, Configuration};
+
+pub(super) fn lies_on_any(chain: &Chain, curves: &[Curve], mode: &Configuration) -> bool {
+    curves.iter().any(|c| lies_on(chain, c, mode))
+}
+
+/// Whether a mode is a place of a curve.
+pub(super) fn lies_on(chain: &Chain, curve: &Curve, mode: &Configuration) -> bool {
+    place_on(chain, curve, mode).is_some()
+}
+
+/// Those modes that lie on none of the curves.
+pub(super) fn not_on_any(
+    chain: &Chain,
+    curves: &[Curve],
+    mut modes: Vec<Configuration>,
+) -> Vec<Configuration> {
+    for curve in curves {
+        if modes.is_empty() {
+            break;
+        }
+        // in a row, for the nodes are far apart in memory
+        let reaches: Vec<f64> = reaches(curve).collect();
+        modes.retain(|mode| place_within(chain, curve, reaches.iter().copied(), mode).is_none());
+    }
+    modes
+}
+
+/// The node of a curve from which a step leads over a mode.
+pub(super) fn place_on<'a>(chain: &Chain, curve: &'a Curve, mode: &Configuration) -> Option<&'a Node> {
+    place_within(chain, curve, reaches(curve), mode)
+}
+
+/// The most by which each step of a curve changes a turn.
+fn reaches(curve: &Curve) -> impl Iterator<Item = f64> {
+    curve.nodes.iter().map(|node| REACH * node.step)
+}
+
+fn place_within<'a>(
+    chain: &Chain,
+    curve: &'a Curve,
+    reaches: impl Iterator<Item = f64>,
+    mode: &Configuration,
+) -> Option<&'a Node> {
+    // no nearer to the mode than this, in the turn that is farthest off
+    let mut least = 0.0;
+    for (k, reach) in reaches.enumerate() {
+        if least <= reach {
+            let node = &curve.nodes[k];
+            least = curve::farthest_turn(chain, &node.at, mode);
+            if least <= reach && curve::passes_through(chain, node, mode).is_some() {
+                return Some(node);
+            }
+        }
+        // a step changes no turn by more than its reach
+        least -= reach;
+    }
+    None
+}

@@ -1,0 +1,250 @@
+//! Every curve of a chain: those through all its modes at many values of some joints.
+
+use super::follow;
+use super::join;
+use super::known_curves::{Curves, MOST_MODES};
+use super::meetings;
+use super::on_curve::not_on_any;
+use super::turnings;
+use crate::loops::branch_points::counting::{self, Count, Uncounted};
+use crate::loops::branch_points::sectors::Known;
+use crate::loops::branch_points::survey::Survey;
+use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::modes::circle::Circle;
+use crate::loops::modes::finder::{Completeness, ModeFinder, REAL};
+use crate::loops::modes::polish::CLOSED;
+use std::f64::consts::TAU;
+
+/// Values of a joint at which the modes are found, all of which must lie on the circuits.
+const SEEDS: usize = 24;
+
+/// The same where modes are searched for.
+const SEARCHED_SEEDS: usize = 4;
+
+/// Curves are followed piece by piece between the modes at every so many of the seeds, if they can be; then those that are left
+/// between the modes at all: the first of the seeds, and each how many.
+const AHEAD: [(usize, usize); 2] = [(0, 4), (1, 1)];
+
+/// Joints whose values are seeds: a circuit that is narrow over one is wide over another.
+const SEED_JOINTS: usize = 2;
+
+/// An open range narrower than this [rad] is that of one singular pose, and open with any joint. About solutions that run to infinity at
+/// one value of a joint ranges are wider, and another joint may have an account of them.
+const WIDE_RANGE: f64 = 1e-4;
+
+/// Imaginary parts [rad] that solutions which are real at one input may have beside it, as a part of the distance.
+const NEARLY_REAL: f64 = 20.0;
+
+/// Two branch points become one in a pose that stands alone, one on each side of the real inputs.
+const BRANCH_POINTS_OF_POSE: i64 = 2;
+
+/// The columns whose values are seeds: the wished ones if they turn, else the first that do; screws where none turns and no
+/// pose is drawn.
+fn seed_columns(chain: &Chain, wished: &[usize], drawn: bool) -> Vec<usize> {
+    let first = |fits: &dyn Fn(usize) -> bool| {
+        let mut seeds: Vec<usize> = Vec::new();
+        for c in wished.iter().copied().chain(0..chain.columns) {
+            if fits(c) && !seeds.contains(&c) && seeds.len() < SEED_JOINTS {
+                seeds.push(c);
+            }
+        }
+        seeds
+    };
+    let turning = first(&|c| chain.is_turn(c));
+    // where only screws turn, modes come from long searches and again for each turn of a screw: a drawn pose will do
+    if turning.is_empty() && !drawn {
+        first(&|c| matches!(chain.joints[chain.joint_of(c)], Joint::Screw(_)))
+    } else {
+        turning
+    }
+}
+
+/// The curves through all modes at the seeds, or the first.
+pub(crate) fn curves(chain: &Chain, wished: &[usize], first_only: bool) -> Curves {
+    let drawn = chain.residual(&chain.place(&Configuration::ZERO)) < CLOSED;
+    let seeds = seed_columns(chain, wished, drawn);
+    // the pose of a drawing first: the joints are zero there
+    let mut drawings = if drawn {
+        vec![Configuration::ZERO]
+    } else {
+        Vec::new()
+    };
+    let mut out = Curves::new(wished);
+    out.search.columns.clone_from(&seeds);
+    for seed in seeds {
+        let finder = ModeFinder::new(chain, seed);
+        let searched = finder.completeness() == Completeness::Searched;
+        if searched {
+            out.search.completeness = Completeness::Searched;
+        }
+        let count = if searched { SEARCHED_SEEDS } else { SEEDS };
+        out.search.values = count;
+        if first_only {
+            out.take(chain, &std::mem::take(&mut drawings), wished[0]);
+            for k in 0..count {
+                if out.is_empty() {
+                    out.take(chain, &finder.at(TAU * k as f64 / count as f64).modes, wished[0]);
+                }
+            }
+            continue;
+        }
+        let survey = if is_doubtful(&out) {
+            Survey::new(&finder)
+        } else {
+            None
+        };
+        let (rough, circle) = finder.around(count, survey.as_ref().map(|s| &s.watch));
+        look_ahead(&mut out, &finder, &rough, &drawings);
+        out.take(chain, &std::mem::take(&mut drawings), wished[0]);
+        for modes in &rough {
+            let polished = finder.polished(&out.unknown(chain, modes));
+            out.search.misfits.extend(polished.misfits);
+            out.take(chain, &polished.modes, wished[0]);
+        }
+        out.ahead.clear();
+        for value in survey.iter().flat_map(|s| s.unseeded(count)) {
+            let modes = finder.at(value).modes;
+            out.take(chain, &modes, wished[0]);
+        }
+        if let (Some(survey), Some(circle)) = (survey, circle) {
+            let mut count = counted(&mut out, chain, &survey, circle, (seed, wished[0]));
+            if let Ok(count) = &mut count {
+                look_into(&mut out, chain, &finder, count);
+            }
+            if seed == out.search.columns[0] || count.as_ref().is_ok_and(|c| c.open.is_empty()) {
+                out.search.count = count;
+            }
+            // a joint that stands still on some is told of, so that another need not be asked
+            if seed == out.search.columns[0] && out.search.is_counted() && !chain.is_redundant() {
+                out.search.columns.truncate(1);
+                break;
+            }
+        }
+    }
+    // where nothing turns
+    out.take(chain, &drawings, wished[0]);
+    if out.search.found.is_none() && !out.search.columns.is_empty() {
+        look_beside_paths(&mut out, chain);
+    }
+    out.finish(chain);
+    out.search.misfits.sort_by(f64::total_cmp);
+    if out.search.columns.is_empty() {
+        out.search.completeness = Completeness::Searched;
+    }
+    out
+}
+
+/// Searches where no mode stands alone but paths to others were lost.
+fn look_beside_paths(curves: &mut Curves, chain: &Chain) {
+    let finder = ModeFinder::new(chain, curves.search.columns[0]);
+    if !finder.is_degenerate() {
+        return;
+    }
+    curves.search.completeness = Completeness::Searched;
+    curves.search.count = Err(Uncounted::Searched);
+    curves.search.columns.truncate(1);
+    curves.search.values = SEARCHED_SEEDS;
+    for k in 0..SEARCHED_SEEDS {
+        if let Some(mode) = finder.one_by_search(TAU * k as f64 / SEARCHED_SEEDS as f64) {
+            curves.take(chain, &[mode], curves.wished[0]);
+            return;
+        }
+    }
+}
+
+/// Whether nothing was counted yet, or so wide a range is left open that another joint may have an account of it.
+fn is_doubtful(curves: &Curves) -> bool {
+    match &curves.search.count {
+        Ok(count) => count.open.iter().any(|o| o.to - o.from > WIDE_RANGE),
+        Err(why) => *why != Uncounted::Still,
+    }
+}
+
+/// The account of a column's branch points; curves that it leads to are followed.
+fn counted(
+    curves: &mut Curves,
+    chain: &Chain,
+    survey: &Survey,
+    circle: Circle,
+    (column, rising): (usize, usize),
+) -> Result<Count, Uncounted> {
+    let known = known_zeros(curves, chain, survey, column);
+    let mut far: Vec<f64> = Vec::new();
+    counting::count(survey, circle, known, &mut |pose| {
+        if follow::is_far(chain, pose) {
+            // a curve is not followed so far, but may turn back there
+            far.push(pose.values[column]);
+        } else {
+            // a circuit so narrow that it was missed bends sharply all along
+            let last = std::mem::replace(&mut curves.last, true);
+            curves.take(chain, &[*pose], rising);
+            curves.last = last;
+        }
+        let mut known = known_zeros(curves, chain, survey, column);
+        known.dead_centres.extend(&far);
+        known
+    })
+}
+
+/// Looks where solutions meet within ranges too narrow to be counted: in a pose that stands alone they are real at one input only.
+fn look_into(curves: &mut Curves, chain: &Chain, finder: &ModeFinder, count: &mut Count) {
+    count.open.retain(|open| {
+        if open.to - open.from > WIDE_RANGE {
+            return true;
+        }
+        let mut met = 0;
+        let (middle, wide) = (0.5 * (open.from + open.to), open.to - open.from);
+        // solutions that meet at one real input are complex beside it
+        for place in finder.rough_at(middle, REAL.max(NEARLY_REAL * wide)) {
+            if curves.holds(chain, &place) || !curves.branches(chain, &place, false) {
+                continue;
+            }
+            if let Some(point) = curves.arcs.at(chain, &place) {
+                let pose = curves.arcs.points[point].at;
+                curves.find_at(chain, &pose);
+                met += BRANCH_POINTS_OF_POSE;
+            }
+        }
+        open.missing != Some(met) || met == 0
+    });
+}
+
+/// The zeros of the determinant that the curves tell of.
+fn known_zeros(curves: &Curves, chain: &Chain, survey: &Survey, column: usize) -> Known {
+    let singular = curves.arcs.points.iter().map(|p| p.at.values[column]);
+    let mut known = Known { singular: singular.collect(), ..Known::default() };
+    let joined = curves.arcs.joined(chain, curves.wished[0]);
+    for curve in curves.curves.iter().chain(&joined) {
+        let turnings = turnings::turnings(curve, chain, column);
+        let smooth = turnings.iter().filter(|t| !t.node.is_crossing());
+        known
+            .dead_centres
+            .extend(smooth.map(|t| t.node.at.values[column]));
+        known.meetings.extend(meetings::meetings(survey, chain, curve));
+    }
+    known
+}
+
+/// The same, the curves ahead aside too.
+fn unforeseen(curves: &Curves, chain: &Chain, modes: &[Configuration]) -> Vec<Configuration> {
+    not_on_any(chain, &curves.ahead, curves.unknown(chain, modes))
+}
+
+/// Follows the closed curves through what is to come, many pieces side by side.
+fn look_ahead(
+    curves: &mut Curves,
+    finder: &ModeFinder,
+    rough: &[Vec<Configuration>],
+    drawings: &[Configuration],
+) {
+    let chain = finder.chain;
+    for (first, every) in AHEAD {
+        let mut places = unforeseen(curves, chain, drawings);
+        for modes in rough.iter().skip(first).step_by(every) {
+            if modes.len() <= MOST_MODES {
+                places.extend(finder.polished(&unforeseen(curves, chain, modes)).modes);
+            }
+        }
+        curves.ahead.extend(join::closed_curves(chain, &places));
+    }
+}

@@ -1,0 +1,335 @@
+//! Where a column changes direction along a followed curve, and the curve with these places among its nodes.
+
+use super::curve::{self, Curve, End, Node, measure};
+use crate::loops::equation::chain::Chain;
+use crate::loops::equation::dense::{COLUMNS, dot, length};
+
+/// A rate of a column below this part of the curve's is zero.
+const AT_REST: f64 = 1e-13;
+
+/// A column whose part of the unit tangent is below this stands still.
+const STILL: f64 = 1e-9;
+
+/// Places between which a column moves by less than this [rad, or parts of the size] are rounding where it rests.
+const UNMOVED: f64 = 1e-12;
+
+/// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
+const SAME_PLACE: f64 = 1e-6;
+
+/// Near a change point, where the norm of the screws' inverse is greater, a rate below its square times this is rounding: the place,
+/// and so the tangent, is not known better.
+const NEAR: f64 = 1e3;
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// How far [rad, or parts of the size] from a change point a column's direction is checked to see whether it turns back there.
+const BESIDE: f64 = 1e-3;
+
+/// Places looked at within a step for a change of a column's direction.
+const LOOKS: usize = 6;
+
+/// A place where a column changes direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turning {
+    /// The node that it follows.
+    pub segment: usize,
+    pub node: Node,
+}
+
+/// Where a column changes direction, in order.
+pub(crate) fn turnings(curve: &Curve, chain: &Chain, column: usize) -> Vec<Turning> {
+    if curve.rests(column) {
+        return Vec::new();
+    }
+    let mut found = turnings_by(curve, chain, column, 0.0);
+    // a column that comes back turned once more: at a change point beside which it nearly rests
+    if curve.end == End::Closed && !found.len().is_multiple_of(2) {
+        let more = turnings_by(curve, chain, column, STILL);
+        if more.len().is_multiple_of(2) {
+            found = more;
+        }
+    }
+    forget_unmoved(curve, &mut found, column);
+    found
+}
+
+/// Forgets places in a row, two by two, between which a column does not move: rates that are rounding have no sign.
+fn forget_unmoved(curve: &Curve, found: &mut Vec<Turning>, column: usize) {
+    let gained = match curve.end {
+        End::Closed => curve.gained()[column],
+        _ => f64::INFINITY,
+    };
+    while found.len() > 1 {
+        let count = found.len();
+        let moved = |k: usize| {
+            let [one, next] = [k, (k + 1) % count].map(|k| found[k].node.at.values[column]);
+            (next - one + if k + 1 < count { 0.0 } else { gained }).abs()
+        };
+        let Some(least) = (0..count).min_by(|&a, &b| moved(a).total_cmp(&moved(b))) else {
+            break;
+        };
+        if moved(least) > UNMOVED {
+            break;
+        }
+        let next = (least + 1) % count;
+        found.remove(least.max(next));
+        found.remove(least.min(next));
+    }
+}
+
+/// The same, where a column turns back at a change point as its rates beside have it, the first of them that is not `still`.
+fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<Turning> {
+    let mut found = Vec::new();
+    let mut marks: Vec<(f64, f64)> = Vec::new();
+    let rounded =
+        |n: &Node| n.inverse_norm > NEAR && n.rates[0][column].abs() <= ROUNDED * n.inverse_norm.powi(2);
+    // the last rate before nodes at which rounding hides it, and the node of these where it is least
+    let mut blurred: Option<(f64, usize)> = blurred_start(curve, column, &rounded);
+    for (segment, pair) in curve.nodes.windows(2).enumerate() {
+        let (a, b) = (&pair[0], &pair[1]);
+        if a.is_crossing() || b.is_crossing() {
+            if a.is_crossing() && turns_back_over(curve, segment, column, still) {
+                found.push(Turning { segment, node: *a });
+            }
+            blurred = None;
+            continue;
+        }
+        match (rounded(a), rounded(b)) {
+            (false, false) => {}
+            (false, true) => {
+                blurred = Some((a.rates[0][column], segment + 1));
+                continue;
+            }
+            (true, true) => {
+                if let Some((_, least)) = &mut blurred
+                    && b.rates[0][column].abs() < curve.nodes[*least].rates[0][column].abs()
+                {
+                    *least = segment + 1;
+                }
+                continue;
+            }
+            (true, false) => {
+                if let Some((before, least)) = blurred.take()
+                    && before * b.rates[0][column] < 0.0
+                {
+                    found.push(turning_beside(curve, chain, column, least));
+                }
+                continue;
+            }
+        }
+        // a rate that is zero to the last digit at a node, as where another column turns back there, has no sign beside it
+        if turns_at(a, column) && a.rates[1][column] != 0.0 {
+            found.push(Turning { segment, node: *a });
+        }
+        // the place of the greatest rate in each stretch of one direction, as the series at the nearer end has it
+        marks.clear();
+        for look in 0..=LOOKS {
+            let s = a.step * look as f64 / LOOKS as f64;
+            // at the nodes their own rates, so that two steps see one sign of a rate that is zero up to rounding
+            let rate = match look {
+                0 => a.rates[0][column],
+                LOOKS => b.rates[0][column],
+                _ if 2 * look < LOOKS => a.rate(column, s),
+                _ => b.rate(column, s - a.step),
+            };
+            match marks.last_mut() {
+                Some(last) if last.1 * rate >= 0.0 => {
+                    if rate.abs() > last.1.abs() {
+                        *last = (s, rate);
+                    }
+                }
+                _ => marks.push((s, rate)),
+            }
+        }
+        if marks.len() < 2 {
+            continue;
+        }
+        // both ends are known, and the places between are checked
+        let count = marks.len();
+        for (k, mark) in marks.iter_mut().enumerate() {
+            *mark = if k == 0 {
+                (0.0, a.rates[0][column])
+            } else if k + 1 == count {
+                (a.step, b.rates[0][column])
+            } else {
+                let rate = curve::ahead(chain, a, mark.0).map_or(mark.1, |n| n.rates[0][column]);
+                (mark.0, rate)
+            };
+        }
+        for ends in marks.windows(2) {
+            if ends[0].1 * ends[1].1 < 0.0
+                && let Some(node) = turning_between(chain, a, column, ends[0], ends[1])
+            {
+                found.push(Turning { segment, node });
+            }
+        }
+    }
+    found.sort_by_key(|t| t.segment);
+    found
+}
+
+/// Of a closed curve that begins among nodes whose rates rounding hides: the rate before these, and the node where it is least.
+fn blurred_start(curve: &Curve, column: usize, rounded: &dyn Fn(&Node) -> bool) -> Option<(f64, usize)> {
+    if curve.end != End::Closed || !rounded(&curve.nodes[0]) {
+        return None;
+    }
+    let rate = |k: usize| curve.nodes[k].rates[0][column];
+    let mut least = 0;
+    for k in (1..curve.nodes.len() - 1).rev() {
+        if !rounded(&curve.nodes[k]) {
+            return Some((rate(k), least));
+        }
+        if rate(k).abs() < rate(least).abs() {
+            least = k;
+        }
+    }
+    None
+}
+
+/// Where a column turns back beside a node at which its rate is rounding: there, or in a step next to it where its sign changes.
+fn turning_beside(curve: &Curve, chain: &Chain, column: usize, least: usize) -> Turning {
+    let rate = |k: usize| curve.nodes[k].rates[0][column];
+    // a closed curve's last step leads to its first node
+    let before = least.checked_sub(1).unwrap_or(curve.nodes.len() - 2);
+    [before, least]
+        .into_iter()
+        .filter(|&k| k + 1 < curve.nodes.len() && rate(k) * rate(k + 1) < 0.0)
+        .find_map(|segment| {
+            let a = &curve.nodes[segment];
+            let ends = ((0.0, rate(segment)), (a.step, rate(segment + 1)));
+            let node = turning_between(chain, a, column, ends.0, ends.1)?;
+            Some(Turning { segment, node })
+        })
+        .unwrap_or(Turning { segment: least, node: curve.nodes[least] })
+}
+
+/// Whether a column turns back at the node of a change point, as its rates at a distance have it, the first that is not `still`.
+fn turns_back_over(curve: &Curve, node: usize, column: usize, still: f64) -> bool {
+    let last = curve.nodes.len() - 1;
+    let beside = |ahead: bool| {
+        let mut gone = 0.0;
+        let mut k = node;
+        loop {
+            let ends = if ahead { k == last } else { k == 0 };
+            k = match (ends, ahead) {
+                (true, _) if curve.end != End::Closed => return 0.0,
+                (true, true) => 1,
+                (true, false) => last - 1,
+                (false, true) => k + 1,
+                (false, false) => k - 1,
+            };
+            gone += curve.nodes[if ahead { k.max(1) - 1 } else { k }].step;
+            let rate = curve.nodes[k].rates[0][column];
+            if (gone > BESIDE && rate.abs() > still) || k == node {
+                return rate;
+            }
+        }
+    };
+    let (before, after) = (beside(false), beside(true));
+    before * after < 0.0 && before.abs().min(after.abs()) > STILL
+}
+
+/// The place in a step where a column's rate is zero, between two where its sign differs.
+fn turning_between(
+    chain: &Chain,
+    a: &Node,
+    column: usize,
+    mut low: (f64, f64),
+    mut high: (f64, f64),
+) -> Option<Node> {
+    let mut best: Option<Node> = None;
+    let mut s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+    for _ in 0..60 {
+        let node = curve::ahead(chain, a, s)?;
+        let rate = node.rates[0][column];
+        if best
+            .as_ref()
+            .is_none_or(|b| rate.abs() < b.rates[0][column].abs())
+        {
+            best = Some(node);
+        }
+        if rate.abs() < AT_REST || (high.0 - low.0).abs() < 1e-15 {
+            break;
+        }
+        if rate * low.1 > 0.0 {
+            low = (s, rate);
+        } else {
+            high = (s, rate);
+        }
+        // Newton's step by the second derivative, if it stays between
+        let next = s - rate / node.rates[1][column] * dot(&node.rates[0], &a.rates[0]);
+        s = if next > low.0 && next < high.0 {
+            next
+        } else {
+            0.5 * (low.0 + high.0)
+        };
+    }
+    best
+}
+
+/// Makes each turning a node. The column's rate there is zero by its meaning: where the curve bends sharply, as beside a change point,
+/// the rate that is worked out is zero only to what rounding of the place leaves of it.
+pub(crate) fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], column: usize) {
+    let last = curve.nodes.len() - 1;
+    // a curve that was begun at a dead centre has that node already
+    let known = |t: &Turning| {
+        (t.segment..=t.segment + 1).find(|&k| {
+            let n = &curve.nodes[k];
+            let off = length(&chain.difference(&n.at, &t.node.at));
+            let still = n.is_crossing() || n.rates[0][column].abs() < STILL;
+            off == 0.0 || (still && off < SAME_PLACE)
+        })
+    };
+    let places: Vec<Option<usize>> = turnings.iter().map(known).collect();
+    for &k in places.iter().flatten() {
+        curve.nodes[k].rates[0][column] = 0.0;
+        if curve.end == End::Closed && (k == 0 || k == last) {
+            curve.nodes[last - k].rates[0][column] = 0.0;
+        }
+    }
+    let mut nodes = Vec::with_capacity(curve.nodes.len() + turnings.len());
+    let mut rest = turnings
+        .iter()
+        .zip(&places)
+        .filter(|(_, place)| place.is_none())
+        .map(|(t, _)| t)
+        .peekable();
+    // steps that are now in parts
+    let mut parted: Vec<std::ops::Range<usize>> = Vec::new();
+    for (k, node) in curve.nodes.iter().enumerate() {
+        nodes.push(*node);
+        let before = nodes.len() - 1;
+        while let Some(t) = rest.next_if(|t| t.segment == k) {
+            let mut node = t.node;
+            node.rates[0][column] = 0.0;
+            nodes.push(node);
+        }
+        if nodes.len() - 1 > before {
+            parted.push(before..nodes.len());
+        }
+    }
+    for range in parted {
+        measure(chain, &mut nodes[range.start..=range.end]);
+    }
+    curve.nodes = nodes;
+}
+
+/// Whether a column changes direction at a node, once `insert` has seen the curve.
+pub(crate) fn turns_at(node: &Node, column: usize) -> bool {
+    node.rates[0][column] == 0.0
+}
+
+/// A closed curve begun at another of its nodes, turns counted on.
+pub(crate) fn begun_at(curve: &Curve, start: usize) -> Curve {
+    let last = curve.nodes.len() - 1;
+    let gained = curve.gained();
+    let mut nodes: Vec<Node> = Vec::with_capacity(curve.nodes.len());
+    nodes.extend_from_slice(&curve.nodes[start..last]);
+    nodes.extend(curve.nodes[..=start].iter().map(|n| {
+        let mut n = *n;
+        for c in 0..COLUMNS {
+            n.at.values[c] += gained[c];
+        }
+        n
+    }));
+    Curve { nodes, end: curve.end }
+}

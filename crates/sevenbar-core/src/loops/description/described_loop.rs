@@ -1,0 +1,158 @@
+//! A loop as it is described, with the chain that is followed for it.
+
+use super::reduce::{Reduced, Source, reduce};
+use crate::loops::equation::kinds::Kind;
+use crate::loops::mobility::idle::Idle;
+use crate::outcome::Role;
+use crate::rigid::{Pose, norm};
+use std::f64::consts::TAU;
+
+/// A column of joint values, in the description and in the chain.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Column {
+    pub outer: usize,
+    pub inner: usize,
+}
+
+/// A closed loop of joints: `base Z1 G1 Z2 .. Zn = ground`.
+#[derive(Clone, Debug)]
+pub struct Loop {
+    pub(crate) reduced: Reduced,
+    /// The sum of the links' lengths; inside, lengths are parts of it.
+    pub(crate) size: f64,
+    /// The first column of each joint.
+    pub(super) first: Vec<usize>,
+    pub(crate) columns: usize,
+}
+
+impl Loop {
+    /// From the kinds of the joints, the frames of the first joint and of the ground's side of the last, and the transforms of the
+    /// moving links, one fewer than joints.
+    pub fn new(kinds: &[Kind], base: Pose, ground: Pose, links: &[Pose]) -> Self {
+        let closing = ground.inverse().then(&base);
+        let pitches = kinds
+            .iter()
+            .map(|k| if let Kind::Screw(a) = k { a.abs() } else { 0.0 });
+        let size: f64 = links
+            .iter()
+            .chain([&closing])
+            .map(|l| norm(l.translation))
+            .chain(pitches)
+            .sum();
+        // a spherical linkage has no lengths
+        let size = if size > 0.0 { size } else { 1.0 };
+        let small = |p: &Pose| Pose { rotation: p.rotation, translation: p.translation.map(|x| x / size) };
+        let kinds: Vec<Kind> = kinds
+            .iter()
+            .map(|k| {
+                if let Kind::Screw(a) = k {
+                    Kind::Screw(a / size)
+                } else {
+                    *k
+                }
+            })
+            .collect();
+        let links: Vec<Pose> = links.iter().map(small).collect();
+        let mut first = Vec::with_capacity(kinds.len());
+        let mut columns = 0;
+        for kind in &kinds {
+            first.push(columns);
+            columns += kind.columns();
+        }
+        Self {
+            reduced: reduce(&kinds, &small(&base), &small(&ground), &links),
+            size,
+            first,
+            columns,
+        }
+    }
+
+    /// The same with redundant constraints that agree up to a closure error [rad, or relative to the size]; [`super::AGREE`] by default.
+    pub fn agreeing(mut self, agree: f64) -> Self {
+        if let Some(chain) = &mut self.reduced.chain {
+            chain.agree = agree;
+        }
+        self
+    }
+
+    /// The size of which residuals are parts.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// How many columns of joint values there are.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Freedoms that no joint elsewhere takes part in.
+    pub fn idle(&self) -> &[Idle] {
+        &self.reduced.idle
+    }
+
+    /// Balls that hold an idle spin: the joint, and the axis in the frame before it across which a direction of the link stays.
+    pub fn spin_axes(&self) -> Vec<(usize, [f64; 3])> {
+        let parts = self.reduced.parts.iter().enumerate();
+        parts
+            .filter_map(|(joint, part)| match part.source {
+                Source::Universal(_, frame) => Some((joint, frame.map(|row| row[2]))),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// Freedoms of the joints less the idle ones.
+    pub fn freedoms(&self) -> usize {
+        self.reduced.freedoms
+    }
+
+    /// Whether no more than one freedom can remain, and every idle one is held, so that one input may drive it.
+    pub fn can_be_driven(&self) -> bool {
+        self.reduced.chain.is_some()
+    }
+
+    /// The joint of a column.
+    pub(crate) fn joint_of(&self, column: usize) -> usize {
+        self.first.partition_point(|&f| f <= column).saturating_sub(1)
+    }
+
+    /// The chain's column of a column of the description; `None` for a ball's turn or a held joint.
+    pub(crate) fn chain_column(&self, column: usize) -> Option<usize> {
+        let joint = self.joint_of(column);
+        let chain = self.reduced.chain.as_ref()?;
+        match (self.reduced.parts[joint].source, self.reduced.parts[joint].kind) {
+            (Source::Joint(_), Kind::Ball) => None,
+            (Source::Joint(j), _) => Some(chain.first[j]),
+            _ => None,
+        }
+    }
+
+    /// A column that may drive or be driven; `None` where it is no joint of one freedom that moves.
+    pub(crate) fn inner(&self, outer: usize) -> Option<Column> {
+        Some(Column { outer, inner: self.chain_column(outer)? })
+    }
+
+    /// What a column does on a circuit: `endless` where that has no end of its own, and is followed to where something is far out.
+    pub(crate) fn role(&self, column: Column, range: Option<[f64; 2]>, endless: bool) -> Role {
+        match range {
+            _ if self.is_slide(column.outer) => Role::Slider,
+            Some([low, high]) if endless && high - low > TAU => Role::Spindle,
+            Some(_) => Role::Rocker,
+            None => Role::Crank,
+        }
+    }
+
+    /// Whether a column is a length.
+    pub(super) fn is_slide(&self, column: usize) -> bool {
+        self.reduced.parts[self.joint_of(column)].kind == Kind::Slide
+    }
+
+    /// A value of a column as the chain has it.
+    pub(crate) fn inward(&self, column: usize) -> f64 {
+        if self.is_slide(column) {
+            1.0 / self.size
+        } else {
+            1.0
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Idle freedoms: those that move some links and no joint elsewhere.
+
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::dense::singular_values;
+use crate::loops::equation::kinds::Kind;
+use crate::loops::equation::rotations::ball_rotation;
+use crate::random::Random;
+use crate::rigid::Pose;
+
+/// A freedom in which no joint but those of its own links takes part, joints counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Idle {
+    /// The link between two balls spins about their line.
+    BetweenBalls(usize),
+    /// All links from one ball to the other spin together about their line.
+    ChainBetweenBalls(usize, usize),
+    /// The link spins about an axis on which the neighbouring ball lies: (the joint that is held, the ball).
+    BallOnAxis(usize, usize),
+    /// Two turns about one axis: (the joint that is held, the other).
+    OneAxis(usize, usize),
+    /// Two slides in one direction: (the joint that is held, the other).
+    OneDirection(usize, usize),
+}
+
+impl Idle {
+    /// The joint that is held at its zero.
+    fn held(self) -> Option<usize> {
+        match self {
+            Self::BallOnAxis(held, _) | Self::OneAxis(held, _) | Self::OneDirection(held, _) => Some(held),
+            Self::BetweenBalls(_) | Self::ChainBetweenBalls(..) => None,
+        }
+    }
+}
+
+/// With more balls than these, joints between two of them take part when all links there spin about their line.
+const MOST_SPINNING_BALLS: usize = 3;
+
+/// All idle freedoms, and which joints are held at zero by them.
+pub(crate) fn idle_freedoms(kinds: &[Kind], links: &[Pose]) -> (Vec<Idle>, Vec<bool>) {
+    let mut idle = beside_each_other(kinds, links);
+    let mut held = vec![false; kinds.len()];
+    for joint in idle.iter().filter_map(|i| i.held()) {
+        held[joint] = true;
+    }
+    idle.extend(chains(kinds, &held, &idle));
+    (idle, held)
+}
+
+/// The spins of all links between two balls. Whatever joints they have among them, those outside feel the balls' distance only.
+fn chains(kinds: &[Kind], held: &[bool], known: &[Idle]) -> Vec<Idle> {
+    let balls: Vec<usize> = (0..kinds.len()).filter(|&i| kinds[i] == Kind::Ball).collect();
+    let few = balls.len() <= MOST_SPINNING_BALLS;
+    let mut pairs: Vec<(usize, usize)> = balls.windows(2).map(|p| (p[0], p[1])).collect();
+    if balls.len() == MOST_SPINNING_BALLS {
+        pairs.push((balls[0], balls[2]));
+    }
+    pairs
+        .into_iter()
+        .filter(|&(a, b)| few || (a + 1..b).all(|i| held[i]))
+        .filter(|&(a, b)| b > a + 1 || !known.contains(&Idle::BetweenBalls(a)))
+        .map(|(a, b)| Idle::ChainBetweenBalls(a, b))
+        .collect()
+}
+
+/// Freedoms of the link between two neighbouring joints that nothing else takes part in, in every pose.
+fn beside_each_other(kinds: &[Kind], links: &[Pose]) -> Vec<Idle> {
+    let count = kinds.len();
+    let mut found: Vec<Idle> = Vec::new();
+    let mut taken = vec![false; count];
+    // the ground cannot spin, so the last joint and the first are no such pair
+    for i in 0..count.saturating_sub(1) {
+        let next = i + 1;
+        if taken[i] || taken[next] || !dependent(kinds[i], kinds[next], &links[i]) {
+            continue;
+        }
+        let idle = match (kinds[i], kinds[next]) {
+            (Kind::Ball, Kind::Ball) => Idle::BetweenBalls(i),
+            (Kind::Ball, _) => Idle::BallOnAxis(next, i),
+            (_, Kind::Ball) => Idle::BallOnAxis(i, next),
+            (Kind::Slide, Kind::Slide) => Idle::OneDirection(next, i),
+            _ => Idle::OneAxis(next, i),
+        };
+        taken[idle.held().unwrap_or(i)] = true;
+        found.push(idle);
+    }
+    found
+}
+
+/// Whether the screws of two neighbours depend on each other in every pose: looked at in a few poses at random.
+fn dependent(first: Kind, second: Kind, link: &Pose) -> bool {
+    let mut random = Random(0x1d1e);
+    (0..3).all(|_| {
+        let chain = Chain::new(
+            [first, second]
+                .iter()
+                .enumerate()
+                .map(|(b, kind)| kind.joint(b))
+                .collect(),
+            vec![*link, Pose::STILL],
+        );
+        let mut at = Configuration::ZERO;
+        for value in &mut at.values {
+            *value = 2.0 * random.uniform() - 1.0;
+        }
+        for ball in &mut at.balls {
+            *ball = ball_rotation(&std::array::from_fn(|_| 3.0 * random.uniform()));
+        }
+        let (values, _) = singular_values(&chain.screws(&at));
+        values[values.len() - 1] < 1e-9 * values[0]
+    })
+}

@@ -1,0 +1,244 @@
+//! A pose at which the screws lose rank, and what is left of the closure there.
+//!
+//! Source: docs/theory.md, (19) and (20).
+
+use super::rank::{self, wrenches};
+use crate::loops::equation::chain::{Chain, Configuration};
+use crate::loops::equation::dense::{COLUMNS, Columns, least_squares, length, singular_values};
+use crate::loops::equation::rotations::squared_up;
+use crate::loops::equation::screws::{Twist, twist_of};
+use crate::loops::rates::velocities;
+
+/// Singular values below this part of the greatest, and this many times the one that is known to vanish near by, vanish there too.
+const NEARLY_ZERO: f64 = 1e-3;
+
+const AS_SMALL: f64 = 100.0;
+
+/// Farther than this [rad, or parts of the size] from where it was looked for, a place is another.
+const NEAR: f64 = 0.05;
+
+/// Two limits of a joint nearer than this [rad, or parts of the size] are a change point.
+const SAME_LIMIT: f64 = 1e-6;
+
+/// Curves that pass each other at more than this [rad, or parts of the size] are followed apart, whatever their limits.
+const APART: f64 = 1e-5;
+
+/// Curves that pass each other nearer than this [rad, or parts of the size] are not distinct: a relative change of some 1e-12 in a
+/// dimension makes as much, and rounding hides the way between them.
+const TOUCHING: f64 = 1e-6;
+
+/// A second-order form below this part of the closure's is none: a redundant constraint's.
+const NO_FORM: f64 = 1e-7;
+
+/// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
+pub(crate) const MOST_STEPS: usize = 40;
+
+/// A step [rad, or parts of the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
+pub(crate) const LAST_STEP: f64 = 1e-15;
+
+pub(crate) const STEADY: f64 = 1e-9;
+
+const UNSTEADY: f64 = 1e-6;
+
+/// A part of the greatest slope below which nothing is solved for.
+const NO_SLOPE: f64 = 1e-9;
+
+/// A place where the screws lose rank, and the closure there.
+pub(crate) struct Place {
+    pub at: Configuration,
+    /// Free directions, of unit length and square to each other.
+    pub free: Vec<Columns>,
+    /// The value and the second-order form, by rows, of each part of the closure that the screws leave and that is not redundant.
+    pub forms: Vec<(f64, Vec<f64>)>,
+    /// Closure error that no form explains.
+    pub open: f64,
+    /// The closure error up to which it is a pose.
+    agree: f64,
+}
+
+impl Place {
+    /// By how much curves pass each other there [rad, or parts of the size], as seen in all columns.
+    pub fn passing(&self) -> f64 {
+        let passes = |(value, form): &(f64, Vec<f64>)| {
+            let norm = form.iter().map(|x| x * x).sum::<f64>().sqrt();
+            (2.0 * value.abs() / norm).sqrt()
+        };
+        self.forms.iter().map(passes).fold(0.0, f64::max)
+    }
+
+    /// How far apart two limits of a column are there, also where they are complex.
+    pub fn limits_apart(&self, column: usize) -> f64 {
+        let [(value, form)] = self.forms.as_slice() else {
+            return 2.0 * self.passing();
+        };
+        let [x, y] = self.free.as_slice() else {
+            return 2.0 * self.passing();
+        };
+        let determinant = form[0] * form[3] - form[1] * form[2];
+        let (a, b) = (x[column], y[column]);
+        let bent = (a * a * form[3] - 2.0 * a * b * form[1] + b * b * form[0]) / determinant;
+        2.0 * (2.0 * (value * bent).abs()).sqrt()
+    }
+
+    /// Whether it counts as a change point for these columns: it is one, up to rounding, or their limits nearly meet; or nothing
+    /// can be followed between curves so near.
+    pub fn counts(&self, wished: &[usize], stuck: bool) -> bool {
+        let passing = self.passing();
+        let limits_meet = || wished.iter().any(|&c| self.limits_apart(c) < SAME_LIMIT);
+        self.open < self.agree && (passing < TOUCHING || (passing < APART && (stuck || limits_meet())))
+    }
+}
+
+/// The screws' first derivatives along rates of the joints.
+pub(super) fn carried(chain: &Chain, screws: &[Twist; COLUMNS], rates: &Columns) -> [Twist; COLUMNS] {
+    let mut series = [*screws, [[0.0; 6]; COLUMNS]];
+    velocities::carry(chain, &mut series, &[*rates, [0.0; COLUMNS]], 1);
+    series[1]
+}
+
+/// The place near a pose where the screws have lost rank, with the closure's slope zero in all directions they leave free.
+pub(crate) fn singular_place(chain: &Chain, rough: &Configuration) -> Option<Place> {
+    let mut at = *rough;
+    let (values, _) = singular_values(&chain.screws(&at));
+    let least = chain.columns.checked_sub(2)?;
+    let zero = (NEARLY_ZERO * values[0]).min(AS_SMALL * values[least]);
+    let mut rank = values.iter().filter(|&&v| v > zero).count().min(least);
+    // what else vanishes there is known once it is reached
+    for _ in 0..COLUMNS {
+        at = settled_at_rank(chain, &at, rank)?;
+        if length(&chain.difference(rough, &at)) > NEAR {
+            return None;
+        }
+        let there = rank::rank(&singular_values(&chain.screws(&at)).0, chain.no_rank());
+        if there > rank {
+            return None;
+        }
+        if there == rank {
+            return Some(place_at(chain, &at, rank));
+        }
+        rank = there;
+    }
+    None
+}
+
+/// Newton's method on the closure that screws of a rank see, and on the slope of what they leave.
+pub(super) fn settled_at_rank(chain: &Chain, rough: &Configuration, rank: usize) -> Option<Configuration> {
+    let mut at = *rough;
+    let mut before = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        let placed = chain.place(&at);
+        let split = Split::new(chain, &placed.screws, rank);
+        let count = split.seen.len() + split.left.len() * split.free.len();
+        let mut columns = vec![vec![0.0; count]; chain.columns];
+        let mut right = vec![0.0; count];
+        for (r, row) in split.seen.iter().enumerate() {
+            right[r] = -power(row, &placed.error);
+            for c in 0..chain.columns {
+                columns[c][r] = power(row, &placed.screws[c]);
+            }
+        }
+        for c in 0..chain.columns {
+            let mut unit = [0.0; COLUMNS];
+            unit[c] = 1.0;
+            let moved = carried(chain, &placed.screws, &unit);
+            for (f, free) in split.free.iter().enumerate() {
+                let bent = twist_of(&moved, free);
+                for (w, row) in split.left.iter().enumerate() {
+                    columns[c][split.seen.len() + w * split.free.len() + f] = power(row, &bent);
+                }
+            }
+        }
+        for (f, free) in split.free.iter().enumerate() {
+            let slope = twist_of(&placed.screws, free);
+            for (w, row) in split.left.iter().enumerate() {
+                right[split.seen.len() + w * split.free.len() + f] = -power(row, &slope);
+            }
+        }
+        let step = least_squares(&columns, &right, NO_SLOPE);
+        let mut by = [0.0; COLUMNS];
+        by[..chain.columns].copy_from_slice(&step);
+        let size = length(&by);
+        if !size.is_finite() || size > NEAR {
+            return None;
+        }
+        at = chain.moved(&at, &by);
+        for ball in &mut at.balls {
+            *ball = squared_up(ball);
+        }
+        let steady = size < LAST_STEP || (size < STEADY && size >= 0.5 * before);
+        before = size;
+        if steady {
+            break;
+        }
+    }
+    (before < UNSTEADY).then_some(at)
+}
+
+pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place {
+    let placed = chain.place(at);
+    let split = Split::new(chain, &placed.screws, rank);
+    let count = split.free.len();
+    // each wrench's form as a vector, by which redundant ones are told apart
+    let forms: Vec<Vec<f64>> = split
+        .left
+        .iter()
+        .map(|row| {
+            let mut form = Vec::with_capacity(count * count);
+            for a in &split.free {
+                let moved = carried(chain, &placed.screws, a);
+                form.extend(split.free.iter().map(|b| power(row, &twist_of(&moved, b))));
+            }
+            form
+        })
+        .collect();
+    let values: Vec<f64> = split.left.iter().map(|row| power(row, &placed.error)).collect();
+    let (sizes, mixes) = singular_values(&forms);
+    let mut found = Vec::new();
+    let mut open = 0.0;
+    for (size, mix) in sizes.iter().zip(&mixes) {
+        let value: f64 = mix.iter().zip(&values).map(|(m, v)| m * v).sum();
+        if *size > NO_FORM.max(chain.no_rank()) {
+            let form = (0..count * count)
+                .map(|k| mix.iter().zip(&forms).map(|(m, f)| m * f[k]).sum())
+                .collect();
+            found.push((value, form));
+        } else {
+            open += value * value;
+        }
+    }
+    Place {
+        at: *at,
+        free: split.free,
+        forms: found,
+        open: f64::sqrt(open),
+        agree: chain.agree,
+    }
+}
+
+/// The directions that screws of a rank leave free, and the wrenches that see a motion and those that do not.
+pub(super) struct Split {
+    pub free: Vec<Columns>,
+    pub seen: Vec<Vec<f64>>,
+    pub left: Vec<Vec<f64>>,
+}
+
+impl Split {
+    pub fn new(chain: &Chain, screws: &[Twist; COLUMNS], rank: usize) -> Self {
+        let columns: Vec<Vec<f64>> = screws[..chain.columns].iter().map(|s| s.to_vec()).collect();
+        let (_, right) = singular_values(&columns);
+        let free = right[rank..]
+            .iter()
+            .map(|v| {
+                let mut out = [0.0; COLUMNS];
+                out[..chain.columns].copy_from_slice(v);
+                out
+            })
+            .collect();
+        let (seen, left) = wrenches(&columns, rank);
+        Self { free, seen, left }
+    }
+}
+
+pub(super) fn power(row: &[f64], twist: &Twist) -> f64 {
+    row.iter().zip(twist).map(|(a, b)| a * b).sum()
+}

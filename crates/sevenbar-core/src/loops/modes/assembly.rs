@@ -1,0 +1,37 @@
+//! Every assembly mode of a described loop.
+
+use super::finder::{Completeness, ModeFinder};
+use crate::loops::description::described_loop::Loop;
+use crate::loops::description::joint_values::joint_values;
+
+/// All assembly modes at one input.
+#[derive(Clone, Debug)]
+pub struct Modes {
+    /// The joint values of each, and its closure error relative to the size or radians.
+    pub modes: Vec<(Vec<f64>, f64)>,
+    /// How complete they are.
+    pub completeness: Completeness,
+    /// By how much redundant constraints keep other poses open, least first [rad, or parts of the size].
+    pub misfits: Vec<f64>,
+}
+
+/// Every assembly mode at one value of a column [rad, or length]; `None` where that column is no input.
+pub fn modes(linkage: &Loop, column: usize, value: f64) -> Option<Modes> {
+    let chain = linkage.reduced.chain.as_ref()?;
+    let input = linkage.chain_column(column)?;
+    let finder = ModeFinder::new(chain, input);
+    let value = value * linkage.inward(column);
+    let mut found = finder.once(value);
+    let mut completeness = finder.completeness();
+    if found.modes.is_empty() && finder.is_degenerate() {
+        found.modes.extend(finder.one_by_search(value));
+        completeness = Completeness::Searched;
+    }
+    found.misfits.sort_by(f64::total_cmp);
+    let closed = |at| (joint_values(linkage, at), chain.residual(&chain.place(at)));
+    Some(Modes {
+        modes: found.modes.iter().map(closed).collect(),
+        completeness,
+        misfits: found.misfits,
+    })
+}

@@ -1,0 +1,420 @@
+//! Following complex solutions of the closure while a parameter moves: one predictor and corrector, eight paths side by side.
+//!
+//! A step is predicted by a cubic through the last two places and their rates, and corrected twice by Newton's method; it counts
+//! if the corrections are short and the second far shorter than the first, so that a path is not left for another.
+//!
+//! Source: docs/theory.md, (6); docs/theory_many.md, (7) and (8).
+
+use super::phases::{FACTORS, PhaseLanes, Phases, Watch};
+use crate::loops::equation::closure::{Linear, Slides, Solution, UNKNOWNS, infinite, moved, size};
+use crate::loops::equation::lanes::Lanes;
+use crate::vectors::{LANES, LaneKernel, Reals, Vector, dispatch};
+use num_complex::Complex64;
+
+/// How short the steps are kept.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// First correction [rad, or parts of the size] that steps aim at, and that which they must not exceed.
+    pub aimed: f64,
+    pub largest: f64,
+    /// Second correction that a step must not exceed; the next would be its square.
+    pub second: f64,
+}
+
+/// Paths that keep apart, as between general parameters.
+pub(super) const BRISK: Pace = Pace { aimed: 1e-2, largest: 8e-2, second: 2e-3 };
+
+/// Paths that come near each other, as at the end beside a dead centre.
+pub(crate) const CAREFUL: Pace = Pace { aimed: 1e-4, largest: 1e-3, second: 1e-5 };
+
+/// Second correction as a part of the first.
+pub(super) const LEAST_CONTRACTION: f64 = 0.1;
+
+/// Second correction of far solutions, `e^(i t)` in the hundreds, where rounding is that much greater; after so many corrections.
+const LAST_SECOND_FAR: f64 = 3e-5;
+const LAST_CORRECTIONS: usize = 4;
+
+/// A longer predicted move of all joints together [rad] is made in shorter steps.
+const LONGEST_MOVE: f64 = 1.0;
+
+/// The first step, in the parameter.
+const FIRST_STEP: f64 = 0.02;
+
+/// Steps shorter than this end a path: it runs to infinity or into a singular solution.
+const SHORTEST_STEP: f64 = 1e-9;
+
+/// A closure whose parameter moves.
+pub(crate) trait Homotopy {
+    /// Which joints slide.
+    fn slides(&self) -> &Slides;
+    /// What is watched on all ways, if anything is.
+    fn watch(&self) -> Option<&Watch>;
+    /// Most steps on one way.
+    fn most_steps(&self, pace: Pace) -> usize;
+    /// Whether the end of a way is known well enough after corrections of these sizes [rad, or parts of the size].
+    fn settled(&self, first: f64, second: f64) -> bool;
+    /// The parameter a step along a way.
+    fn ahead<V: Vector>(&self, at: Lanes<V>, by: Lanes<V>) -> Lanes<V>;
+    /// The closure linearised in the unknowns; without its drift where no rate is asked for.
+    fn linearise<V: Vector, const DRIFT: bool>(&self, x: &[Lanes<V>; UNKNOWNS], at: Lanes<V>) -> Linear<V>;
+}
+
+/// A solution under way, and what its next step is predicted from.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    x: Solution,
+    /// The parameter.
+    at: Complex64,
+    /// The solution's rate here and at the place before, the move between and its step; zero where there was none.
+    rate: Solution,
+    rate_before: Solution,
+    moved_before: Solution,
+    before: Complex64,
+    /// Length of the step that is likely to be allowed next.
+    step: f64,
+    phases: Phases,
+}
+
+/// A straight way: its direction, its length, and the parameter at its end.
+#[derive(Clone, Copy)]
+pub(super) struct Way {
+    pub direction: Complex64,
+    pub length: f64,
+    pub end: Complex64,
+    /// Whether its end is corrected to rounding.
+    pub settle: bool,
+}
+
+/// The places at the end of each way of each start, way by way; `ways` is one list for all, or one for each. `None` where a path
+/// does not arrive at a finite regular solution.
+pub(super) fn follow<H: Homotopy>(
+    homotopy: &H,
+    starts: &[Place],
+    ways: &[&[Way]],
+    pace: Pace,
+) -> Vec<Option<Place>> {
+    let each = ways.first().map_or(0, |w| w.len());
+    let mut ends = vec![None; starts.len() * each];
+    if !ends.is_empty() {
+        dispatch(Follow { homotopy, starts, ways, each, pace, ends: &mut ends });
+    }
+    ends
+}
+
+impl Place {
+    /// Where a way begins.
+    pub fn begun(x: &Solution, at: Complex64) -> Self {
+        let zero = [Complex64::ZERO; UNKNOWNS];
+        Self {
+            x: *x,
+            at,
+            rate: zero,
+            rate_before: zero,
+            moved_before: zero,
+            before: Complex64::ZERO,
+            step: 0.0,
+            phases: Phases::NONE,
+        }
+    }
+
+    pub fn solution(&self) -> &Solution {
+        &self.x
+    }
+
+    /// The solution's rate along the way.
+    pub fn rate(&self) -> &Solution {
+        &self.rate
+    }
+
+    /// Its phases.
+    pub fn phases(&self) -> &Phases {
+        &self.phases
+    }
+}
+
+struct Follow<'a, H> {
+    homotopy: &'a H,
+    starts: &'a [Place],
+    ways: &'a [&'a [Way]],
+    each: usize,
+    pace: Pace,
+    ends: &'a mut [Option<Place>],
+}
+
+/// What the lanes hold between steps.
+struct Walk<V> {
+    x: [Lanes<V>; UNKNOWNS],
+    rate: [Lanes<V>; UNKNOWNS],
+    rate_before: [Lanes<V>; UNKNOWNS],
+    moved_before: [Lanes<V>; UNKNOWNS],
+    at: Lanes<V>,
+    before: Lanes<V>,
+    phases: PhaseLanes<V>,
+    /// Length of the way that is left, and of the step that is likely to be allowed.
+    left: Reals,
+    step: Reals,
+    /// The path in each lane, and its way; past the last path the lane rests.
+    path: [usize; LANES],
+    way: [usize; LANES],
+    count: [usize; LANES],
+    settling: [usize; LANES],
+}
+
+impl<H: Homotopy> LaneKernel for Follow<'_, H> {
+    #[inline(always)]
+    fn run<V: Vector>(mut self) {
+        let zero = [Lanes::zero(); UNKNOWNS];
+        let mut walk = Walk::<V> {
+            x: zero,
+            rate: zero,
+            rate_before: zero,
+            moved_before: zero,
+            at: Lanes::one(),
+            before: Lanes::zero(),
+            phases: PhaseLanes::none(),
+            left: [0.0; LANES],
+            step: [0.0; LANES],
+            path: [usize::MAX; LANES],
+            way: [0; LANES],
+            count: [0; LANES],
+            settling: [0; LANES],
+        };
+        let mut next = 0;
+        self.load(&mut walk, [true; LANES], &mut next);
+        while walk.path.iter().any(|&p| p < self.starts.len()) {
+            let finished = self.advance(&mut walk);
+            if finished.contains(&true) {
+                self.load(&mut walk, finished, &mut next);
+            }
+        }
+    }
+}
+
+impl<H: Homotopy> Follow<'_, H> {
+    #[inline(always)]
+    fn way(&self, path: usize, way: usize) -> Way {
+        let ways = if self.ways.len() == 1 {
+            self.ways[0]
+        } else {
+            self.ways[path]
+        };
+        ways[way]
+    }
+
+    /// Puts the next paths into free lanes; a lane without one rests on a copy of the first.
+    #[inline(always)]
+    fn load<V: Vector>(&self, walk: &mut Walk<V>, free: [bool; LANES], next: &mut usize) {
+        let mut from = [&self.starts[0]; LANES];
+        for lane in (0..LANES).filter(|&k| free[k]) {
+            let more = *next < self.starts.len();
+            walk.path[lane] = if more { *next } else { usize::MAX };
+            *next += usize::from(more);
+            walk.way[lane] = 0;
+            walk.count[lane] = 0;
+            walk.settling[lane] = 0;
+            walk.left[lane] = 0.0;
+            if more {
+                from[lane] = &self.starts[walk.path[lane]];
+                walk.left[lane] = self.way(walk.path[lane], 0).length;
+            }
+            walk.step[lane] = from[lane].step;
+            if let Some(watch) = self.homotopy.watch() {
+                walk.phases.put(lane, &from[lane].phases, watch);
+            }
+        }
+        for i in 0..UNKNOWNS {
+            put(&mut walk.x[i], &free, from.map(|p| p.x[i]));
+            // a first step is predicted from nothing
+            if from.iter().any(|p| p.step > 0.0) {
+                put(&mut walk.rate[i], &free, from.map(|p| p.rate[i]));
+                put(&mut walk.rate_before[i], &free, from.map(|p| p.rate_before[i]));
+                put(&mut walk.moved_before[i], &free, from.map(|p| p.moved_before[i]));
+            }
+        }
+        put(&mut walk.at, &free, from.map(|p| p.at));
+        put(&mut walk.before, &free, from.map(|p| p.before));
+    }
+
+    /// One step in each lane; tells which lanes are done with their paths.
+    #[inline(always)]
+    fn advance<V: Vector>(&mut self, walk: &mut Walk<V>) -> [bool; LANES] {
+        let count = self.starts.len();
+        let mut step = [0.0; LANES];
+        let (mut ahead_re, mut ahead_im) = ([0.0; LANES], [0.0; LANES]);
+        let (mut end_re, mut end_im, mut ends) = ([1.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for k in (0..LANES).filter(|&k| walk.path[k] < count) {
+            let way = self.way(walk.path[k], walk.way[k]);
+            // equal steps to the end
+            let steps = (walk.left[k] / walk.step[k]).ceil();
+            step[k] = if walk.step[k] > 0.0 {
+                walk.left[k] / steps.max(1.0)
+            } else {
+                0.0
+            };
+            ahead_re[k] = step[k] * way.direction.re;
+            ahead_im[k] = step[k] * way.direction.im;
+            if steps <= 1.0 && walk.step[k] > 0.0 {
+                ends[k] = 1.0;
+                (end_re[k], end_im[k]) = (way.end.re, way.end.im);
+            }
+        }
+        let (half, zero) = (V::splat(0.5), V::splat(0.0));
+        let ahead = Lanes { re: V::load(&ahead_re), im: V::load(&ahead_im) };
+        let at_end = V::load(&ends);
+        let end = Lanes::load(&end_re, &end_im);
+        let at = self
+            .homotopy
+            .ahead(walk.at, ahead)
+            .replaced_where(at_end, half, end);
+        // a cubic through two places and their rates; a straight line on the first step
+        let known = walk.before.square();
+        let pace = Lanes::zero().replaced_where(known, zero, walk.before.recip());
+        let second = ahead * ahead * pace;
+        let third = second * (ahead + walk.before) * pace;
+        let mut predicted = [Lanes::<V>::zero(); UNKNOWNS];
+        for i in 0..UNKNOWNS {
+            let (rate, rate_before) = (walk.rate[i], walk.rate_before[i]);
+            let mean = walk.moved_before[i] * pace;
+            predicted[i] = (rate * ahead)
+                .plus_product(rate - mean, second)
+                .plus_product(rate + rate_before - mean - mean, third);
+        }
+        let slides = self.homotopy.slides();
+        let reach = size(slides, &walk.x, &predicted);
+        let x1 = moved(slides, &walk.x, &predicted);
+        let (first_correction, ..) = self.homotopy.linearise::<V, false>(&x1, at).solve();
+        let first = size(slides, &x1, &first_correction);
+        let x2 = moved(slides, &x1, &first_correction);
+        let (second_correction, rate, determinant) = self.homotopy.linearise::<V, true>(&x2, at).solve();
+        let last = size(slides, &x2, &second_correction);
+        let x3 = moved(slides, &x2, &second_correction);
+        let (mut factors, mut steady) = ([Lanes::<V>::zero(); FACTORS], [0.0; LANES]);
+        if let Some(watch) = self.homotopy.watch() {
+            factors = watch.factors(slides, &x2, determinant);
+            steady = walk.phases.steady(&factors, watch);
+        }
+
+        let mut accepted = [0.0; LANES];
+        for k in 0..LANES {
+            let good = reach[k] <= LONGEST_MOVE
+                && first[k] <= self.pace.largest
+                && last[k] <= self.pace.second
+                && last[k] <= (LEAST_CONTRACTION * first[k]).max(LAST_SECOND_FAR)
+                && steady[k] >= 0.0;
+            accepted[k] = f64::from(u8::from(good));
+            walk.count[k] += 1;
+            let room = LONGEST_MOVE * 0.8 / reach[k].max(1e-3);
+            if !good {
+                walk.step[k] = step[k] * room.clamp(0.1, 0.5);
+                continue;
+            }
+            walk.left[k] = if ends[k] > 0.0 {
+                0.0
+            } else {
+                walk.left[k] - step[k]
+            };
+            let factor = (self.pace.aimed / first[k].max(1e-9))
+                .sqrt()
+                .sqrt()
+                .clamp(0.5, 2.0);
+            walk.step[k] = if step[k] > 0.0 {
+                step[k] * factor.min(room)
+            } else {
+                walk.step[k].max(FIRST_STEP)
+            };
+        }
+        let taken = V::load(&accepted);
+        let mut gone = [0.0; LANES];
+        for k in 0..LANES {
+            gone[k] = accepted[k] * step[k];
+        }
+        let gone = V::load(&gone);
+        walk.at = walk.at.replaced_where(taken, half, at);
+        if let Some(watch) = self.homotopy.watch() {
+            walk.phases.go_on(&factors, taken, watch);
+        }
+        walk.before = walk.before.replaced_where(gone, zero, ahead);
+        for i in 0..UNKNOWNS {
+            let by = predicted[i] + first_correction[i] + second_correction[i];
+            walk.rate_before[i] = walk.rate_before[i].replaced_where(gone, zero, walk.rate[i]);
+            walk.moved_before[i] = walk.moved_before[i].replaced_where(gone, zero, by);
+            walk.rate[i] = walk.rate[i].replaced_where(taken, half, rate[i]);
+            walk.x[i] = walk.x[i].replaced_where(taken, half, x3[i]);
+        }
+        self.finished(walk, &accepted, (&first, &last))
+    }
+
+    /// Records the ends of ways; tells which lanes are done with their paths or have lost them.
+    #[inline(always)]
+    fn finished<V: Vector>(
+        &mut self,
+        walk: &mut Walk<V>,
+        accepted: &Reals,
+        (first, last): (&Reals, &Reals),
+    ) -> [bool; LANES] {
+        let infinite = infinite(self.homotopy.slides(), &walk.x);
+        let most_steps = self.homotopy.most_steps(self.pace);
+        let mut done = [false; LANES];
+        for k in 0..LANES {
+            if walk.path[k] >= self.starts.len() {
+                walk.step[k] = 0.0;
+                continue;
+            }
+            let at_end = accepted[k] > 0.0 && walk.left[k] <= 0.0;
+            walk.settling[k] += usize::from(at_end);
+            let settled = !self.way(walk.path[k], walk.way[k]).settle
+                || self.homotopy.settled(first[k], last[k])
+                || (walk.settling[k] > LAST_CORRECTIONS && last[k] <= LAST_SECOND_FAR);
+            let stuck = (accepted[k] == 0.0 && walk.step[k] < SHORTEST_STEP) || walk.count[k] > most_steps;
+            if at_end && settled {
+                let mut end = walk.place(k);
+                if let Some(watch) = self.homotopy.watch() {
+                    end.phases = walk.phases.get(k, watch);
+                }
+                self.ends[walk.path[k] * self.each + walk.way[k]] = Some(end);
+                walk.way[k] += 1;
+                walk.count[k] = 0;
+                walk.settling[k] = 0;
+                done[k] = walk.way[k] == self.each;
+                if !done[k] {
+                    walk.left[k] = self.way(walk.path[k], walk.way[k]).length;
+                }
+            } else {
+                done[k] = infinite[k] || stuck;
+            }
+        }
+        done
+    }
+}
+
+impl<V: Vector> Walk<V> {
+    /// The place of a lane.
+    #[inline(always)]
+    fn place(&self, lane: usize) -> Place {
+        let mut out = Place::begun(&[Complex64::ZERO; UNKNOWNS], get(self.at, lane));
+        for i in 0..UNKNOWNS {
+            out.x[i] = get(self.x[i], lane);
+            out.rate[i] = get(self.rate[i], lane);
+            out.rate_before[i] = get(self.rate_before[i], lane);
+            out.moved_before[i] = get(self.moved_before[i], lane);
+        }
+        out.before = get(self.before, lane);
+        out.step = self.step[lane];
+        out
+    }
+}
+
+#[inline(always)]
+fn get<V: Vector>(lanes: Lanes<V>, lane: usize) -> Complex64 {
+    Complex64::new(lanes.re.store()[lane], lanes.im.store()[lane])
+}
+
+/// Puts values into the lanes that are free.
+#[inline(always)]
+fn put<V: Vector>(lanes: &mut Lanes<V>, free: &[bool; LANES], values: [Complex64; LANES]) {
+    let (mut re, mut im) = (lanes.re.store(), lanes.im.store());
+    for k in (0..LANES).filter(|&k| free[k]) {
+        (re[k], im[k]) = (values[k].re, values[k].im);
+    }
+    *lanes = Lanes::load(&re, &im);
+}

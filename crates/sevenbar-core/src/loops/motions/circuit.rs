@@ -1,0 +1,230 @@
+//! One circuit: its rows over an input, and what it is measured by.
+
+use super::extremes::output_extremes;
+use super::passes::Passes;
+use super::row::Row;
+use super::rows::Rows;
+use crate::loops::circuits::curve::{End, Node};
+use crate::loops::circuits::turnings::{self, Turning};
+use crate::loops::description::described_loop::{Column, Loop};
+use crate::loops::equation::chain::{Chain, Configuration, Joint};
+use crate::loops::equation::dense::{COLUMNS, Columns};
+use crate::loops::equation::rotations::short_way;
+use crate::loops::rates::velocities::ORDERS;
+use crate::outcome::{CircuitMeasures, DeadCentre, DeadCentreKind, Role, RowStatus};
+use std::f64::consts::TAU;
+
+/// One connected motion over an input.
+#[derive(Clone, Debug)]
+pub struct Circuit {
+    /// The rows.
+    pub rows: Rows,
+    /// What it is measured by, at the speed of the rows; by a law there are no extremes of rates.
+    pub measures: CircuitMeasures,
+}
+
+/// What is wanted of circuits.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    /// The input.
+    pub driver: Column,
+    /// The output.
+    pub follower: Column,
+    /// Origin and step of the inputs.
+    pub grid: (f64, f64),
+    /// d(input)/dt
+    pub speed: f64,
+    /// The input and its derivatives by time, instead of the grid.
+    pub law: Option<&'a [[f64; 4]]>,
+}
+
+/// The circuit of some passes.
+pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circuit {
+    let chain = passes.chain;
+    let Wanted { driver, follower, grid, speed, law } = *wanted;
+    let curve = &passes.curve;
+    let gained = curve.gained();
+    let closed = curve.end == End::Closed;
+    let crosses = curve.crosses();
+    let turns = curve.goes_round(chain, driver.inner);
+    // never stopped by a dead centre
+    let driven_round = turns && !passes.turns_back();
+    let mut rows = passes.rows(grid.0, grid.1);
+    if !closed {
+        // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
+        let lost = |r: &Row| r.status == RowStatus::NoSolution;
+        rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
+        rows.drain(..rows.iter().take_while(|r| lost(r)).count());
+    }
+    if driven_round {
+        begin_at_zero(chain, &mut rows, driver.inner, &gained, grid.1);
+    }
+    let extremes = if driven_round && !crosses && law.is_none() {
+        output_extremes(passes, &rows, follower.inner, &gained, grid.1)
+    } else {
+        [None; ORDERS]
+    };
+    let shift = shift(chain, &rows);
+    let seen = Seen { linkage, passes, driver, follower, shift };
+    let turnings = turnings::turnings(curve, chain, follower.inner);
+    let (input, output) = (seen.input_range(), seen.output_range(&turnings));
+    let singular = curve.end == End::Singular || crosses;
+    let role = |column: Column, range: Option<[f64; 2]>| linkage.role(column, range, !closed && !singular);
+    let measures = CircuitMeasures {
+        motion_type: if singular {
+            "change-point"
+        } else {
+            Role::pair(role(driver, input), role(follower, output))
+        },
+        closed,
+        turns: if turns {
+            (gained[driver.inner] / TAU).abs().round() as usize
+        } else {
+            0
+        },
+        input,
+        output,
+        dead_centres: seen.dead_centres(&turnings),
+        transmission: None,
+        rates: extremes.map(|e| {
+            e.map(|ends| {
+                ends.map(|[value, at]| [value / linkage.inward(follower.outer), at + shift[driver.inner]])
+            })
+        }),
+    };
+    if let Some(law) = law {
+        let inner_law: Vec<[f64; 4]> = law
+            .iter()
+            .map(|q| q.map(|x| x * linkage.inward(driver.outer)))
+            .collect();
+        rows = passes.law_rows(&inner_law, chain.is_turn(driver.inner), shift[driver.inner]);
+    }
+    let offset = |column| linkage.chain_column(column).map_or(0.0, |c| shift[c]);
+    Circuit {
+        rows: Rows {
+            rows,
+            offsets: (0..linkage.columns).map(offset).collect(),
+            speed: if law.is_some() {
+                1.0
+            } else {
+                speed * linkage.inward(driver.outer)
+            },
+        },
+        measures: measures.at_speed(speed),
+    }
+}
+
+/// A curve as the description has it.
+struct Seen<'a> {
+    linkage: &'a Loop,
+    passes: &'a Passes<'a>,
+    driver: Column,
+    follower: Column,
+    /// Whole turns that are added to each column.
+    shift: Columns,
+}
+
+impl Seen<'_> {
+    fn value(&self, column: Column, at: &Configuration) -> f64 {
+        (at.values[column.inner] + self.shift[column.inner]) / self.linkage.inward(column.outer)
+    }
+
+    /// The dead centres of the input, then those of the output.
+    fn dead_centres(&self, turnings: &[Turning]) -> Vec<DeadCentre> {
+        let passes = self.passes;
+        let dead_centre = |kind, node: &Node, branch| DeadCentre {
+            kind,
+            input: self.value(self.driver, &node.at),
+            output: self.value(self.follower, &node.at),
+            branch,
+            condition: node.inverse_norm,
+        };
+        let limits = passes.limits.len();
+        // round a closed circuit the last is the first
+        let again = usize::from(passes.curve.end == End::Closed && limits > 1);
+        let inputs = passes.limits[..limits - again]
+            .iter()
+            .enumerate()
+            .map(|(n, limit)| dead_centre(DeadCentreKind::Input, limit, n.min(passes.passes.len() - 1)));
+        let outputs = turnings.iter().map(|t| {
+            let pass = passes.passes.iter().position(|p| t.segment < p.to).unwrap_or(0);
+            dead_centre(DeadCentreKind::Output, &t.node, pass)
+        });
+        inputs.chain(outputs).collect()
+    }
+
+    fn input_range(&self) -> Option<[f64; 2]> {
+        self.range(self.driver, &mut self.passes.limits.iter().chain(self.ends()))
+    }
+
+    fn output_range(&self, turnings: &[Turning]) -> Option<[f64; 2]> {
+        // a closed circuit has its extremes where it turns back, an open one perhaps at its ends
+        let open = self.passes.curve.end != End::Closed || turnings.is_empty();
+        let ends = self.ends().into_iter().filter(|_| open);
+        self.range(self.follower, &mut turnings.iter().map(|t| &t.node).chain(ends))
+    }
+
+    /// The range of a column over some nodes; `None` for one that turns fully.
+    fn range(&self, column: Column, nodes: &mut dyn Iterator<Item = &Node>) -> Option<[f64; 2]> {
+        let wide = |[low, high]: [f64; 2], v: f64| [low.min(v), high.max(v)];
+        (!self.passes.curve.goes_round(self.passes.chain, column.inner)).then(|| {
+            nodes
+                .map(|n| self.value(column, &n.at))
+                .fold([f64::INFINITY, f64::NEG_INFINITY], wide)
+        })
+    }
+
+    fn ends(&self) -> [&Node; 2] {
+        let nodes = &self.passes.curve.nodes;
+        [&nodes[0], &nodes[nodes.len() - 1]]
+    }
+}
+
+/// Whole turns that bring the first row into (-pi, pi].
+fn shift(chain: &Chain, rows: &[Row]) -> Columns {
+    let mut shift = [0.0; COLUMNS];
+    if let Some(row) = rows.iter().find(|r| r.status != RowStatus::NoSolution) {
+        for (c, s) in shift.iter_mut().enumerate() {
+            if chain.is_turn(c) {
+                *s = -TAU * ((row.at.values[c] - short_way(row.at.values[c])) / TAU).round();
+            }
+        }
+    }
+    shift
+}
+
+/// Origin and step of the inputs of rows.
+pub(super) fn grid(chain: &Chain, passes: &[Passes], samples: usize) -> (f64, f64) {
+    let slides = |p: &Passes| chain.joints[chain.joint_of(p.input)] == Joint::Slide;
+    if !passes.first().is_some_and(slides) {
+        return (0.0, TAU / samples as f64);
+    }
+    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+    for pass in passes.iter().flat_map(|p| &p.passes) {
+        ends = [
+            ends[0].min(pass.start).min(pass.end),
+            ends[1].max(pass.start).max(pass.end),
+        ];
+    }
+    let span = ends[1] - ends[0];
+    if span > 0.0 {
+        (ends[0], span / samples as f64)
+    } else {
+        (0.0, 1.0)
+    }
+}
+
+/// Rows of a circuit that goes round, begun at the input zero.
+fn begin_at_zero(chain: &Chain, rows: &mut [Row], input: usize, gained: &Columns, step: f64) {
+    let whole =
+        |r: &Row| (r.at.values[input] / TAU - (r.at.values[input] / TAU).round()).abs() * TAU < 0.5 * step;
+    let Some(first) = rows.iter().position(whole) else {
+        return;
+    };
+    for row in &mut rows[..first] {
+        for c in 0..chain.columns {
+            row.at.values[c] += gained[c];
+        }
+    }
+    rows.rotate_left(first);
+}

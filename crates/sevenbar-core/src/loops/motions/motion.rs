@@ -1,0 +1,202 @@
+//! The whole motion of a loop: every circuit found, over any input and output.
+
+use super::circuit::{Circuit, Wanted, circuit, grid};
+use super::passes::Passes;
+use crate::loops::branch_points::counting::Uncounted;
+use crate::loops::circuits::curve::Curve;
+use crate::loops::circuits::found::{Found, Search};
+use crate::loops::circuits::known_curves::Curves;
+use crate::loops::circuits::search::curves;
+use crate::loops::description::described_loop::Loop;
+use crate::loops::description::joint_values::{configuration, joint_values};
+use crate::loops::modes::finder::Completeness;
+use crate::loops::modes::polish::{Settled, polish};
+
+/// How far a joint of a given pose [rad, or parts of the size] may be moved to close the loop.
+const PUT_RIGHT: f64 = 0.05;
+
+/// A pose at which curves meet, or one that stands alone.
+#[derive(Clone, Debug)]
+pub struct ChangePoint {
+    /// The value of each column.
+    pub values: Vec<f64>,
+    /// The circuits that pass it or end there, by their number; none where it stands alone.
+    pub circuits: Vec<usize>,
+    /// How many ways lead out of it.
+    pub ways: usize,
+    /// The most freedoms of a motion out of it; none where it stands alone.
+    pub freedoms: usize,
+}
+
+/// What a loop does.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The circuits' common type or "mixed", or why there are none.
+    pub motion_type: &'static str,
+    /// Where circuits were looked for, and what was found out.
+    pub search: Search,
+    /// The circuits.
+    pub circuits: Vec<Circuit>,
+    /// Poses at which the motion is not smooth.
+    pub change_points: Vec<ChangePoint>,
+    /// Columns that move with the input at rest, if the loop moves somewhere so.
+    pub moving: Option<Vec<usize>>,
+}
+
+/// What goes through a pose.
+#[derive(Clone, Debug)]
+pub enum Through {
+    /// The loop closes near the pose, and moves.
+    Circuit(Box<Circuit>),
+    /// It does not close near it; how far it is from closing, relative to the size or radians.
+    Apart(f64),
+    /// It closes and no motion could be followed.
+    Still,
+    /// It moves with the input at rest: the columns that do.
+    InputRests(Vec<usize>),
+}
+
+/// Every circuit over the inputs of one column, on a grid of `samples` a turn or at the inputs of a law.
+///
+/// `None` where one of the columns is no joint of one freedom that moves.
+pub fn motion(
+    linkage: &Loop,
+    input: usize,
+    output: usize,
+    samples: usize,
+    speed: f64,
+    law: Option<&[[f64; 4]]>,
+) -> Option<Motion> {
+    let Some(chain) = &linkage.reduced.chain else {
+        let search = Search::new(Completeness::Searched);
+        return Some(Motion {
+            motion_type: motion_type(linkage, &search, &[], &[]),
+            search,
+            circuits: Vec::new(),
+            change_points: Vec::new(),
+            moving: None,
+        });
+    };
+    let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
+    let mut curves = curves(chain, &[driver.inner, follower.inner], false);
+    let followed = std::mem::take(&mut curves.curves);
+    let rests = |c: &Curve| c.rests(driver.inner);
+    let moving = followed.iter().any(rests).then(|| moving(linkage, &followed));
+    let passes: Vec<Passes> = followed
+        .into_iter()
+        .filter(|c| !rests(c))
+        .filter_map(|c| Passes::new(chain, c, driver.inner))
+        .collect();
+    let wanted = Wanted { driver, follower, grid: grid(chain, &passes, samples), speed, law };
+    // a pose so far out that the loop hardly closes leaves nothing to tell
+    let (passes, circuits): (Vec<&Passes>, Vec<Circuit>) = passes
+        .iter()
+        .map(|p| (p, circuit(linkage, p, &wanted)))
+        .filter(|(_, c)| !c.rows.is_empty())
+        .unzip();
+    let change_points: Vec<ChangePoint> = curves
+        .change_points
+        .iter()
+        .map(|point| ChangePoint {
+            values: joint_values(linkage, &point.at),
+            circuits: (0..passes.len())
+                .filter(|&k| point.is_on(chain, &passes[k].curve))
+                .collect(),
+            ways: point.rays.len(),
+            freedoms: point.finite,
+        })
+        .collect();
+    let outer = |inner: usize| (0..linkage.columns).find(|&c| linkage.chain_column(c) == Some(inner));
+    let mut search = curves.search;
+    search.columns = search.columns.iter().filter_map(|&c| outer(c)).collect();
+    search.columns.sort_unstable();
+    search.count = search.count.and_then(|mut count| {
+        count.column = outer(count.column).ok_or(Uncounted::Searched)?;
+        Ok(count)
+    });
+    Some(Motion {
+        motion_type: motion_type(linkage, &search, &circuits, &change_points),
+        search,
+        circuits,
+        change_points,
+        moving,
+    })
+}
+
+/// What the circuits have in common, or why there are none.
+fn motion_type(
+    linkage: &Loop,
+    search: &Search,
+    circuits: &[Circuit],
+    change_points: &[ChangePoint],
+) -> &'static str {
+    if change_points.iter().any(|p| p.ways > 0 && !p.circuits.is_empty()) {
+        return "change-point";
+    }
+    if let Some((first, others)) = circuits.split_first() {
+        let one = first.measures.motion_type;
+        return if others.iter().all(|c| c.measures.motion_type == one) {
+            one
+        } else {
+            "mixed"
+        };
+    }
+    match &search.found {
+        Some(found) if found.finite > 1 => "two-inputs",
+        Some(_) => "rigid",
+        // rank six at most
+        None if !linkage.can_be_driven() && linkage.freedoms() > 7 => "two-inputs",
+        None => "cannot-assemble",
+    }
+}
+
+/// The one circuit through a pose, given by its joint values and closed by Newton's method with the input held.
+///
+/// `None` where one of the columns is no joint of one freedom that moves.
+pub fn circuit_through(
+    linkage: &Loop,
+    values: &[f64],
+    input: usize,
+    output: usize,
+    samples: usize,
+    speed: f64,
+    law: Option<&[[f64; 4]]>,
+) -> Option<Through> {
+    let chain = linkage.reduced.chain.as_ref()?;
+    let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
+    let rough = configuration(linkage, values);
+    let Some(Settled { at: pose, .. }) = polish(chain, driver.inner, &rough, PUT_RIGHT).filter(|s| s.agrees)
+    else {
+        return Some(Through::Apart(chain.residual(&chain.place(&rough))));
+    };
+    let mut curves = Curves::new(&[driver.inner, follower.inner]);
+    curves.take(chain, &[pose], driver.inner);
+    curves.finish(chain);
+    let Some(curve) = curves.curves.pop() else {
+        return Some(Through::Still);
+    };
+    if curve.rests(driver.inner) {
+        return Some(Through::InputRests(moving(linkage, &[curve])));
+    }
+    let Some(passes) = Passes::new(chain, curve, driver.inner) else {
+        return Some(Through::Still);
+    };
+    let grid = grid(chain, std::slice::from_ref(&passes), samples);
+    let wanted = Wanted { driver, follower, grid, speed, law };
+    let circuit = circuit(linkage, &passes, &wanted);
+    Some(Through::Circuit(Box::new(circuit)))
+}
+
+/// The columns that move along some of the curves.
+fn moving(linkage: &Loop, curves: &[Curve]) -> Vec<usize> {
+    let moves = |c: usize| curves.iter().any(|curve| !curve.rests(c));
+    (0..linkage.columns)
+        .filter(|&column| linkage.chain_column(column).is_some_and(moves))
+        .collect()
+}
+
+/// How freely the loop moves, from the first poses found over the values of a column.
+pub fn mobility(linkage: &Loop, column: usize) -> Option<Found> {
+    let chain = linkage.reduced.chain.as_ref()?;
+    curves(chain, &[linkage.chain_column(column)?], true).search.found
+}

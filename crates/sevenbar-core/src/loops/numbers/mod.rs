@@ -1,0 +1,5 @@
+//! `A dq = -(de/dp) dp`: how the joints and their rates follow the numbers p of the description.
+
+pub(super) mod numbered_loop;
+pub(super) mod slopes;
+mod twists;
