@@ -2,7 +2,7 @@
 
 A joint moves the link after it against the link before by `Z(q)`, the product of its steps. A step is a turn
 about or a slide along an axis of the frame that the steps before it have moved; the columns of a joint are
-the values of its steps, but for a slide that a screw's turn drives.
+the values of its steps, except a slide that a screw's turn drives.
 
 The last joint of a drawing is `backwards`: it counts the link before it against the ground, as the first
 joint counts the link after it. So its own motion is taken back,
