@@ -5,11 +5,9 @@ import time
 
 import msgspec
 import numpy as np
-import viser
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
 
-from evidence.benches.cases.studio_client import CAMERA, unpacked
+from evidence.benches.cases.studio_client import CAMERA, opened, unpacked
 
 
 class TabClient:
@@ -18,10 +16,7 @@ class TabClient:
     def __init__(self, address):
         self.gui, self.scene, self.values, self.told = {}, {}, {}, []
         self.received, self.last = 0, 0.0
-        version = f"viser-v{viser.__version__}"
-        self._socket = connect(
-            address.replace("http://", "ws://"), subprotocols=[version], max_size=None, compression=None
-        )
+        self._socket = opened(address)
         self._lock = threading.Lock()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import ipaddress
 import webbrowser
 from typing import Annotated
 
@@ -35,6 +34,7 @@ def studio(
     for name in ("viser", "tomlkit"):
         if importlib.util.find_spec(name) is None:
             raise MissingExtraError(f"studio needs {name}; install it with: pip install 'sevenbar[studio]'")
+    from sevenbar.studio.guard import is_loopback
     from sevenbar.studio.server import StudioServer
 
     try:
@@ -45,10 +45,10 @@ def studio(
             f"--host, --port: cannot serve at {host}:{port}: {reason}; give another address"
         ) from None
     try:
-        if not _loopback(host):
+        if not is_loopback(host):
             typer.echo(
-                f"whoever reaches {host} over the network can see and change what is open here: there is no "
-                "password",
+                f"whoever has this address can open it over the network at {host} and see and change what is open "
+                "here; it is sent unencrypted",
                 err=True,
             )
         typer.echo(f"the studio is at {server.address} (Ctrl+C ends it)")
@@ -57,11 +57,3 @@ def studio(
         server.wait()
     finally:
         server.stop()
-
-
-def _loopback(host: str) -> bool:
-    """Whether an address is this machine's own alone."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"

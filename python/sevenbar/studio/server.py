@@ -32,10 +32,7 @@ class StudioServer:
     @property
     def address(self) -> str:
         """What to open in a browser."""
-        host = self._server.get_host()
-        # every address of this machine is no address to go to
-        host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
-        return f"http://{f'[{host}]' if ':' in host else host}:{self._server.get_port()}"
+        return self._server.address
 
     @property
     def tabs(self) -> tuple[Tab, ...]:
