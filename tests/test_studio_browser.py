@@ -506,4 +506,4 @@ def test_closing_the_terminal_ends_it(studio, pages, how):
 @pytest.mark.slow
 def test_another_address_is_told_for_what_it_is(studio):
     one = studio("rssr", "--host", "0.0.0.0")
-    assert "whoever reaches 0.0.0.0 over the network can see and change what is open here" in one.stderr
+    assert "served at 0.0.0.0, over the network: whoever has the address printed here" in one.stderr

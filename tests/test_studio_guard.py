@@ -137,7 +137,7 @@ def test_nothing_that_is_refused_makes_a_tab(served):
         tab.close()
 
 
-def test_every_server_has_a_key_of_its_own_that_is_compared_whole(served):
+def test_every_server_has_a_key_of_its_own_that_is_compared_whole():
     keys = {Guard("127.0.0.1").key for _ in range(100)}
     assert len(keys) == 100
     assert {len(key) for key in keys} == {22}

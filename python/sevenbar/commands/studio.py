@@ -47,8 +47,8 @@ def studio(
     try:
         if not is_loopback(host):
             typer.echo(
-                f"whoever has this address can open it over the network at {host} and see and change what is open "
-                "here; it is sent unencrypted",
+                f"served at {host}, over the network: whoever has the address printed here can see and "
+                "change what is open; it is sent unencrypted",
                 err=True,
             )
         typer.echo(f"the studio is at {server.address} (Ctrl+C ends it)")

@@ -1,4 +1,4 @@
-"""Which requests the studio's server answers: those of its own page, with the key that its address carries."""
+"""Which requests the studio's server answers: those of its own page, with the key in its address."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HEADERS: Mapping[str, str] = {
 
 @dataclass(frozen=True)
 class Guard:
-    """Judges the requests to a server at the address `host`; `key` is the first part of the path they ask for.
+    """Judges the requests to a server at the address `host`; `key` is the first part of their path.
 
     Another page in the same browser can send requests here, but not forge `Origin` and `Host`, and it does
     not know the key; nor does another program or person on this machine.

@@ -1,4 +1,4 @@
-"""A viser server that keeps to the address it was given, answers only its own page, and says nothing of its own."""
+"""A viser server that keeps to its address, answers only its own page, and says nothing of its own."""
 
 from __future__ import annotations
 

@@ -18,6 +18,11 @@ POSITIONS = 8
 #: The longest arrow, as a share of the linkage's extent.
 LONGEST_ARROW = 0.35
 VELOCITY, ACCELERATION = "#0072B2", "#D55E00"
+#: When the shape of the picture is asked for after the page has opened [s].
+LOOKS = (0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0, 30.0)
+#: Changes of the field of view that make the browser answer, of the camera's place in the scene that are a
+#: person's, and of the picture's shape that are none; shares, and [1].
+NUDGE, MOVED, SAME_SHAPE = 1e-4, 1e-3, 0.01
 
 NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at this input"
 
@@ -26,7 +31,7 @@ class Scenery:
     """Draws the session into the scene of a tab."""
 
     def __init__(self, client: viser.ClientHandle, worker: Asked, session: Session) -> None:
-        self._client, self._session = client, session
+        self._client, self._worker, self._session = client, worker, session
         self.stage = Stage(client.scene)
         gui = client.gui
         self._ghosts = gui.add_dropdown("ghosts", (NO_GHOSTS, ALONG, MODES))
@@ -47,6 +52,9 @@ class Scenery:
         for switch in self._switches.values():
             switch.on_update(lambda _: worker.ask("scenery", lambda: None))
         self._looked_at: object = None
+        self._aimed: tuple[Floats, float] | None = None
+        self._arrived = False
+        client.camera.on_update(self._camera_changed)
         self._drawn: dict[str, object] = {}
         self._everything = np.empty((0, 3))
         self._units: dict[int, tuple[float, float]] = {}
@@ -57,11 +65,45 @@ class Scenery:
         self._drawn.clear()
 
     def aim(self) -> None:
-        """Turns the camera to what is drawn, by the shape that the window has now."""
+        """Turns the camera to what is drawn, by the shape of the picture as last sent."""
         camera = self._client.camera
-        place, target = self.stage.look(camera.aspect, self._everything)
+        aspect = camera.aspect
+        place, target = self.stage.look(aspect, self._everything)
         camera.fov = FIELD
         camera.position, camera.look_at = place, target
+        self._aimed, self._arrived = (place, aspect), False
+
+    def watch(self) -> None:
+        """Aims again while the page is put together, until the picture keeps its shape.
+
+        The picture is as wide as the window at first, then the panels are put at its sides. The browser says
+        nothing of that until the camera changes.
+        """
+        for number, delay in enumerate(LOOKS):
+            self._worker.ask(("look", number), self._ask_shape, delay=delay)
+
+    def _ask_shape(self) -> None:
+        """Has the browser say its camera, and with it the picture's shape, by a change that nobody sees."""
+        camera = self._client.camera
+        if self._aimed is not None:
+            camera.fov = FIELD * (1 + NUDGE) if abs(camera.fov - FIELD) < FIELD * NUDGE / 2 else FIELD
+
+    def _camera_changed(self, _: viser.CameraHandle) -> None:
+        if self._aimed is not None:
+            self._worker.ask("camera", self._seen)
+
+    def _seen(self) -> None:
+        """Aims again where the picture has another shape, unless a person has turned the camera since."""
+        if self._aimed is None:
+            return
+        camera, (place, aspect) = self._client.camera, self._aimed
+        moved = float(np.abs(camera.position - place).max()) > MOVED
+        if moved and self._arrived:
+            self._aimed = None
+        elif not moved:
+            self._arrived = True
+            if abs(camera.aspect - aspect) > SAME_SHAPE * aspect:
+                self.aim()
 
     def show(self) -> None:
         """Draws what has changed."""

@@ -31,7 +31,7 @@ class Transport:
         self._worker, self._session = worker, session
         self._heading = gui.add_html("")
         self._play = gui.add_button("Play", icon=viser.Icon.PLAYER_PLAY_FILLED, hint="the space bar, too")
-        self._steps = gui.add_button_group("step", tuple(STEPS), hint="by samples, of which a turn has 360")
+        self._steps = gui.add_button_group("step samples", tuple(STEPS))
         self._travel = gui.add_slider("input", min=0.0, max=360.0, step=0.5, initial_value=0.0)
         self._goto = gui.add_text("go to input", "", hint="a value of the input, as in 30, 30deg or 0.5rad")
         self._alert = Alert(gui)
@@ -64,7 +64,8 @@ class Transport:
             viser.Icon.PLAYER_PAUSE_FILLED if self._worker.playing else viser.Icon.PLAYER_PLAY_FILLED
         )
 
-    def _pause(self) -> None:
+    def pause(self) -> None:
+        """Ends what plays."""
         if self._worker.playing:
             self._toggle()
 
@@ -73,7 +74,7 @@ class Transport:
         self._worker.ask(("step", object()), lambda: self._halt_and(lambda: self._session.step(rows)))
 
     def _halt_and(self, action: Callable[[], None]) -> None:
-        self._pause()
+        self.pause()
         action()
 
     def _scrubbed(self, event: viser.GuiEvent[Any]) -> None:
@@ -127,7 +128,7 @@ class Transport:
         for control in (self._play, self._travel, self._goto, self._circuit, self._next):
             control.disabled = view is None
         if view is None:
-            self._pause()
+            self.pause()
             return
         options = tuple(f"{c.index}: {c.motion_type}" for c in view.motion)
         if options != self._circuit.options:

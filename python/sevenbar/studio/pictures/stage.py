@@ -111,6 +111,10 @@ class Stage:
         """Places (..., 3) [length] in the scene's own frame."""
         return (places - self.centre) * self.scale
 
+    def from_scene(self, places: Floats) -> Floats:
+        """Places (..., 3) [length] from those in the scene's own frame."""
+        return np.asarray(places / self.scale + self.centre)
+
     def look(self, aspect: float = ASPECT, also: Floats | None = None) -> tuple[Floats, Floats]:
         """Where the camera stands and what it looks at, in the scene, to see the whole motion well.
 

@@ -299,6 +299,12 @@ def nearest(views: Sequence[View], view: View, row: float) -> tuple[View, float]
     return views[top], float(alike)
 
 
+def distance_from_zero(view: View, row: float) -> float:
+    """How far the joints of a view are from zero at a row, but for the turns of balls and their spin."""
+    measure = _Measure(view.motion)
+    return float(measure.apart(view.joints(row), np.zeros(len(view.linkage.columns))))
+
+
 class _Measure:
     """How far apart poses of a motion's linkage are."""
 

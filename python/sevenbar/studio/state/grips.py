@@ -1,0 +1,91 @@
+"""What can be dragged in the scene: the places of drawn joints, and the named points of any linkage."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
+from sevenbar.kinematics.poses import frames_of, joint_frames
+from sevenbar.kinematics.rigid import inverse
+from sevenbar.kinematics.word import Place
+from sevenbar.studio.state.view import View
+
+#: A place that is dragged is rounded to a power of ten that is at most this share of the linkage's size.
+FINENESS = 1 / 300
+
+
+@dataclass(frozen=True, eq=False)
+class Grip:
+    """A place that can be dragged: `at` (3,) [length] in the scene, in the frame of the report.
+
+    `place` is where its coordinates are in the description, `given` (3,) those that are there; `frame` (4, 4)
+    takes them to the scene. `key` is its own among the grips of a description.
+    """
+
+    name: str
+    place: Place
+    given: Floats
+    frame: Floats
+
+    @property
+    def key(self) -> str:
+        """Its own among all."""
+        return f"{self.place[0]}_{self.place[1]}"
+
+    @property
+    def at(self) -> Floats:
+        """Where it is in the scene."""
+        return np.asarray(self.frame[:3, :3] @ self.given + self.frame[:3, 3])
+
+    def dragged(self, to: Floats, size: float) -> list[float]:
+        """Its coordinates for another place in the scene, rounded as a person would write them.
+
+        `size` [length] is the linkage's. Coordinates that stay, up to the rounding, stay to the last digit.
+        """
+        back = inverse(self.frame)
+        wanted = back[:3, :3] @ to + back[:3, 3]
+        digits = -math.floor(math.log10(size * FINENESS)) if size > 0 else 12
+        stays = np.abs(wanted - self.given) < 0.5 * 10.0**-digits
+        rounded = [round(float(value), digits) for value in wanted]
+        return [
+            float(old) if same else new for old, same, new in zip(self.given, stays, rounded, strict=True)
+        ]
+
+
+def grips(draft: Draft, view: View | None, row: float) -> list[Grip]:
+    """The grips of a description, at a row of a view of it.
+
+    A drawn linkage has them where it is drawn, whatever the row; another one has those of its named points
+    alone, where there is a view.
+    """
+    vectors: dict[Place, list[float]] = {}
+    for dimension in draft.dimensions:
+        if "at" in dimension.place:
+            vectors.setdefault(dimension.place[:3], []).append(dimension.value)
+    linkage = draft.linkage
+    found = []
+    frames = np.empty((0, 4, 4))
+    drawn = linkage.form == "drawn"
+    if not drawn and view is not None:
+        _, after = joint_frames(linkage, frames_of(linkage, view.joints(row)[None]))
+        frames = after[0]
+    for place, values in vectors.items():
+        number = place[1]
+        assert isinstance(number, int)
+        given, frame = np.array(values), np.eye(4)
+        if place[0] == "joint":
+            name = linkage.joints[number].name
+        else:
+            link = int(draft.raw["point"][number]["link"])
+            name = str(draft.raw["point"][number]["name"])
+            if not drawn and view is None:
+                continue
+            if not drawn:
+                own = linkage.point_frames[link - 1]
+                frame = frames[link - 1] @ own if link < len(linkage.joints) else own
+        found.append(Grip(name, place, given, frame))
+    return found
