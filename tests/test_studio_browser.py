@@ -402,7 +402,7 @@ def test_the_input_is_driven_by_another_joint(desk):
 def test_files_are_saved_and_opened_again(desk, tmp_path):
     page = desk.page
     open_tab(page, "Files")
-    saved = download(page, "Save as TOML", tmp_path)
+    saved = download(page, "Download as TOML", tmp_path)
     assert saved.name == f"{desk.name}.toml"
     assert sb.load(saved).dimensions == desk.linkage.dimensions
     bad = tmp_path / "bad.toml"

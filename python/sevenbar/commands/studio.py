@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import webbrowser
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -37,8 +38,10 @@ def studio(
     from sevenbar.studio.guard import is_loopback
     from sevenbar.studio.server import StudioServer
 
+    # the folder of the file that was opened, else that in which the command was called
+    folder = Path(linkage).resolve().parent if Path(linkage).is_file() else Path.cwd()
     try:
-        server = StudioServer(text, linkage, host, port)
+        server = StudioServer(text, linkage, host, port, folder)
     except OSError as error:
         reason = (error.strerror or str(error)).lower().partition(" (")[0]
         raise RequestError(

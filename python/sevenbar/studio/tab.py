@@ -16,6 +16,7 @@ from sevenbar.studio.panels.scenery import Scenery
 from sevenbar.studio.panels.shaping import ShapePanel
 from sevenbar.studio.panels.transport import Transport
 from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.shelf import Shelf
 from sevenbar.studio.state.verdict import verdict
 from sevenbar.studio.worker import Worker
 
@@ -27,7 +28,7 @@ STYLE = (
     "<style>.mantine-Slider-root + .mantine-NumberInput-root { display: none }"
     " .mantine-Slider-root { margin-bottom: 0.55em }"
     # four tabs in the narrowest panel
-    " .mantine-Tabs-tab { padding-inline: 0.6em }</style>"
+    " .mantine-Tabs-tab { padding-inline: 0.45em !important }</style>"
 )
 
 FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the terminal"
@@ -36,7 +37,8 @@ FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the 
 class Tab:
     """What one browser tab shows; nothing of it is shared with another."""
 
-    def __init__(self, client: viser.ClientHandle, session: Session) -> None:
+    def __init__(self, client: viser.ClientHandle, session: Session, shelf: Shelf | None) -> None:
+        """`shelf` has the files that the tab may save to."""
         self.session, self._client = session, client
         self.worker = Worker(self._tick, self._show, self._fault)
         gui = client.gui
@@ -60,7 +62,7 @@ class Tab:
             with tabs.add_tab("Points", viser.Icon.POINT):
                 self._points = PointsPanel(gui, self.worker, session)
             with tabs.add_tab("Files", viser.Icon.FILE):
-                FilesPanel(client, self.worker, session)
+                self._files = FilesPanel(client, self.worker, session, shelf)
             gui.main_panel.dock_right()
             gui.main_panel.set_width(_width(RIGHT, window))
             left = gui.add_panel()
@@ -97,6 +99,7 @@ class Tab:
             self._handles.show()
             self._shape.show()
             self._points.show()
+            self._files.show()
             if told != self._told:
                 self._told = told
                 self._verdict.content = content
@@ -112,6 +115,6 @@ class Tab:
 
 
 def _width(panel: tuple[int, int, float], window: int) -> int:
-    """The width of a panel [px] beside the linkage, in a window of a width [px]."""
+    """The width of a panel [px] in a window of a width [px]."""
     most, least, share = panel
     return min(most, max(least, round(share * window)))

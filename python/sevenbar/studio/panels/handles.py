@@ -20,7 +20,10 @@ ARROWS, THICK = 0.17, 3.0
 #: Parts of a row that are none.
 SAME_ROW = 1e-6
 
-DRAWN = "Pull an arrow, or a square between two. Shown as drawn; each pull is one step of undo."
+DRAWN = (
+    "Pull an arrow, or a square between two. The linkage is shown as drawn; what lies in one place moves "
+    "together; each pull is one step of undo."
+)
 POINTS = "Pull an arrow at a point. The dimensions of this form are changed in the boxes below."
 NOTHING = "No points to pull: the dimensions of this form are changed in the boxes below."
 
@@ -142,7 +145,7 @@ class Handles:
             return
         place = self._stage.from_scene(to)
         value = grip.dragged(place, 1.0 / self._stage.scale)
-        self._alert.tried(lambda: self._session.change(grip.place, value, stroke))
+        self._alert.tried(lambda: self._session.move(grip.places, value, stroke))
 
     def _let_go(self, key: str) -> None:
         """Puts a handle where its place has been rounded to."""

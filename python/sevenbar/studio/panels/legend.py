@@ -41,9 +41,9 @@ def legend(view: View) -> str:
             ("\u279e", ACCELERATION, "acceleration of a point"),
             ("\u25cf", MARK_COLOUR, "where it is fastest, slowest"),
         ]
-    told = "".join(
-        f'<span style="white-space:nowrap;margin-right:10px"><span style="color:{colour}">{sign}</span> '
-        f"{escape(words)}</span>"
+    line = "".join(
+        f'<span style="display:inline-block;white-space:nowrap;margin-right:10px">'
+        f'<span style="color:{colour}">{sign}</span> {escape(words)}</span>'
         for sign, colour, words in signs
     )
-    return f'<div style="padding:0 12px 6px;font-size:12px;line-height:1.5;color:#555">{told}</div>'
+    return f'<div style="padding:0 12px 6px;font-size:12px;line-height:1.5;color:#555">{line}</div>'

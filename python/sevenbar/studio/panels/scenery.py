@@ -7,7 +7,8 @@ import viser
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import CIRCUIT_COLOURS
-from sevenbar.drawing.skeleton import places_of
+from sevenbar.drawing.skeleton import places_of, skeleton_of
+from sevenbar.kinematics.poses import frames_of
 from sevenbar.studio.panels.controls import Asked
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.session import Session
@@ -18,8 +19,8 @@ POSITIONS = 8
 #: The longest arrow, as a share of the linkage's extent.
 LONGEST_ARROW = 0.35
 VELOCITY, ACCELERATION = "#0072B2", "#D55E00"
-#: When the shape of the picture is asked for after the page has opened [s].
-LOOKS = (0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0, 30.0)
+#: When, after the page has opened, the browser is asked what shape the picture has [s].
+QUESTIONS = (0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0, 30.0)
 #: Changes of the field of view that make the browser answer, of the camera's place in the scene that are a
 #: person's, and of the picture's shape that are none; shares, and [1].
 NUDGE, MOVED, SAME_SHAPE = 1e-4, 1e-3, 0.01
@@ -51,7 +52,7 @@ class Scenery:
         self._ghosts.on_update(lambda _: worker.ask("scenery", lambda: None))
         for switch in self._switches.values():
             switch.on_update(lambda _: worker.ask("scenery", lambda: None))
-        self._looked_at: object = None
+        self._framed: object = None
         self._aimed: tuple[Floats, float] | None = None
         self._arrived = False
         client.camera.on_update(self._camera_changed)
@@ -61,7 +62,7 @@ class Scenery:
 
     def look(self) -> None:
         """Turns the camera so that the whole motion is seen, at the size it has now."""
-        self._looked_at = None
+        self._framed = None
         self._drawn.clear()
 
     def aim(self) -> None:
@@ -79,7 +80,7 @@ class Scenery:
         The picture is as wide as the window at first, then the panels are put at its sides. The browser says
         nothing of that until the camera changes.
         """
-        for number, delay in enumerate(LOOKS):
+        for number, delay in enumerate(QUESTIONS):
             self._worker.ask(("look", number), self._ask_shape, delay=delay)
 
     def _ask_shape(self) -> None:
@@ -109,10 +110,9 @@ class Scenery:
         """Draws what has changed."""
         view = self._session.view
         if view is None:
-            if self._drawn:
-                self._drawn.clear()
-                self.stage.clear()
+            self._still()
             return
+        self._drawn.pop("still", None)
         row, problem = self._session.row, bool(self._session.problem)
         switches = {name: switch.value for name, switch in self._switches.items()}
         if self._is_new("view", (view, problem)):
@@ -130,6 +130,28 @@ class Scenery:
         if self._is_new("ghosts", (view, ghosts, row if ghosts == MODES else None)):
             self._ghost(view)
 
+    def _still(self) -> None:
+        """Draws a drawn linkage that never moved as it is drawn, in grey; nothing of another one."""
+        draft = self._session.draft
+        if not self._is_new("still", draft):
+            return
+        self.stage.clear()
+        self._drawn = {"still": draft}
+        linkage = draft.linkage
+        if linkage.form != "drawn":
+            return
+        zero = np.zeros((1, len(linkage.columns)))
+        frame = skeleton_of(linkage, frames_of(linkage, zero), linkage.added_points)
+        self._everything = frame.places.reshape(-1, 3)
+        if self._framed is not draft.text:
+            self.stage.frame_view(self._everything)
+        self.stage.set(frame, (linkage.drive.joint, linkage.drive.output))
+        self.stage.pose(frame.places[0])
+        self.stage.grey(True)
+        if self._framed is not draft.text:
+            self._framed = draft.text
+            self.aim()
+
     def _is_new(self, what: str, state: object) -> bool:
         """Whether something has to be drawn anew, since what it shows has changed."""
         if self._drawn.get(what) == state:
@@ -139,7 +161,7 @@ class Scenery:
 
     def _take(self, view: View, *, grey: bool) -> None:
         """Draws another view; what was opened anew is checked from where all of it is seen."""
-        fresh = self._looked_at is not self._session.draft.text
+        fresh = self._framed is not self._session.draft.text
         if fresh:
             # of every circuit, so that none is out of the picture when it is chosen
             every = np.concatenate([each.frame.places.reshape(-1, 3) for each in self._session.views])
@@ -157,7 +179,7 @@ class Scenery:
             for index in own_points(view)
         }
         if fresh:
-            self._looked_at = self._session.draft.text
+            self._framed = self._session.draft.text
             self.aim()
 
     def _ghost(self, view: View) -> None:

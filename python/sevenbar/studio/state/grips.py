@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,19 +22,18 @@ FINENESS = 1 / 300
 class Grip:
     """A place that can be dragged: `at` (3,) [length] in the scene, in the frame of the report.
 
-    `place` is where its coordinates are in the description, `given` (3,) those that are there; `frame` (4, 4)
-    takes them to the scene. `key` is its own among the grips of a description.
+    `places` are where its coordinates are in the description: those of all that is drawn in one place.
+    `given` (3,) are the coordinates, and `frame` (4, 4) takes them to the scene.
     """
 
-    name: str
-    place: Place
+    places: tuple[Place, ...]
     given: Floats
     frame: Floats
 
     @property
     def key(self) -> str:
         """Its own among all."""
-        return f"{self.place[0]}_{self.place[1]}"
+        return f"{self.places[0][0]}_{self.places[0][1]}"
 
     @property
     def at(self) -> Floats:
@@ -67,7 +66,7 @@ def grips(draft: Draft, view: View | None, row: float) -> list[Grip]:
         if "at" in dimension.place:
             vectors.setdefault(dimension.place[:3], []).append(dimension.value)
     linkage = draft.linkage
-    found = []
+    found: list[Grip] = []
     frames = np.empty((0, 4, 4))
     drawn = linkage.form == "drawn"
     if not drawn and view is not None:
@@ -77,15 +76,16 @@ def grips(draft: Draft, view: View | None, row: float) -> list[Grip]:
         number = place[1]
         assert isinstance(number, int)
         given, frame = np.array(values), np.eye(4)
-        if place[0] == "joint":
-            name = linkage.joints[number].name
+        if drawn:
+            same = next((i for i, grip in enumerate(found) if (grip.given == given).all()), None)
+            if same is not None:
+                found[same] = replace(found[same], places=(*found[same].places, place))
+                continue
+        elif view is None:
+            continue
         else:
             link = int(draft.raw["point"][number]["link"])
-            name = str(draft.raw["point"][number]["name"])
-            if not drawn and view is None:
-                continue
-            if not drawn:
-                own = linkage.point_frames[link - 1]
-                frame = frames[link - 1] @ own if link < len(linkage.joints) else own
-        found.append(Grip(name, place, given, frame))
+            own = linkage.point_frames[link - 1]
+            frame = frames[link - 1] @ own if link < len(linkage.joints) else own
+        found.append(Grip((place,), given, frame))
     return found

@@ -300,7 +300,7 @@ def nearest(views: Sequence[View], view: View, row: float) -> tuple[View, float]
 
 
 def distance_from_zero(view: View, row: float) -> float:
-    """How far the joints of a view are from zero at a row, but for the turns of balls and their spin."""
+    """How far the joints of a view are from zero at a row; turns of balls are left out."""
     measure = _Measure(view.motion)
     return float(measure.apart(view.joints(row), np.zeros(len(view.linkage.columns))))
 
