@@ -162,7 +162,7 @@ class Stage:
         self._draw_path("points", [(place, rgb(colour)) for place, colour in drawn[:count]], POINT_PATH)
 
     def clear(self) -> None:
-        """Takes everything out of the scene, but for the floor."""
+        """Takes everything out of the scene; the floor stays."""
         self._plan = self._moving = self._frame = self._places = None
         for batches in (self._solids, self._ghosts, self._arrows, self._marks):
             batches.clear()
