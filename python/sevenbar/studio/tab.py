@@ -28,7 +28,7 @@ STYLE = (
     "<style>.mantine-Slider-root + .mantine-NumberInput-root { display: none }"
     " .mantine-Slider-root { margin-bottom: 0.55em }"
     # four tabs in the narrowest panel
-    " .mantine-Tabs-tab { padding-inline: 0.45em !important }</style>"
+    " [role=tab] { padding-inline: 0.45em !important }</style>"
 )
 
 FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the terminal"

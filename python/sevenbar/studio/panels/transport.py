@@ -21,6 +21,8 @@ from sevenbar.studio.worker import Worker
 #: A cycle takes so long [s] at the speed "1 x".
 CYCLE = 6.0
 SPEEDS = {"1/8 x": 0.125, "1/4 x": 0.25, "1/2 x": 0.5, "1 x": 1.0, "2 x": 2.0, "4 x": 4.0}
+#: Values below this share of the linkage's size are 0.
+ZERO = 1e-12
 STEPS = {"-10": -10, "-1": -1, "+1": 1, "+10": 10}
 
 
@@ -154,6 +156,8 @@ def _reading(session: Session, view: View) -> str:
     """Where the linkage stands: input, output, time and mode."""
     circuit = view.circuit
     second = float(at_row(view.path.output, session.row))
+    # a slide at zero is so up to rounding only
+    second = 0.0 if abs(second) < ZERO * circuit.size else second
     way = ""
     if not circuit.goes_round:
         way = " rising" if view.path.sign[int(session.row)] * view.motion.speed > 0 else " falling"
