@@ -52,7 +52,15 @@ def citations(path: Path) -> list[tuple[str, str]]:
 
 
 def test_the_pages_of_theory_are_numbered():
-    assert NUMBERED == ["conventions", "errata", "rssr", "theory", "theory_design", "theory_many"]
+    assert NUMBERED == [
+        "conventions",
+        "errata",
+        "rssr",
+        "theory",
+        "theory_design",
+        "theory_many",
+        "theory_measures",
+    ]
 
 
 @pytest.mark.parametrize("page", NUMBERED)

@@ -252,7 +252,7 @@ def test_eight_circuits_are_one_table_where_those_that_agree_share_a_row():
 def test_a_slide_is_told_in_the_length_unit():
     text = sevenbar("analyze", "rssp").stdout
     circuit = sb.load("rssp").motion().circuits[0]
-    assert f"{circuit.swing:.6g} mm" in text
+    assert re.search(rf"swing of slider \[mm\] +{circuit.swing:.6g}\b", text)
     assert "slider position max [mm]" in text
     assert f"{circuit.velocity.highest:.6g} @ {math.degrees(circuit.velocity.highest_at):.3f}°" in text
     text = sevenbar("analyze", "rssp", "--input", "slider", "--speed", "12 mm/s", "--output", "crank").stdout
@@ -434,7 +434,9 @@ def test_the_report_of_every_linkage_of_the_gallery_holds_its_extremes_within_a_
         for centre in circuit.dead_centres:
             assert _places([math.degrees(centre.input) % 360], told)
     if len(motion.circuits) > 1:
-        assert told.count(motion.motion_type) == 1
+        # a class by Grashof's rule has the same words
+        once = re.sub(r"^Grashof.*\n(?: .*\n)*", "", told, flags=re.MULTILINE)
+        assert once.count(motion.motion_type) == 1
     page = report.markdown(motion)
     assert _words(page) == _words(told)
 
@@ -453,8 +455,8 @@ def _words(told):
 def test_a_dead_centre_that_no_range_ends_at_is_told_beside_it():
     told = _report(sb.load("six_bar").motion(samples=36, input="parallel_3"))
     assert "other dead" in told
-    # the circuit's range goes from -146.253 to -94.171; these two lie between
-    (row,) = [line.split() for line in told.splitlines() if line.split()[:2] == ["1", "-146.253°"]]
+    # the circuit's range goes from 213.747 to 265.829; these two lie between
+    (row,) = [line.split() for line in told.splitlines() if line.split()[:2] == ["1", "213.747°"]]
     assert row[2] == "219.256°"
 
 

@@ -17,11 +17,16 @@ from sevenbar.sweep.plan import SweepPlan
 LINKAGES = ("seven_r", "rccc", "rscr", "rssp", "planar_4r", "six_bar", "five_bar")
 
 
+#: Loops whose transmission angle is measured one by one.
+WITH_ANGLES = ("planar_4r", "rssp")
+
+
 def plan_of(name: str, count: int) -> SweepPlan:
     linkage = sb.load(name)
     dimensions = [d for d in Draft.of_linkage(linkage).dimensions if d.kind == "length" and d.value]
     ends = sorted((0.9 * dimensions[-1].value, 1.1 * dimensions[-1].value))
-    return SweepPlan.of(linkage, {dimensions[-1].name: span(*ends)}, list(MEASURES), count=count, seed=1)
+    measures = [measure for measure in MEASURES if name not in WITH_ANGLES or "transmission" not in measure]
+    return SweepPlan.of(linkage, {dimensions[-1].name: span(*ends)}, measures, count=count, seed=1)
 
 
 @pytest.mark.parametrize("name", LINKAGES)
@@ -41,6 +46,21 @@ def test_loops_measured_at_once_are_as_each_by_itself(name: str) -> None:
             np.testing.assert_allclose(
                 at_once.columns[measure], column, rtol=1e-9, atol=1e-9, err_msg=measure
             )
+
+
+@pytest.mark.parametrize("name", WITH_ANGLES)
+def test_transmission_angles_of_loops_are_those_of_their_motion(name: str) -> None:
+    linkage = sb.load(name)
+    own = next(d for d in Draft.of_linkage(linkage).dimensions if d.kind == "length" and d.value)
+    plan = SweepPlan.of(linkage, {own.name: [own.value]}, ["transmission_lowest", "transmission_highest"])
+    values = plan.space.values(0, 1)
+    blocks, rest = batched(plan, values, 1)
+    assert rest.tolist() == [0]
+    assert not blocks or not len(blocks[0].linkage)
+    alone = analysed(plan, values, 0, rest)
+    circuit = linkage.motion().circuits[0]
+    assert np.radians(alone.columns["transmission_lowest"][0]) == pytest.approx(circuit.transmission.lowest)
+    assert np.radians(alone.columns["transmission_highest"][0]) == pytest.approx(circuit.transmission.highest)
 
 
 def test_threads_and_neighbours_change_no_bit() -> None:

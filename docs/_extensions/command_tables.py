@@ -18,6 +18,7 @@ PAGES = {
     "studio": "studio.md",
     "compare": "measured.md",
     "calibrate": "measured.md",
+    "axodes": "theory_measures.md",
     "simulate": "simulation.md",
     "export": "export.md",
     "sweep": "sweep.md",

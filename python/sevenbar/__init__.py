@@ -19,8 +19,12 @@ from sevenbar.description.forms import from_axes, from_dh, rssr
 from sevenbar.description.law_file import load_law
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
 from sevenbar.kinematics.geometry import Drive, Joint, Point
+from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
+from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere
+from sevenbar.kinematics.screw_axes import ScrewAxes
 from sevenbar.text.printing import SAID_IN
 
 __all__ = [
@@ -30,14 +34,20 @@ __all__ = [
     "DeadCentre",
     "Drive",
     "Extremes",
+    "FourBar",
+    "InstantCentre",
+    "InstantCentres",
     "Joint",
     "Law",
     "Linkage",
     "Modes",
     "Motion",
+    "MotionPlane",
+    "MotionSphere",
     "OpenRange",
     "Output",
     "Point",
+    "ScrewAxes",
     "Search",
     "Trace",
     "__version__",
@@ -72,7 +82,19 @@ def __dir__() -> list[str]:
     return sorted({*__all__, *_ON_DEMAND})
 
 
+def _offered(module: ModuleType) -> list[str]:
+    own = [
+        name
+        for name, value in vars(module).items()
+        if not name.startswith("_") and getattr(value, "__module__", None) == module.__name__
+    ]
+    return list(getattr(module, "__all__", own))
+
+
 def __getattr__(name: str) -> ModuleType:
     if name in _ON_DEMAND:
-        return importlib.import_module(_ON_DEMAND[name])
+        module = importlib.import_module(_ON_DEMAND[name])
+        # what it offers, without what it imports
+        module.__dict__.setdefault("__dir__", lambda: sorted(_offered(module)))
+        return module
     raise AttributeError(f"module 'sevenbar' has no attribute '{name}'")

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date, time
 from difflib import get_close_matches
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 class SevenbarError(Exception):
@@ -34,6 +39,23 @@ class MissingExtraError(SevenbarError, ImportError):
 
 class EngineError(SevenbarError):
     """A motion that another program could not follow; the text says what to try."""
+
+
+def ends_here(public: Callable[P, T]) -> Callable[P, T]:
+    """A public function whose mistakes of the caller have a traceback that ends at the call.
+
+    What lies below is of no use to the caller: the message has the place, the value and what to do. Faults
+    of the program keep their traceback.
+    """
+
+    @wraps(public)
+    def call(*given: P.args, **named: P.kwargs) -> T:
+        try:
+            return public(*given, **named)
+        except SevenbarError as error:
+            raise error.with_traceback(None) from None
+
+    return call
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,7 @@ from sevenbar.text.ranges import Place
 #: Commands that live with what they do, imported when one of them is asked for: a report should not wait for
 #: the studio.
 _ELSEWHERE = {
+    "axodes": "sevenbar.commands.axodes:axodes",
     "studio": "sevenbar.commands.studio:studio",
     "compare": "sevenbar.commands.compare:compare",
     "calibrate": "sevenbar.commands.compare:calibrate",

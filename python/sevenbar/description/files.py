@@ -9,7 +9,7 @@ from pathlib import Path
 
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.errors import DescriptionError, Problem, ends_here, shown
 from sevenbar.kinematics.linkage import Linkage
 
 #: A linkage has some dozen numbers; a larger file [bytes] or a longer line [characters] is something else,
@@ -18,6 +18,7 @@ LARGEST_FILE = 100_000
 LONGEST_LINE = 2_000
 
 
+@ends_here
 def load(source: str | os.PathLike[str]) -> Linkage:
     """The linkage of a TOML file, or of the gallery by its name.
 
@@ -39,6 +40,7 @@ def text_of(source: str | os.PathLike[str]) -> str:
     return _read(path)
 
 
+@ends_here
 def loads(content: str, source: str = "text") -> Linkage:
     """The linkage described by a TOML text; `source` is its name in messages.
 

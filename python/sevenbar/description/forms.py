@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.proportions import disproportions
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.errors import DescriptionError, Problem, ends_here, shown
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 NO_LENGTH = 1e-12
 
 
+@ends_here
 def rssr(
     M: float,
     N: float,
@@ -62,6 +63,7 @@ def rssr(
     return from_description(raw)
 
 
+@ends_here
 def from_axes(
     joints: Sequence[Mapping[str, Any]],
     *,
@@ -97,6 +99,7 @@ def from_axes(
     return from_description(raw)
 
 
+@ends_here
 def from_dh(
     joints: str,
     *,

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError
+from sevenbar.errors import MissingExtraError, ends_here
 from sevenbar.kinematics.circuits import Law
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
 from sevenbar.text.table import TextTable, read_table
@@ -26,6 +26,7 @@ UNIT_SLIP = 0.5
 QUANTITIES = ("value", "velocity", "acceleration", "jerk")
 
 
+@ends_here
 def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | None = None) -> Law:
     r"""The law of a table of text for a joint of a linkage: its drive's, or `input`.
 

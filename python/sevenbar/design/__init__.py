@@ -13,3 +13,7 @@ def __getattr__(name: str) -> ModuleType:
     if name in __all__:
         return importlib.import_module(f"sevenbar.design.{name}")
     raise AttributeError(f"module 'sevenbar.design' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

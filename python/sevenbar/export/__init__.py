@@ -242,3 +242,7 @@ def _files(word: str, target: Path) -> list[Path]:
     from sevenbar.export.urdf import loop_file
 
     return [target, loop_file(target)]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

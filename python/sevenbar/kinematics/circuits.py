@@ -5,14 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from functools import cached_property
+from itertools import combinations
+from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.rigid import axial
+from sevenbar.errors import RequestError, ends_here, shown
+from sevenbar.kinematics.geometry import Point
+from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
+from sevenbar.kinematics.rigid import axial, pose
+from sevenbar.kinematics.screw_axes import ScrewAxes, Twists, screw_axes
 from sevenbar.text.printing import Printed
 
 Integers = npt.NDArray[np.int64]
@@ -154,6 +159,30 @@ class Law(Printed):
         return np.column_stack([self.q, self.dq, self.ddq, self.dddq])
 
 
+class Answers(Protocol):
+    """What a circuit asks its linkage when it is asked itself."""
+
+    def point(self, name: str) -> Point:
+        """A named point."""
+        ...
+
+    def transmission_angle(self, circuit: Circuit) -> Floats | None:
+        """The transmission angle [rad] on each row (n,)."""
+        ...
+
+    def transmission(self, circuit: Circuit) -> Extremes | None:
+        """The lowest and the highest transmission angle [rad]."""
+        ...
+
+    def advantage(self, circuit: Circuit) -> Extremes | None:
+        """The lowest and the highest mechanical advantage."""
+        ...
+
+    def plane_coordinates(self, places: Floats) -> Floats | None:
+        """Places (..., 3) in the plane of a planar loop (..., 2)."""
+        ...
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Circuit(Printed):
     """One connected motion, row by row along it.
@@ -184,8 +213,6 @@ class Circuit(Printed):
     #: on the way.
     input_range: tuple[float, float] | None
     output_range: tuple[float, float] | None
-    #: The transmission angle [rad]; `None` where it is not defined.
-    transmission: Extremes | None
     #: Of the output's velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3]; `None` where they grow
     #: without bound, or a change point lies within.
     velocity: Extremes | None
@@ -211,6 +238,60 @@ class Circuit(Printed):
     _point: Callable[[int, Floats], Trace] = field(repr=False)
     _frames: Floats = field(repr=False)
     _sensitivity: Callable[[Circuit], Sensitivity] = field(repr=False)
+    _answers: Answers = field(repr=False)
+    #: The extremes of the transmission angle where the closed form has them.
+    _transmission: Extremes | None = field(repr=False)
+
+    @cached_property
+    def transmission(self) -> Extremes | None:
+        """The lowest and the highest transmission angle [rad]; `None` where it is not defined.
+
+        >>> import math
+        >>> import sevenbar as sb
+        >>> lowest = sb.load("planar_4r").motion().circuits[0].transmission.lowest
+        >>> round(math.degrees(lowest), 6)  # cos mu = (100^2 + 80^2 - 130^2) / (2 * 100 * 80), supplement
+        29.686295
+
+        Source: docs/theory_measures.md, (4) to (7).
+        """
+        return self._answers.transmission(self) if self._transmission is None else self._transmission
+
+    @cached_property
+    def transmission_angle(self) -> Floats | None:
+        """The transmission angle [rad] on each row (n,), from 0 to a right angle; `None` where not defined.
+
+        0 at dead centres of the input, NaN on rows without a pose. The pressure angle is a right angle less
+        it.
+
+        Source: docs/theory_measures.md, (4) to (6).
+        """
+        return self._answers.transmission_angle(self)
+
+    @property
+    def mechanical_advantage(self) -> Floats:
+        """Torque or force of the output over that of the input, without losses, (n,): d(input)/d(output).
+
+        Torque over torque has no unit; a force at a slide over a torque is in 1/length, a torque over a
+        force in length. Negative where they go opposite ways; without bound (inf) at dead centres of the
+        output, 0 at those of the input, NaN where a row has no rates.
+
+        Source: docs/theory_measures.md, (11).
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = self.dq[:, self.input_column] / self.dq[:, self.output_column]
+        ratio[self.status == "dead-centre"] = 0.0
+        return np.asarray(ratio)
+
+    @cached_property
+    def advantage(self) -> Extremes | None:
+        """The lowest and the highest mechanical advantage; `None` where the output stands still on the way.
+
+        >>> import sevenbar as sb
+        >>> joint = sb.load("universal_joint").motion().circuits[0]  # a bend of acos(0.8)
+        >>> sorted(abs(round(x, 12)) for x in (joint.advantage.lowest, joint.advantage.highest))
+        [0.8, 1.25]
+        """
+        return self._answers.advantage(self)
 
     @property
     def input(self) -> Floats:
@@ -242,11 +323,13 @@ class Circuit(Printed):
         ends.append(ends[0] + math.tau * self.turns)
         return min(ends[branch : branch + 2]), max(ends[branch : branch + 2])
 
-    def point(self, link: int, at: tuple[float, float, float]) -> Trace:
-        """A point of link 1, 2, .. along the circuit.
+    @ends_here
+    def point(self, link: int | str, at: tuple[float, float, float] | None = None) -> Trace:
+        """A point of link 1, 2, .. along the circuit, or a point of the linkage by its name.
 
         `at` is written as for the points of the file: (u, v, w) in Denavit-Hartenberg rows, in the
-        link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints.
+        link's frame for `[rssr]`, in ground coordinates of the drawn pose for drawn joints. Raises
+        `RequestError` for a link or a name that does not exist.
 
         Source: docs/theory.md, (16).
 
@@ -256,13 +339,23 @@ class Circuit(Printed):
             >>> trace = circuit.point(link=1, at=(250, 0, 0))  # the crank's ball: 250 mm at 10 rad/s
             >>> bool(np.allclose(np.linalg.norm(trace.acceleration, axis=1), 25000))
             True
+            >>> bool(np.array_equal(circuit.point("A").position, trace.position))
+            True
         """
+        if isinstance(link, str):
+            if at is not None:
+                raise RequestError(f"at: point {shown(link)} has its place; leave `at` out, or give a link")
+            named = self._answers.point(link)
+            return self.point(named.link, named.at)
         frame = self._frame(link)
+        if at is None:
+            raise RequestError("at: a link needs a place on it; give three numbers, or a point by its name")
         place = finite_array("at", at)
         if place.size != 3:
             raise RequestError(f"at: {place.size} numbers; give three")
         return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
 
+    @ends_here
     def sensitivity(self) -> Sensitivity:
         """Exact derivatives of all joints and named points by every number of the linkage's description.
 
@@ -277,6 +370,7 @@ class Circuit(Printed):
         """
         return self._sensitivity(self)
 
+    @ends_here
     def link_motion(self, link: int) -> LinkMotion:
         """How link 1, 2, .. turns along the circuit: angular velocity and acceleration, report frame.
 
@@ -299,6 +393,62 @@ class Circuit(Printed):
         back = np.swapaxes(turn, -1, -2)
         spin = rate @ back
         return LinkMotion(turn, axial(spin), axial(second @ back + rate @ np.swapaxes(rate, -1, -2)))
+
+    @ends_here
+    def screw_axes(self, link: int, relative_to: int | None = None) -> ScrewAxes:
+        """The instantaneous screw axis of a link on each row, against the ground or another link.
+
+        Source: docs/theory_measures.md, (8) and (9).
+
+            >>> import sevenbar as sb
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> axes = circuit.screw_axes(2)  # of the coupler
+            >>> axes.point.shape, axes.pitch.shape
+            ((360, 3), (360,))
+            >>> circuit.screw_axes(1).direction[0].tolist()  # the crank turns about its axis
+            [0.0, 0.0, 1.0]
+        """
+        self._frame(link)
+        other = len(self._frames) if relative_to is None else relative_to
+        if relative_to is not None:
+            self._frame(relative_to)
+        if link == other:
+            raise RequestError(f"relative_to: link {link} is the link itself; give another")
+        (own, words), (base, others) = self._twists(int(link)), self._twists(int(other))
+        status = np.where(words == "ok", others, words)
+        return screw_axes(int(link), int(other), own, base, self.size, status)
+
+    @ends_here
+    def instant_centres(self) -> InstantCentres:
+        """The instant centres of all pairs of links of a planar loop, on each row.
+
+        Raises `RequestError` for other loops, whose links have screw axes.
+
+            >>> import sevenbar as sb
+            >>> centres = sb.load("planar_4r").motion().circuits[0].instant_centres()
+            >>> len(centres), centres[4, 1].in_plane[0].tolist()  # the crank's axis
+            (6, [90.0, 0.0])
+
+        Source: docs/theory_measures.md, (10).
+        """
+        if self._answers.plane_coordinates(np.zeros(3)) is None:
+            raise RequestError("instant_centres: the loop is not planar; its links have screw_axes()")
+        count = len(self._frames)
+        found = {}
+        for first, second in combinations(range(1, count + 1), 2):
+            axes = self.screw_axes(first, second)
+            place = self._answers.plane_coordinates(axes.point)
+            assert place is not None
+            slides = np.where((axes.status == "translation")[:, None], axes.direction, np.nan)
+            links = (first, second)
+            found[links] = InstantCentre(links, axes.point, place, slides, axes.status)
+        return InstantCentres(found)
+
+    def _twists(self, link: int) -> tuple[Twists, Words]:
+        """How a link moves, by the frame in which its points are written; and the status of each row."""
+        origin, turning = self.point(link, (0.0, 0.0, 0.0)), self.link_motion(link)
+        frame = pose(turning.rotation @ self._frame(link)[:3, :3], origin.position)
+        return Twists(frame, turning.velocity, origin.velocity), origin.status
 
     def _frame(self, link: object) -> Floats:
         count = len(self._frames)

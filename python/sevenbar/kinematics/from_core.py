@@ -21,8 +21,7 @@ from sevenbar.kinematics.circuits import (
     Trace,
     Words,
 )
-from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search
+from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search, Solvable
 
 _STATUS_WORDS = np.array(STATUSES)
 
@@ -63,7 +62,7 @@ def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
 def circuit_from(
     raw: _core.RawCircuit,
     *,
-    linkage: Loop,
+    linkage: Solvable,
     index: int,
     columns: tuple[int, int],
     speed: float,
@@ -113,7 +112,6 @@ def circuit_from(
         dead_centres=tuple(DeadCentre(*d) for d in raw.dead_centres),
         input_range=raw.input_range,
         output_range=raw.output_range,
-        transmission=_extremes(raw.transmission),
         velocity=velocity,
         acceleration=acceleration,
         jerk=jerk,
@@ -129,6 +127,8 @@ def circuit_from(
         _point=partial(point, order, status),
         _sensitivity=sensitivity,
         _frames=linkage.point_frames,
+        _answers=linkage.answers,
+        _transmission=_extremes(raw.transmission),
     )
 
 

@@ -288,7 +288,8 @@ class Expanded(NamedTuple):
     """The joints as the core takes them, each about or along z of its frame.
 
     `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
-    between them; `last` the number of the last one of each joint of the linkage.
+    between them; `last` the number of the last one of each joint of the linkage, `columns` the column of
+    each, a ball's first.
     """
 
     letters: str
@@ -296,16 +297,20 @@ class Expanded(NamedTuple):
     base: Floats
     links: list[Floats]
     last: list[int]
+    columns: list[int]
 
 
 def expanded(linkage: Loop) -> Expanded:
     """The joints of a loop as the core takes them: screws and balls whole, any other step by step."""
-    letters, advances, fixed, last = "", [], [], []
+    letters, advances, fixed = "", [], []
+    last: list[int] = []
+    columns: list[int] = []
     ahead = linkage.base
-    for i, joint in enumerate(linkage.joints):
+    for i, (joint, own) in enumerate(zip(linkage.joints, linkage.places, strict=True)):
         whole = joint.row.is_screw or joint.row.is_ball
         for step in joint.row.steps[:1] if whole else joint.row.steps:
             letters += joint.kind if whole else step.letter
+            columns.append(own.start + len(letters) - 1 - (last[-1] + 1 if last else 0))
             advances.append(joint.advance)
             ahead = ahead @ joint.before(step) if step.tilted else ahead
             fixed.append(ahead if step.axis == Z else ahead @ axis_to_z(step.axis))
@@ -313,7 +318,7 @@ def expanded(linkage: Loop) -> Expanded:
         last.append(len(letters) - 1)
         if i < len(linkage.links):
             ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
-    return Expanded(letters, advances, fixed[0], fixed[1:], last)
+    return Expanded(letters, advances, fixed[0], fixed[1:], last, columns)
 
 
 def size_of(linkage: Loop) -> float:

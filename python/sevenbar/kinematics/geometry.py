@@ -16,7 +16,7 @@ from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z, column_names
 from sevenbar.kinematics.rigid import about, inverse, pose
-from sevenbar.text.printing import Printed
+from sevenbar.text.printing import Drawable
 
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, joints as drawn.
 Form = Literal["rssr", "rows", "drawn"]
@@ -101,7 +101,7 @@ class Drive:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Loop(Printed):
+class Loop(Drawable):
     """A closed loop `base Z(q1) G1 Z(q2) G2 .. Z(qn) = ground`.
 
     `base` (4, 4) is the frame of joint 1 and `ground` (4, 4) that of the ground's side of the last joint,
@@ -205,6 +205,14 @@ class Loop(Printed):
         """The speed [rad/s, or length/s] at which a column drives where none is given: the drive's, or 1."""
         drives = self.columns.index(self.drive.joint)
         return self.drive.speed if self.column_kinds[drives] == self.column_kinds[column] else 1.0
+
+    def speed_written(self, column: int) -> str:
+        """That speed as the description has it, "3000 rpm"; empty where it is a number, or none."""
+        drives = self.columns.index(self.drive.joint)
+        drive = self.description.get("drive", {})
+        written = drive.get("speed", "") if isinstance(drive, Mapping) else ""
+        same = self.column_kinds[drives] == self.column_kinds[column]
+        return written if isinstance(written, str) and same else ""
 
 
 def following_coupler(

@@ -175,7 +175,8 @@ def _transmission(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]
 
     The ball's way is square to the output's axis, on which two marks lie.
     """
-    if circuit.transmission is None:
+    # of other loops it is not written by points of the description
+    if numbers.linkage.kind != "RSSR" or circuit.transmission is None:
         return
     loop = numbers.loop(circuit.input_column, marks=circuit.output_column)
     # A and B are the first two points of every RSSR, the marks are the last

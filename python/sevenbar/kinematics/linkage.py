@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -10,12 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
-from sevenbar.errors import NotCoveredError, RequestError, shown
+from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
+from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.closed_form import ClosedForm
+from sevenbar.kinematics.four_bar import four_bar_of
 from sevenbar.kinematics.general import GeneralLoop
+from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Modes, Motion, Output, Solvable
+from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
 from sevenbar.text.units import sliding_speed, turning_speed
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
@@ -76,6 +80,7 @@ class Linkage(Solvable):
         except RequestError as error:
             raise RequestError(f"speed: {error}") from None
 
+    @ends_here
     def output(
         self,
         values: npt.ArrayLike,
@@ -120,6 +125,7 @@ class Linkage(Solvable):
             )
         return solver.outputs(array, int(order), column, constant, law)
 
+    @ends_here
     def assembly_modes(
         self, theta: float, *, input: str | None = None, method: Literal["auto", "general"] = "auto"
     ) -> Modes:
@@ -154,6 +160,52 @@ class Linkage(Solvable):
     @cached_property
     def _mobility(self) -> Mobility:
         return self._general.mobility(self.columns.index(self.drive.joint))
+
+    @cached_property
+    def plane(self) -> MotionPlane | None:
+        """The plane of a planar loop; `None` for any other.
+
+        >>> import sevenbar as sb
+        >>> sb.load("planar_4r").plane.x.tolist()
+        [0.0, 1.0, 0.0]
+        """
+        return plane_of(self)
+
+    @property
+    def is_planar(self) -> bool:
+        """Whether it can only move in its plane."""
+        return self.plane is not None
+
+    @cached_property
+    def sphere(self) -> MotionSphere | None:
+        """The centre of a spherical loop, and a radius to draw it with; `None` for any other.
+
+        >>> import sevenbar as sb
+        >>> sb.load("spherical_4r").sphere.radius
+        1.0
+        """
+        return sphere_of(self)
+
+    @cached_property
+    def answers(self) -> LinkageAnswers:
+        """What its circuits take from it: named points, transmission, its plane."""
+        return LinkageAnswers(self)
+
+    @ends_here
+    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+        """The links by Grashof's rule, driven and read as the drive has it or as given.
+
+        `None` for a loop that is no planar or spherical four-bar and no slider-crank.
+
+            >>> import sevenbar as sb
+            >>> bar = sb.load("planar_4r").four_bar()
+            >>> bar.excess, bar.grashof
+            (-30.0, 'crank-rocker')
+
+        Source: docs/theory_measures.md, (1) to (3).
+        """
+        first, second = self._ends(input, self.drive.output if output is None and input is None else output)
+        return four_bar_of(self, self.columns[first], self.columns[second])
 
     @property
     def idle(self) -> tuple[str, ...]:
@@ -196,6 +248,7 @@ class Linkage(Solvable):
                 "between these balls; describe the loop from another joint on, so that R or P stands there"
             )
 
+    @ends_here
     def motion(
         self,
         samples: int = 360,
@@ -225,10 +278,14 @@ class Linkage(Solvable):
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
         if self._has_closed_form(method):
-            return self._closed_form.motion(column, samples, rate, law)
-        self._refuse_unheld()
-        return self._general.motion(column, output_column, samples, rate, law)
+            found = self._closed_form.motion(column, samples, rate, law)
+        else:
+            self._refuse_unheld()
+            found = self._general.motion(column, output_column, samples, rate, law)
+        written = speed if speed is not None else self.speed_written(column)
+        return replace(found, speed_written=written) if isinstance(written, str) and written else found
 
+    @ends_here
     def circuit(
         self,
         pose: npt.ArrayLike,

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -13,13 +15,15 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.kinematics.circuits import (
+    Answers,
     Circuit,
     Law,
     Words,
 )
 from sevenbar.kinematics.columns import joint_column, point_column
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.printing import Printed
+from sevenbar.kinematics.grashof import FourBar
+from sevenbar.text.printing import Drawable, Printed
 from sevenbar.text.units import LENGTHS
 
 if TYPE_CHECKING:
@@ -154,39 +158,54 @@ class Search:
     uncounted: Literal["searched", "lost", "still"] | None = None
 
 
-class Solvable(Loop):
-    """A loop that answers: what results know of the `Linkage` that was asked."""
+class Solvable(Loop, ABC):
+    """A loop that answers: what results know of the `Linkage` of which they are."""
 
     @property
+    @abstractmethod
     def lengths(self) -> tuple[float, float, float]:
         """Crank, coupler and rocker of an RSSR [length]."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def idle(self) -> tuple[str, ...]:
         """Freedoms that move no other link."""
-        raise NotImplementedError
 
-    @property
+    @cached_property
+    @abstractmethod
     def held(self) -> tuple[frozenset[int], list[int], int]:
         """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def spin_axes(self) -> dict[str, Floats]:
         """The axis that holds the idle spin beyond a ball, by the ball's name."""
-        raise NotImplementedError
 
+    @cached_property
+    @abstractmethod
+    def answers(self) -> Answers:
+        """What its circuits take from it."""
+
+    @property
+    @abstractmethod
+    def is_planar(self) -> bool:
+        """Whether it can only move in a plane."""
+
+    @abstractmethod
+    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+        """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
+
+    @abstractmethod
     def mobility(self) -> Mobility:
         """How freely the loop moves."""
-        raise NotImplementedError
 
+    @abstractmethod
     def assembly_modes(
         self, theta: float, *, input: str | None = None, method: Literal["auto", "general"] = "auto"
     ) -> Modes:
         """Every assembly mode at one value of the input."""
-        raise NotImplementedError
 
+    @abstractmethod
     def motion(
         self,
         samples: int = 360,
@@ -198,8 +217,8 @@ class Solvable(Loop):
         method: Literal["auto", "general"] = "auto",
     ) -> Motion:
         """Every circuit over the whole input range."""
-        raise NotImplementedError
 
+    @abstractmethod
     def circuit(
         self,
         pose: npt.ArrayLike,
@@ -211,11 +230,10 @@ class Solvable(Loop):
         law: Law | None = None,
     ) -> Circuit:
         """The one circuit through a pose."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion(Printed):
+class Motion(Drawable):
     """The circuits of a linkage over the whole input range."""
 
     linkage: Solvable
@@ -235,6 +253,8 @@ class Motion(Printed):
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...]
     law: Law | None = None
+    #: The speed as it was written, "3000 rpm", where it was a text.
+    speed_written: str = ""
 
     @property
     def completeness(self) -> Literal["closed-form", "counted", "algebraic", "searched"]:
@@ -258,8 +278,39 @@ class Motion(Printed):
         """How freely the linkage moves."""
         return self.linkage.mobility()
 
+    @property
+    def four_bar(self) -> FourBar | None:
+        """Its links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank.
+
+        >>> import sevenbar as sb
+        >>> sb.load("planar_4r").motion().four_bar.grashof
+        'crank-rocker'
+        """
+        return self.linkage.four_bar(self.input, self.output)
+
     def __iter__(self) -> Iterator[Circuit]:
         return iter(self.circuits)
+
+    def __len__(self) -> int:
+        return len(self.circuits)
+
+    @overload
+    def __getitem__(self, index: SupportsIndex) -> Circuit: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Circuit, ...]: ...
+
+    def __getitem__(self, index: SupportsIndex | slice) -> Circuit | tuple[Circuit, ...]:
+        """A circuit by its number, or some by a slice: `motion[0]`, `motion[-1]`."""
+        try:
+            return self.circuits[index]
+        except IndexError:
+            count = len(self.circuits)
+            raise IndexError(f"motion: no circuit {index}; it has {count}, counted from 0") from None
+
+    def __bool__(self) -> bool:
+        """A motion without circuits is a result as well."""
+        return True
 
     def columns(self, *, si: bool = False) -> dict[str, npt.NDArray[Any]]:
         """Every row of every circuit, column by column; each name ends in its unit.
@@ -309,6 +360,9 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
             for axis, letter in enumerate("xyz"):
                 head = point_column(point.name, letter, order=order, length=length)
                 columns[head] = values[:, axis] * scale
+    if circuit.transmission_angle is not None:
+        transmission = circuit.transmission_angle
+        columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
     columns[f"residual_{length}"] = circuit.residual * scale
     return columns
 

@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.text.printing import WIDTH
+from sevenbar.text.units import split_quantity
 
 
 class Facts:
@@ -26,14 +27,28 @@ class Facts:
         self.grid.add_row(label, Text(text, style=style))
 
 
-def drive_text(input: str, speed: float | None, unit: str, output: str = "") -> str:
+def drive_text(input: str, speed: float | None, unit: str, output: str = "", *, written: str = "") -> str:
     """How a linkage is driven, `speed` [unit/s] or `None` for a law, and what is read of it.
+
+    `written` is the speed as a person wrote it, in a unit that may be another.
 
     >>> drive_text("crank", 10.0, "rad", "rocker")
     'crank at 10 rad/s, output rocker'
+    >>> drive_text("crank", 314.159265, "rad", written="3000 rpm")
+    'crank at 3000 rpm (314.159 rad/s)'
     """
-    how = "by a law" if speed is None else f"at {speed:.6g} {unit}/s"
+    how = "by a law" if speed is None else speed_text(speed, f"{unit}/s", written)
     return f"{input} {how}" + (f", output {output}" if output else "")
+
+
+def speed_text(speed: float, unit: str, written: str = "") -> str:
+    """A speed in the unit of results, after what was `written` where that is another."""
+    plain = f"{speed:.6g} {unit}"
+    own = " ".join(written.split())
+    parts = split_quantity(own)
+    if parts is None or parts[1] in ("", unit):
+        return f"at {plain}"
+    return f"at {own} ({plain})"
 
 
 def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: Sequence[int] = ()) -> Table:

@@ -31,6 +31,7 @@ from sevenbar.reporting.summary import (
     GAP,
     Sheet,
     closure_error,
+    heading,
     joint_text,
     modes_sheets,
     side_lengths,
@@ -77,6 +78,8 @@ def as_dict(motion: Motion) -> dict[str, Any]:
             ],
             "dimensions": dict(linkage.dimensions),
             "lengths": side_lengths(linkage),
+            "planar": linkage.is_planar,
+            "four_bar": None if motion.four_bar is None else vars(motion.four_bar),
         },
         "units": {"length": linkage.length_unit, "angle": "rad", "time": "s"},
         "drive": {
@@ -132,6 +135,7 @@ def _circuit_dict(circuit: Circuit) -> dict[str, Any]:
         "swing": circuit.swing,
         "time_ratio": circuit.time_ratio,
         "transmission": _extremes_dict(circuit.transmission, "not-defined"),
+        "mechanical_advantage": _extremes_dict(circuit.advantage, "unbounded"),
         "extremes": {
             "angle": _extremes_dict(
                 circuit.angle, "turns-fully" if circuit.output_range is None else "not-defined"
@@ -303,7 +307,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
 
 def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
     def parts(width: int) -> Iterator[RenderableType]:
-        yield Text(linkage.name, style="bold underline")
+        yield Text(heading(linkage), style="bold underline")
         count = len(modes)
         value = joint_text(linkage, column, modes.input)
         yield Text(

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Circuit, Extremes, Trace, Words
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.kinematics.circuits import Circuit, Extremes, Sensitivity, Trace, Words
+from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
+from sevenbar.kinematics.screw_axes import ScrewAxes
+from sevenbar.reporting.shown import Shown
 from sevenbar.reporting.summary import (
     COMPLETE,
-    Shown,
     circuit_facts,
     closure_error,
     dimensions_text,
     facts_of,
+    heading,
     joints_text,
     speed_text,
     way_round,
 )
-from sevenbar.text.printing import lines, picture_of, text_of
+from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,6 +37,9 @@ OF_MOTION = (
     *("drive", "law", "motion type", "circuits", "input limits", "change point", "isolated pose"),
     *("completeness", "idle freedom", "redundant", "closure error"),
 )
+
+#: Functions of `sevenbar.plot` that draw a motion.
+OF_A_MOTION = ("curves", "configuration", "joints")
 
 #: Circuits of a motion that are printed one by one.
 MOST_CIRCUITS = 8
@@ -46,7 +53,7 @@ def _(linkage: Linkage) -> str:
     drive = linkage.drive
     speed = speed_text(linkage, drive.joint, drive.speed)
     return lines(
-        f"Linkage '{linkage.name}'",
+        f"Linkage '{heading(linkage)}'",
         [
             ("loop", joints_text(linkage)),
             ("dimensions", dimensions_text(linkage) or _rows(linkage)),
@@ -92,14 +99,14 @@ def _(motion: Motion) -> str:
             facts.append((label, text))
         if label == "circuits":
             facts += _circuits(motion)
-    return lines(f"Motion of '{motion.linkage.name}'", facts)
+    return lines(f"Motion of '{heading(motion.linkage)}'", facts)
 
 
 def _circuits(motion: Motion) -> list[tuple[str, str]]:
     """A line for each circuit: its type where they differ, its ranges; one line where all agree."""
     told = []
     for circuit in motion.circuits[:MOST_CIRCUITS]:
-        facts = circuit_facts(motion, circuit)
+        facts = circuit_facts(motion, circuit, ("motion type", "range of "))
         texts = [text for label, text in facts if label == "motion type"]
         ranges = [(label, text) for label, text in facts if label.startswith("range of ")]
         texts += [f"{label.removeprefix('range of ')} {text}" for label, text in ranges]
@@ -114,8 +121,10 @@ def _circuits(motion: Motion) -> list[tuple[str, str]]:
 def _(circuit: Circuit) -> str:
     place, result = (Shown("rad" if turns else "") for turns in (circuit.input_turns, circuit.output_turns))
 
-    def extent(ends: tuple[float, float] | None, show: Shown) -> str:
-        return "full turns" if ends is None else f"{show(ends[0])} to {show(ends[1])}"
+    def extent(ends: tuple[float, float] | None, show: Shown, *, as_limits: bool = False) -> str:
+        if ends is None:
+            return "full turns"
+        return " to ".join(show.range(*ends) if as_limits else map(show, ends))
 
     def still(kind: str) -> str:
         places = [place(d.input, whole=True) for d in circuit.dead_centres if d.kind == kind]
@@ -132,17 +141,23 @@ def _(circuit: Circuit) -> str:
         [
             ("rows", f"{len(circuit.time)}: {_counts(circuit.status)}"),
             ("columns", ", ".join(circuit.columns)),
-            (circuit.columns[circuit.input_column], extent(circuit.input_range, place)),
+            (circuit.columns[circuit.input_column], extent(circuit.input_range, place, as_limits=True)),
             (circuit.columns[circuit.output_column], extent(circuit.output_range, result)),
             ("input dead centres", still("input")),
             ("output dead centres", still("output")),
             ("time ratio", "" if circuit.time_ratio is None else f"{circuit.time_ratio:.6g}"),
-            ("transmission angle", range_of(circuit.transmission, Shown("rad"))),
+            ("transmission angle", range_of(_known_transmission(circuit), Shown("rad"))),
             ("velocity", range_of(circuit.velocity)),
             ("acceleration", range_of(circuit.acceleration)),
             ("closure error", f"at most {closure_error([circuit]):.1e}"),
         ],
     )
+
+
+def _known_transmission(circuit: Circuit) -> Extremes | None:
+    """The transmission angle if it has been found: to print is not to solve."""
+    known: Extremes | None = vars(circuit).get("transmission", circuit._transmission)
+    return known
 
 
 @text_of.register(Trace)
@@ -156,6 +171,63 @@ def _(trace: Trace) -> str:
             ("acceleration", _extent(np.linalg.norm(trace.acceleration, axis=1))),
         ],
     )
+
+
+@text_of.register(ScrewAxes)
+def _(axes: ScrewAxes) -> str:
+    return lines(
+        f"Screw axes of link {axes.link} against link {axes.relative_to}: {len(axes.status)} rows",
+        [
+            ("status", _counts(axes.status)),
+            ("pitch", _extent(axes.pitch)),
+            ("rate", _extent(axes.rate)),
+            ("slide rate", _extent(axes.slide_rate)),
+        ],
+    )
+
+
+@text_of.register(InstantCentre)
+def _(centre: InstantCentre) -> str:
+    first, second = centre.links
+    sides = zip("xy", centre.in_plane.T, strict=True)
+    return lines(
+        f"Instant centre of links {first} and {second}: {len(centre.status)} rows",
+        [("status", _counts(centre.status)), *((axis, _extent(values)) for axis, values in sides)],
+    )
+
+
+@text_of.register(InstantCentres)
+def _(found: InstantCentres) -> str:
+    return lines(
+        f"{len(found)} instant centres",
+        [(f"{a}-{b}", _counts(centre.status)) for (a, b), centre in found.centres.items()],
+    )
+
+
+@text_of.register(Sensitivity)
+def _(found: Sensitivity) -> str:
+    rows, columns, numbers = found.position.shape
+    # each number by what it moves most, its unit and the greatest derivative
+    most = [
+        f"{name} [{unit}]: " + (f"{column} {value:.3g}" if value else "moves nothing")
+        for name, unit, column, value in zip(found.names, found.units, *_moved_most(found), strict=True)
+    ]
+    return lines(
+        f"Sensitivity of {columns} columns by {numbers} numbers: {rows} rows",
+        [
+            ("status", _counts(found.status)),
+            ("greatest", "; ".join(most[:MOST_CIRCUITS]) + (" .." if len(most) > MOST_CIRCUITS else "")),
+            ("points", ", ".join(found.points)),
+            ("opening", ", ".join(found.opening)),
+        ],
+    )
+
+
+def _moved_most(found: Sensitivity) -> tuple[list[str], list[float]]:
+    """The column that each number moves most, and by how much for one of it; 0 where none is known."""
+    sizes = np.nan_to_num(np.abs(found.position)).max(axis=0, initial=0.0)
+    places = sizes.argmax(axis=0)
+    return [found.columns[place] for place in places], sizes.max(axis=0).tolist()
 
 
 @text_of.register(Output)
@@ -183,6 +255,34 @@ def _counts(status: Words) -> str:
 def _extent(values: Floats) -> str:
     known = values[np.isfinite(values)]
     return f"{known.min() + 0.0:.6g} to {known.max() + 0.0:.6g}" if known.size else "no value"
+
+
+@figure_of.register(Linkage)
+def _(linkage: Linkage, *, kind: str = "configuration", **options: Any) -> Figure:
+    # curves and joints are of a motion: that over the whole range
+    if kind == "modes_overview":
+        from sevenbar.drawing.plot import modes_overview
+
+        return modes_overview(linkage, linkage.assembly_modes(0.0), **options)
+    return _figure(linkage.motion(), kind, options)
+
+
+@figure_of.register(Motion)
+def _(motion: Motion, *, kind: str = "curves", **options: Any) -> Figure:
+    return _figure(motion, kind, options)
+
+
+def _figure(motion: Motion, kind: str, options: dict[str, Any]) -> Figure:
+    """The figure of a motion that a function of `sevenbar.plot` draws."""
+    from sevenbar.drawing import plot
+
+    if kind not in OF_A_MOTION:
+        raise RequestError(
+            f"kind: {shown(kind)} is not a figure of a motion; {suggestion(kind, OF_A_MOTION)}"
+            f"give {', '.join(OF_A_MOTION)}"
+        )
+    figure: Figure = getattr(plot, kind)(motion, **options)
+    return figure
 
 
 def _axes() -> tuple[Figure, Axes]:

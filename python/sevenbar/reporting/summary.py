@@ -13,14 +13,22 @@ from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Modes, Motion, Solvable
+from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
+from sevenbar.reporting.shown import Shown, degrees, plain
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
 
 #: Dead centres told in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
+
+#: Limits of the input that are listed.
+MOST_LIMITS = 8
+
+#: What a linkage is called that was made without a name.
+UNNAMED = "linkage"
 
 #: Characters between two columns in print.
 GAP = 2
@@ -38,6 +46,9 @@ NOTHING = ("-", "none")
 
 
 Texts = tuple[str, ...]
+
+#: Between the ends of a range.
+RANGE = " to "
 
 
 @dataclass(frozen=True)
@@ -73,7 +84,7 @@ def summary(motion: Motion, room: int = 100) -> Summary:
         sheets += _compared(motion, room)
     elif motion.circuits:
         sheets += _side_by_side(motion)
-    return Summary(linkage.name, tuple(facts_of(motion)), tuple(sheets))
+    return Summary(heading(linkage), tuple(facts_of(motion)), tuple(sheets))
 
 
 def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
@@ -126,8 +137,12 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts = [("loop", joints_text(linkage))]
     if numbers := dimensions_text(linkage):
         facts.append(("dimensions", numbers))
+    if bar := motion.four_bar:
+        facts.append(("links", links_text(bar, linkage.length_unit)))
+        facts.append(("Grashof", grashof_text(bar, linkage.length_unit)))
     speed = motion.speed if motion.law is None else None
-    facts.append(("drive", drive_text(motion.input, speed, _units(motion)[0], motion.output)))
+    unit, written = _units(motion)[0], motion.speed_written
+    facts.append(("drive", drive_text(motion.input, speed, unit, motion.output, written=written)))
     if motion.law is not None:
         t = motion.law.t
         rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
@@ -137,8 +152,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         facts.append(("", told))
     facts.append(("circuits", _circuit_count(motion)))
     if motion.circuits or motion.limits.size:
-        show = Shown(_units(motion)[0])
-        facts.append(("input limits", "  ".join(show(x) for x in motion.limits) or _no_limits(motion)))
+        facts.append(("input limits", _limits_text(motion)))
     facts.extend(_change_points(motion))
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
     if motion.completeness != "closed-form":
@@ -150,6 +164,22 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
     return facts
+
+
+def heading(linkage: Loop) -> str:
+    """The name of a linkage, or what it is where a call in Python gave it none."""
+    if linkage.name != UNNAMED:
+        return linkage.name
+    letters = linkage.kind if len(set(linkage.kind)) > 1 else f"{len(linkage.kind)}{linkage.kind[0]}"
+    return f"{letters} linkage"
+
+
+def _limits_text(motion: Motion) -> str:
+    """The input's limits; of many no more than their number, since the tables have them by circuit."""
+    if motion.limits.size > MOST_LIMITS:
+        return f"{motion.limits.size}, by circuit in the table below"
+    show = Shown(_units(motion)[0])
+    return "  ".join(show(x) for x in motion.limits) or _no_limits(motion)
 
 
 def joints_text(linkage: Loop) -> str:
@@ -316,7 +346,10 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     """All that is told of circuits, in order."""
     first, second = motion.input, motion.output
     in_unit, out_unit = _units(motion)
-    place, result = Shown(in_unit), Shown(out_unit)
+    place, result = (Shown("rad" if unit == "rad" else "") for unit in (in_unit, out_unit))
+    # of a slide the unit is in the label: a line is not broken between a number and its unit
+    in_label, out_label = ("" if unit == "rad" else f"[{unit}]" for unit in (in_unit, out_unit))
+    in_head, out_head = (f"\n{label}" if label else "" for label in (in_label, out_label))
 
     def ends(extremes: Extremes | None, show: Callable[[float], str], otherwise: str) -> Texts:
         if extremes is None:
@@ -326,14 +359,17 @@ def _quantities(motion: Motion) -> list[_Quantity]:
 
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
-            return ends(extremes, _plain, "no row within the range")
-        return ends(extremes, _plain, "change point" if circuit.goes_round else "no bound at limits")
+            return ends(extremes, plain, "no row within the range")
+        return ends(extremes, plain, "change point" if circuit.goes_round else "no bound at limits")
 
     def range_of(circuit: Circuit, end: int, show: Shown) -> Texts:
         extent = circuit.output_range if end else circuit.input_range
         if extent is not None and words_of(circuit.motion_type)[end] == "spindle":
             return ("without end",)
-        return ("full turns",) if extent is None else (show(extent[0]), show(extent[1]))
+        if extent is None:
+            return ("full turns",)
+        # the input is given as its limits are
+        return show.range(*extent) if end == 0 else (show(extent[0]), show(extent[1]))
 
     def way(circuit: Circuit) -> Texts:
         words = (circuit.motion_type,) if motion.motion_type == "mixed" else ()
@@ -345,7 +381,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     def time_ratio(circuit: Circuit) -> Texts:
         # a ratio of angles, and of times at a constant speed
         return (
-            ("-",) if circuit.time_ratio is None or motion.law is not None else (_plain(circuit.time_ratio),)
+            ("-",) if circuit.time_ratio is None or motion.law is not None else (plain(circuit.time_ratio),)
         )
 
     def reach(circuit: Circuit) -> Texts:
@@ -362,7 +398,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         told, others = f"dead centres of the {end}", f"{other}dead centres of the {end}"
         head = f"{other}dead\ncentres of\nthe {end}"
         return [
-            _Quantity(told, "", lambda c: _dead_centres(c, end, place), only="list"),
+            _Quantity(told, "", lambda c: _dead_centres(c, end, place), in_label, only="list"),
             _Quantity(others, head, lambda c: _dead_centres(c, end, place, within=True), only="table"),
         ]
 
@@ -371,26 +407,36 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         _Quantity("motion type", "motion type", way),
         _Quantity(
             f"range of {first}",
-            f"range of\n{first}",
+            f"range of\n{first}{in_head}",
             lambda c: range_of(c, 0, place),
-            between=" to ",
+            in_label,
+            between=RANGE,
         ),
         *stands_still("input"),
-        _Quantity(f"range of {second}", "", lambda c: range_of(c, 1, result), between=" to ", only="list"),
-        _Quantity(f"range of {second}", f"range of\n{second} @ {first}", reach, between=" to ", only="table"),
-        _Quantity(f"swing of {second}", "", swing, only="list"),
+        _Quantity(
+            f"range of {second}", "", lambda c: range_of(c, 1, result), out_label, between=RANGE, only="list"
+        ),
+        _Quantity(
+            f"range of {second}",
+            f"range of\n{second} @ {first}{out_head}",
+            reach,
+            out_label,
+            between=RANGE,
+            only="table",
+        ),
+        _Quantity(f"swing of {second}", "", swing, out_label, only="list"),
         *stands_still("output"),
         _Quantity("time ratio", "time\nratio", time_ratio, spare=True),
         _Quantity(
             "transmission angle",
             f"transmission\nangle @ {first}",
-            lambda c: ends(c.transmission, _degrees, "-"),
+            lambda c: ends(c.transmission, degrees, "-"),
             ends=True,
         ),
         _Quantity(
             f"{second} {position}",
             "",
-            lambda c: ends(c.angle, _plain, "-"),
+            lambda c: ends(c.angle, plain, "-"),
             f"[{out_unit}]",
             ends=True,
             only="list",
@@ -411,9 +457,18 @@ def _turns(count: int) -> str:
     return {1: "one turn", 2: "two turns"}.get(count, f"{count} turns")
 
 
-def _telling(motion: Motion, form: Literal["list", "table"]) -> list[tuple[_Quantity, list[Texts]]]:
-    """Each quantity with its cells, without those that say nothing, or that the facts hold already."""
-    quantities = [quantity for quantity in _quantities(motion) if quantity.only in ("", form)]
+def _telling(
+    motion: Motion, form: Literal["list", "table"], labels: tuple[str, ...] = ("",)
+) -> list[tuple[_Quantity, list[Texts]]]:
+    """Each quantity with its cells, without those that say nothing, or that the facts hold already.
+
+    Only those whose names begin with one of the `labels`, since some take time.
+    """
+    quantities = [
+        quantity
+        for quantity in _quantities(motion)
+        if quantity.only in ("", form) and quantity.name.startswith(labels)
+    ]
     found = [(quantity, [quantity.cells(circuit) for circuit in motion]) for quantity in quantities]
     told = f"range of {motion.input}"
     return [
@@ -424,9 +479,12 @@ def _telling(motion: Motion, form: Literal["list", "table"]) -> list[tuple[_Quan
     ]
 
 
-def circuit_facts(motion: Motion, circuit: Circuit) -> list[tuple[str, str]]:
-    """What the report tells of one circuit: names, and values each "@" the input where it is met."""
-    told = [(quantity, [cells[circuit.index]]) for quantity, cells in _telling(motion, "list")]
+def circuit_facts(motion: Motion, circuit: Circuit, labels: tuple[str, ...] = ("",)) -> list[tuple[str, str]]:
+    """What the report has of one circuit: names, and values each "@" the input where it is met.
+
+    Of all, those whose names begin with one of the `labels`.
+    """
+    told = [(quantity, [cells[circuit.index]]) for quantity, cells in _telling(motion, "list", labels)]
     return [(label, cells[0]) for label, cells in _lines(told) if cells[0] not in NOTHING]
 
 
@@ -501,35 +559,11 @@ def width_of(sheet: Sheet) -> int:
 
 
 def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts]], width: int = 0) -> Sheet:
-    where = f"value @ {'angle' if _units(motion)[0] == 'rad' else 'position'} of {motion.input}"
+    unit = _units(motion)[0]
+    where = f"value @ angle of {motion.input}"
+    if unit != "rad":
+        where = f"value @ position of {motion.input} [{unit}]"
     return Sheet((where.ljust(width), *names), tuple((label, *cells) for label, cells in lines))
-
-
-class Shown:
-    """How a joint's value is written: an angle in degrees, a slide in the length unit."""
-
-    def __init__(self, unit: str) -> None:
-        self._unit = unit
-
-    def __call__(self, value: float, *, whole: bool = False) -> str:
-        """The value with its unit; `whole` takes an angle into [0, 360)."""
-        if self._unit != "rad":
-            return f"{value:.6g} {self._unit}".rstrip()
-        return _degrees(value, whole=whole)
-
-    def same(self, a: float, b: float) -> bool:
-        """Whether two values are one place, to the digits that are shown."""
-        return self(a, whole=True) == self(b, whole=True)
-
-
-def _plain(value: float) -> str:
-    return f"{value:.6g}"
-
-
-def _degrees(angle: float, *, whole: bool = False) -> str:
-    # rounded first, so that neither -0.000 nor 360.000 is left
-    degrees = round(math.degrees(angle), 3)
-    return f"{(degrees % 360 if whole else degrees) + 0.0:.3f}\u00b0"
 
 
 def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = False) -> Texts:

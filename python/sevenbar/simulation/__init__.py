@@ -11,3 +11,7 @@ it and knows nothing else, `agreement` of both, then `figures` and `report`.
 from sevenbar.simulation.run import ENGINES, prepared, simulate
 
 __all__ = ["ENGINES", "prepared", "simulate"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

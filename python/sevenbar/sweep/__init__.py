@@ -10,3 +10,7 @@ from sevenbar.sweep.result import Sweep
 from sevenbar.sweep.run import run
 
 __all__ = ["Sweep", "grid", "run", "span"]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -23,8 +23,12 @@ from sevenbar.kinematics.batches import (
 )
 from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.transmission import coupling_of
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names
 from sevenbar.sweep.plan import OF_TYPES, SweepPlan
+
+#: Measures that the core's batches of general loops have not.
+OF_COUPLERS = {"transmission_lowest", "transmission_highest"}
 
 #: Sizes [file's units] between which nothing is refused by the description; others are checked one by one.
 LEAST, GREATEST = 1e-50, 1e50
@@ -34,7 +38,8 @@ def batched(plan: SweepPlan, values: Floats, threads: int) -> tuple[list[Block],
     """The rows of linkages (axes, n) that the core measures, and which are left to be analysed one by one.
 
     Left are those that a description refuses or that do not move, which have a reason to report, change
-    points of an RSSR, whose output must be followed, and all where the sweep is of functions.
+    points of an RSSR, whose output must be followed, other loops whose transmission angle is measured, and
+    all where the sweep is of functions.
     """
     count = values.shape[1]
     if not all(isinstance(measure, str) for measure in plan.measures):
@@ -71,15 +76,19 @@ def _of_loops(plan: SweepPlan, values: Floats, threads: int) -> Block | None:
     """The rows of the loops (axes, n) that are clear; `None` where no description makes one."""
     linkages: list[Linkage] = []
     which: list[int] = []
+    first, last = (plan.draft.linkage.columns.index(name) for name in (plan.input, plan.output))
+    angles = bool(OF_COUPLERS & set(plan.measures))
     for index, row in enumerate(values.T):
         try:
-            linkages.append(plan.draft_of(row).linkage)
+            linkage = plan.draft_of(row).linkage
         except SevenbarError:  # whose reason is reported where it is analysed by itself
             continue
+        if angles and coupling_of(linkage, first, last) is not None:
+            continue
+        linkages.append(linkage)
         which.append(index)
     if not linkages:
         return None
-    first, last = (plan.draft.linkage.columns.index(name) for name in (plan.input, plan.output))
     block = _of_circuits(plan, loop_motions(linkages, first, last, plan.samples, threads))
     return replace(block, linkage=np.array(which)[block.linkage])
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.errors import SevenbarError
+from sevenbar.errors import SevenbarError, ends_here
 
 #: Characters of a line.
 WIDTH = 100
@@ -57,6 +57,20 @@ class Printed:
         return [name for name in super().__dir__() if not name.startswith("_")]
 
 
+class Drawable(Printed):
+    """A result with a figure of its own."""
+
+    @ends_here
+    def plot(self, **options: Any) -> Any:
+        """Its figure, a matplotlib Figure, as `sevenbar.plot` draws it with these options.
+
+        A linkage is drawn in space, a motion as the curves of its output; `kind` names another function of
+        `sevenbar.plot` that takes it, as in `motion.plot(kind="joints")`.
+        """
+        _import_words(self)
+        return figure_of(self, **options)
+
+
 def _import_words(value: object) -> None:
     folder = type(value).__module__.rpartition(".")[0]
     if folder in SAID_IN:
@@ -76,6 +90,12 @@ def picture_of(value: object) -> Any:  # noqa: ARG001
     return None
 
 
+@singledispatch
+def figure_of(value: object, **options: Any) -> Any:
+    """The figure of a result; what each kind has is registered where figures are known."""
+    raise NotImplementedError(f"no figure of {type(value).__name__} with {options}")
+
+
 def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
     """A head, and below it facts: labels and texts in two columns, long texts in several lines."""
     kept = [(label, text) for label, text in facts if text]
@@ -89,8 +109,10 @@ def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
 
 
 def brief(value: object) -> str:
-    """A value on one line: an array by its shape, a result by its head, much by its count."""
+    """A value on one line: a vector by its numbers, an array by its shape, a result by its head."""
     if isinstance(value, np.ndarray):
+        if value.shape == (3,):
+            return f"({', '.join(f'{x + 0.0:.6g}' for x in value)})"
         return f"array {value.shape}"
     if isinstance(value, Printed):
         return repr(value).partition("\n")[0]

@@ -1,0 +1,75 @@
+"""What a circuit asks its linkage: measures that need more than its rows, named points, the plane."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.kinematics.circuits import Circuit, Extremes, Law
+from sevenbar.kinematics.geometry import Point
+from sevenbar.kinematics.motion import Solvable
+from sevenbar.kinematics.plane_and_sphere import plane_of
+from sevenbar.kinematics.transmission import best_row, transmission_angle, transmission_extremes
+
+
+@dataclass(frozen=True, eq=False)
+class LinkageAnswers:
+    """The answers of a linkage; its circuits keep them and ask when they are asked."""
+
+    linkage: Solvable
+
+    def point(self, name: str) -> Point:
+        """A named point; `RequestError` where there is none of the name."""
+        points = {point.name: point for point in self.linkage.points}
+        if name in points:
+            return points[name]
+        known = f"this linkage has {', '.join(points)}" if points else "this linkage has none"
+        raise RequestError(
+            f"point: no point {shown(name)}; {suggestion(name, list(points))}{known}; "
+            "or give a link and a place, as in point(2, at=(10, 0, 0))"
+        )
+
+    def transmission_angle(self, circuit: Circuit) -> Floats | None:
+        """The transmission angle [rad] on each row (n,), `None` where it is not defined."""
+        return transmission_angle(self.linkage, circuit)
+
+    def transmission(self, circuit: Circuit) -> Extremes | None:
+        """The lowest and the highest transmission angle [rad], `None` where it is not defined."""
+        return transmission_extremes(self.linkage, circuit)
+
+    def advantage(self, circuit: Circuit) -> Extremes | None:
+        """The lowest and highest mechanical advantage: extremes of the input's rate, the output driving."""
+        row = best_row(circuit)
+        if row is None or any(centre.kind == "output" for centre in circuit.dead_centres):
+            return None
+        linkage, pose = self.linkage, circuit.q[row]
+        names = [linkage.columns[c] for c in (circuit.output_column, circuit.input_column)]
+        try:
+            back = linkage.circuit(pose, input=names[0], output=names[1], speed=1.0)
+        except RequestError:
+            # through a change point where the output may stand still
+            return None
+        if back.velocity is None:
+            return None
+        places = np.array([back.velocity.lowest_at, back.velocity.highest_at])
+        there = linkage.circuit(
+            pose, input=names[0], output=names[1], law=Law.of([0.0, 1.0], places, 1.0, 0.0)
+        )
+        rates = there.dq[:, circuit.input_column]
+        ends = []
+        for value in (back.velocity.lowest, back.velocity.highest):
+            row = int(np.nanargmin(np.abs(rates - value)))
+            ends.append((value, float(there.q[row, circuit.input_column])))
+        (low, low_at), (high, high_at) = ends
+        if circuit.input_turns and circuit.input_range is None:
+            low_at, high_at = low_at % math.tau, high_at % math.tau
+        return Extremes(low, low_at, high, high_at)
+
+    def plane_coordinates(self, places: Floats) -> Floats | None:
+        """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""
+        plane = plane_of(self.linkage)
+        return None if plane is None else plane.coordinates(places)

@@ -1,0 +1,333 @@
+"""The transmission angle: how squarely the coupler pushes the output.
+
+With the input held, the joint through which the coupler drives the output link can move one way, along u; the
+output moves it another way, along w. What the coupler transmits does no work along u. So
+
+    sin(mu) = |u x w| / (|u| |w|)                                                                          (4)
+
+for the pin of a planar loop (u and w in its plane), and for the axis of a spherical loop as a point of the
+sphere. A ball can move in a plane with the input held, and the force f is square to that plane,
+
+    sin(mu) = |f . w| / (|f| |w|),                                                                         (5)
+
+f along the coupler where it has a ball at its other end too. The pressure angle is 90 degrees less mu.
+
+Source: docs/theory_measures.md, (4) to (7); H. Alt, Werkstattstechnik 26 (1932) for the plane; G. Sutherland,
+B. Roth, J. Eng. Ind. 95 (1973) 589, for the force of a spatial coupler.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from sevenbar.arrays import Floats
+from sevenbar.errors import RequestError
+from sevenbar.kinematics.axes import Axes, axes_along
+from sevenbar.kinematics.circuits import Circuit, Extremes, Law
+from sevenbar.kinematics.general import expanded
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Solvable
+from sevenbar.kinematics.plane_and_sphere import InPlane, in_plane, sphere_of
+from sevenbar.kinematics.poses import Walk, walk
+
+#: Rows in a turn between which extremes are searched, whatever the samples of the motion.
+SAMPLES = 360
+
+#: Poses from which the curve of sin(mu) between three rows is made: the next term of its series is rounding.
+NODES = 16
+
+#: A root with a smaller imaginary part counts as real: rounding makes two complex ones of a double root. One
+#: too many does no harm, as each is a pose on the circuit.
+NEARLY_REAL = 1e-4
+
+#: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
+AT_DEAD_CENTRE = 1e-7
+
+#: A loop with so many joints that move, in the plane or on the sphere.
+FOUR = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Coupling:
+    """How the coupler drives the output link, by joints as `expanded` numbers them.
+
+    In a "planar" loop at the place of the joint `at`, which `free` moves along u; in a "spherical" one at the
+    axis of `at`; "ball": at the ball `at`, with a force from the ball `free[0]`, or square to how the two
+    joints `free` move it. `output` moves it along w.
+    """
+
+    kind: Literal["planar", "spherical", "ball"]
+    at: int
+    free: tuple[int, ...]
+    output: int
+    #: Of the plane (3,).
+    normal: Floats | None = None
+
+
+def coupling_of(loop: Loop, input: int, output: int) -> Coupling | None:
+    """How a loop driven by one column moves another; `None` where no transmission angle is defined."""
+    parts = expanded(loop)
+    first, second = parts.columns.index(input), parts.columns.index(output)
+    if "S" in (parts.letters[first], parts.letters[second]):
+        return None
+    if parts.letters.count("S") == 2:
+        return _through_a_ball(parts.letters, parts.last, first, second)
+    plane = in_plane(loop)
+    if plane is not None:
+        return _in_plane(parts.letters, plane, first, second)
+    if parts.letters == "R" * FOUR and sphere_of(loop) is not None:
+        passive = _between((0, 1, 2, 3), first, second)
+        return None if passive is None else Coupling("spherical", passive[1], passive[:1], second)
+    return _through_a_ball(parts.letters, parts.last, first, second)
+
+
+def _between(moves: tuple[int, ...], first: int, second: int) -> tuple[int, int] | None:
+    """Of four joints the one next to the input and the one next to the output, if these are neighbours."""
+    if len(moves) != FOUR or first not in moves or second not in moves:
+        return None
+    a, b = moves.index(first), moves.index(second)
+    if (a - b) % FOUR == 1:
+        return moves[(a + 1) % FOUR], moves[(b - 1) % FOUR]
+    if (b - a) % FOUR == 1:
+        return moves[(a - 1) % FOUR], moves[(b + 1) % FOUR]
+    return None
+
+
+def _in_plane(letters: str, found: InPlane, first: int, second: int) -> Coupling | None:
+    passive = _between(found.moves, first, second)
+    if passive is None:
+        return None
+    near_input, near_output = passive
+    # a force acts at a pin: where the output is driven by a slide, at that before it
+    if letters[near_output] != "P":
+        return Coupling("planar", near_output, (near_input,), second, found.plane.normal)
+    if letters[near_input] != "P":
+        return Coupling("planar", near_input, (near_output,), second, found.plane.normal)
+    return None
+
+
+def _through_a_ball(letters: str, last: list[int], first: int, second: int) -> Coupling | None:
+    """A ball next to the output joint, not past the input, and what else moves it: a ball or two joints."""
+    count = len(letters)
+    owner = [sum(end < part for end in last) for part in range(count)]
+    for way in (-1, 1):
+        part = (second + way) % count
+        while owner[part] == owner[second] and part != first:
+            part = (part + way) % count
+        if part == first or letters[part] != "S":
+            continue
+        others = tuple(i for i in range(count) if i not in (first, second, part))
+        kinds = "".join(letters[i] for i in others)
+        if kinds == "S" or (len(kinds) == 2 and "S" not in kinds):
+            return Coupling("ball", part, others, second)
+    return None
+
+
+def sine_and_cosine(coupling: Coupling, axes: Axes) -> tuple[Floats, Floats]:
+    """Sine and cosine of the transmission angle on each row (n,), with signs that run on along a circuit."""
+    at, output = coupling.at, coupling.output
+    if coupling.kind == "spherical":
+        here = axes.directions[at]
+        u, w = (np.cross(axes.directions[i], here) for i in (coupling.free[0], output))
+        sine, cosine = (np.cross(u, w) * here).sum(axis=1), (u * w).sum(axis=1)
+    elif coupling.normal is not None:
+        here, normal = axes.places[at], coupling.normal
+        u, w = (
+            # a ball is a pin there
+            np.cross(normal, here - axes.places[i])
+            if axes.parts.letters[i] == "S"
+            else axes.velocity(i, here)
+            for i in (coupling.free[0], output)
+        )
+        sine, cosine = (np.cross(u, w) * normal).sum(axis=1), (u * w).sum(axis=1)
+    else:
+        here = axes.places[at]
+        w = axes.velocity(output, here)
+        if len(coupling.free) == 1:
+            force = axes.places[coupling.free[0]] - here
+        else:
+            first, second = coupling.free
+            force = np.cross(axes.velocity(first, here), axes.velocity(second, here))
+        sine, cosine = (force * w).sum(axis=1), np.linalg.norm(np.cross(force, w), axis=1)
+    whole = np.hypot(sine, cosine)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return sine / whole, cosine / whole
+
+
+def transmission_angle(loop: Loop, circuit: Circuit) -> Floats | None:
+    """The transmission angle [rad] on each row of a circuit (n,), up to a right angle; NaN without a pose.
+
+    `None` where it is not defined. At a dead centre of the input it is 0.
+
+    Source: docs/theory_measures.md, (4) to (6).
+    """
+    coupling = coupling_of(loop, circuit.input_column, circuit.output_column)
+    if coupling is None:
+        return None
+    sine, cosine = sine_and_cosine(coupling, axes_along(loop, circuit))
+    angle = np.arctan2(np.abs(sine), np.abs(cosine))
+    angle[circuit.status == "dead-centre"] = 0.0
+    return np.asarray(angle)
+
+
+def transmission_extremes(linkage: Solvable, circuit: Circuit) -> Extremes | None:
+    """The lowest and highest transmission angle [rad] of a circuit; `None` where it is not defined.
+
+    They are at dead centres of the input, where it is 0, and where the derivative of (4) or (5) is zero:
+    that of the polynomial through exact poses about each row that is lower or higher than its neighbours.
+
+    Source: docs/theory_measures.md, (7).
+    """
+    coupling = coupling_of(linkage, circuit.input_column, circuit.output_column)
+    row = best_row(circuit)
+    if coupling is None or row is None:
+        return None
+    return _Search(linkage, coupling, circuit, circuit.q[row]).extremes()
+
+
+def best_row(circuit: Circuit) -> int | None:
+    """The row of a circuit with the best condition, from which it is followed anew; `None` without one."""
+    sound = np.isfinite(circuit.q).all(axis=1) & (circuit.status == "ok") & np.isfinite(circuit.condition)
+    rows = np.flatnonzero(sound)
+    return int(rows[np.argmin(circuit.condition[rows])]) if rows.size else None
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """A search for extremes on the circuit through a pose (columns,), with the input and output of `like`."""
+
+    linkage: Solvable
+    coupling: Coupling
+    like: Circuit
+    pose: Floats
+
+    def extremes(self) -> Extremes | None:
+        """The lowest and highest angle, with their inputs."""
+        rows = self.rows(SAMPLES)
+        sine, cosine = self.sine_and_cosine(rows)
+        way = walk(rows)
+        found = [(math.atan2(abs(s), abs(c)), x) for s, c, x in zip(sine, cosine, rows.input, strict=True)]
+        found += self.between(way, sine[way.rows])
+        dead = [centre.input for centre in self.like.dead_centres if centre.kind == "input"]
+        if dead:
+            # near them rounding leaves a little
+            found = [one for one in found if one[0] > AT_DEAD_CENTRE] + [(0.0, x) for x in dead]
+        kept = [(angle, x) for angle, x in found if math.isfinite(angle)]
+        if not kept:
+            return None
+        (lowest, lowest_at), (highest, highest_at) = min(kept), max(kept)
+        if rows.goes_round and rows.input_turns:
+            # between the first row and the first again
+            start, whole = float(rows.input[0]), math.tau * rows.turns
+            lowest_at, highest_at = (start + (x - start) % whole for x in (lowest_at, highest_at))
+        return Extremes(lowest, float(lowest_at), highest, float(highest_at))
+
+    def between(self, way: Walk, sine: Floats) -> list[tuple[float, float]]:
+        """Angles and inputs where the sine (n,) along a walk is stationary."""
+        brackets: list[tuple[int, _Stretch, float, float]] = []
+        for number, part in enumerate(way.passes):
+            x, s = way.input[part], np.abs(sine[part])
+            if len(x) < 3:
+                continue
+            stretch = _Stretch.of(x, turns_back=len(way.passes) > 1)
+            if stretch.round and len(x) > 3:
+                # once more over the start, which may be an extreme itself
+                x, s = np.append(x, x[-1] + x[1] - x[0]), np.append(s, s[1])
+            u = stretch.place(x)
+            peaks = (s[1:-1] - s[:-2]) * (s[1:-1] - s[2:]) >= 0
+            brackets += [(number, stretch, u[i], u[i + 2]) for i in np.flatnonzero(peaks)]
+        if not brackets:
+            return []
+        nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+        inputs = [stretch.input((a + b) / 2 + (b - a) / 2 * nodes) for _, stretch, a, b in brackets]
+        values = self.at([number for number, *_ in brackets], inputs)
+        flat: list[tuple[int, float]] = []
+        for (number, stretch, a, b), (sines, cosines) in zip(brackets, values, strict=True):
+            if np.isfinite(sines).all():
+                # a right angle is a double zero of the sine's derivative, or a zero of the cosine
+                angle = np.unwrap(np.arctan2(sines, cosines))
+                curves = [_curve(nodes, values) for values in (sines, angle, cosines)]
+                for curve in (curves[0].deriv(), curves[1].deriv(), curves[2]):
+                    places = [(a + b) / 2 + (b - a) / 2 * root for root in _real_roots(curve)]
+                    flat += [(number, float(stretch.input(place))) for place in places]
+        if not flat:
+            return []
+        ends = self.at([number for number, _ in flat], [np.array([x]) for _, x in flat])
+        return [(math.atan2(abs(s[0]), abs(c[0])), x) for (_, x), (s, c) in zip(flat, ends, strict=True)]
+
+    def at(self, passes: list[int], inputs: list[Floats]) -> list[tuple[Floats, Floats]]:
+        """Sines and cosines at inputs, each list of them on one of the passes; NaN where rows are missing."""
+        every = np.concatenate(inputs)
+        rows = self.rows(Law.of(np.arange(float(every.size)), every, 1.0, 0.0))
+        sine, cosine = self.sine_and_cosine(rows)
+        found, start = [], 0
+        for number, own in zip(passes, inputs, strict=True):
+            here = np.flatnonzero(rows.branch == number)
+            place = here[start : start + own.size] if here.size == every.size else np.array([], dtype=int)
+            start += own.size
+            ends = [values[place] if place.size else np.full(own.size, np.nan) for values in (sine, cosine)]
+            found.append((ends[0], ends[1]))
+        return found
+
+    def rows(self, how: int | Law) -> Circuit:
+        """The circuit through the pose at so many samples in a turn, or at the inputs of a law."""
+        names = self.linkage.columns
+        first, second = names[self.like.input_column], names[self.like.output_column]
+        samples, law = (SAMPLES, how) if isinstance(how, Law) else (how, None)
+        try:
+            return self.linkage.circuit(self.pose, samples, input=first, output=second, law=law)
+        except RequestError:
+            # through change points where the input may stand still, only the whole motion finds the way
+            motion = self.linkage.motion(samples, input=first, output=second, law=law, method="general")
+            return motion.circuits[self.like.index]
+
+    def sine_and_cosine(self, rows: Circuit) -> tuple[Floats, Floats]:
+        """Sine and cosine of the angle on rows (n,)."""
+        return sine_and_cosine(self.coupling, axes_along(self.linkage, rows))
+
+
+def _curve(nodes: Floats, values: Floats) -> Chebyshev:
+    """The polynomial through values at nodes (n,) from -1 to 1."""
+    return Chebyshev.fit(nodes, values, NODES - 1, domain=[-1, 1])
+
+
+def _real_roots(curve: Chebyshev) -> Floats:
+    """The real roots of a polynomial from -1 to 1; double ones may be a pair with small imaginary parts."""
+    roots = curve.roots()
+    return np.asarray(roots.real[(np.abs(roots.imag) < NEARLY_REAL) & (np.abs(roots.real) <= 1)])
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """A pass by a place along it in which its curves are smooth.
+
+    That is the input itself; where the pass ends at dead centres, about which the pose changes with the root
+    of the input, an angle from 0 to pi.
+    """
+
+    low: float
+    high: float
+    round: bool
+
+    @staticmethod
+    def of(inputs: Floats, *, turns_back: bool) -> _Stretch:
+        return _Stretch(float(inputs.min()), float(inputs.max()), not turns_back)
+
+    def place(self, inputs: Floats) -> Floats:
+        """The places (n,) of inputs (n,)."""
+        if self.round:
+            return inputs
+        middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
+        return np.asarray(np.arccos(np.clip((inputs - middle) / half, -1, 1)))
+
+    def input(self, places: Floats | float) -> Floats:
+        """The inputs (n,) of places (n,)."""
+        if self.round:
+            return np.asarray(places)
+        middle, half = (self.low + self.high) / 2, (self.high - self.low) / 2
+        return np.asarray(middle + half * np.cos(places))

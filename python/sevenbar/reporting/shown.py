@@ -1,0 +1,39 @@
+"""How values of joints and numbers are written in reports."""
+
+from __future__ import annotations
+
+import math
+
+
+class Shown:
+    """How a joint's value is written: an angle in degrees, a slide in the length unit."""
+
+    def __init__(self, unit: str) -> None:
+        self._unit = unit
+
+    def __call__(self, value: float, *, whole: bool = False) -> str:
+        """The value with its unit; `whole` takes an angle into [0, 360)."""
+        if self._unit != "rad":
+            return f"{value:.6g} {self._unit}".rstrip()
+        return degrees(value, whole=whole)
+
+    def range(self, low: float, high: float) -> tuple[str, str]:
+        """The ends of a range, angles in [0, 360) as limits are: from 350 to 20 degrees it goes through 0."""
+        whole = self._unit == "rad" and high - low <= math.tau
+        return self(low, whole=whole), self(high, whole=whole)
+
+    def same(self, a: float, b: float) -> bool:
+        """Whether two values are one place, to the digits that are shown."""
+        return self(a, whole=True) == self(b, whole=True)
+
+
+def plain(value: float) -> str:
+    """A number to six digits."""
+    return f"{value:.6g}"
+
+
+def degrees(angle: float, *, whole: bool = False) -> str:
+    """An angle [rad] in degrees; `whole` takes it into [0, 360)."""
+    # rounded first, so that neither -0.000 nor 360.000 is left
+    degrees = round(math.degrees(angle), 3)
+    return f"{(degrees % 360 if whole else degrees) + 0.0:.3f}\u00b0"
