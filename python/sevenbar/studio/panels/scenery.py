@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import viser
 
@@ -25,6 +27,7 @@ QUESTIONS = (0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0, 30.0)
 #: person's, and of the picture's shape that are none; shares, and [1].
 NUDGE, MOVED, SAME_SHAPE = 1e-4, 1e-3, 0.01
 
+NO_AXODES = "no link"
 NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at this input"
 
 
@@ -47,9 +50,15 @@ class Scenery:
                 ("extremes", True, "where the points you have added are fastest and slowest"),
             )
         }
+        self._axodes = gui.add_dropdown(
+            "axodes of",
+            (NO_AXODES,),
+            hint="its screw axes against the ground: blue in the ground, pink in the link",
+        )
         look = gui.add_button("Look at it all", color="gray", icon=viser.Icon.FOCUS_CENTERED)
         look.on_click(lambda _: worker.ask("look", self.look))
         self._ghosts.on_update(lambda _: worker.ask("scenery", lambda: None))
+        self._axodes.on_update(lambda _: worker.ask("scenery", lambda: None))
         for switch in self._switches.values():
             switch.on_update(lambda _: worker.ask("scenery", lambda: None))
         self._framed: object = None
@@ -58,6 +67,7 @@ class Scenery:
         client.camera.on_update(self._camera_changed)
         self._drawn: dict[str, object] = {}
         self._everything = np.empty((0, 3))
+        self._lines: tuple[Any, ...] = ()
         self._units: dict[int, tuple[float, float]] = {}
 
     def look(self) -> None:
@@ -126,6 +136,8 @@ class Scenery:
             self._mark(view, switches["extremes"])
         if self._is_new("arrows", (view, row, problem, *switches.values())):
             self._point(view, switches)
+        if self._is_new("axodes", (view, row, self._axodes.value)):
+            self._draw_axodes(view, row)
         ghosts = self._ghosts.value
         if self._is_new("ghosts", (view, ghosts, row if ghosts == MODES else None)):
             self._ghost(view)
@@ -181,6 +193,21 @@ class Scenery:
         if fresh:
             self._framed = self._session.draft.text
             self.aim()
+
+    def _draw_axodes(self, view: View, row: float) -> None:
+        """The screw axes of the link that is chosen, in the ground and in the link."""
+        links = (NO_AXODES, *(f"link {number}" for number in range(1, len(view.linkage.joints))))
+        if links != self._axodes.options:
+            self._axodes.options = links
+        chosen = links.index(self._axodes.value) if self._axodes.value in links else 0
+        if not chosen:
+            self.stage.axodes(np.empty((0, 2, 3)), np.empty((0, 2, 3)))
+            self._lines = ()
+            return
+        if not self._lines or self._lines[0] is not view or self._lines[1] != chosen:
+            self._lines = (view, chosen, *view.axodes(chosen))
+        frame = view.point_frame(chosen, row)
+        self.stage.axodes(self._lines[2], self._lines[3] @ frame[:3, :3].T + frame[:3, 3])
 
     def _ghost(self, view: View) -> None:
         match self._ghosts.value:

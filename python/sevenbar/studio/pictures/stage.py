@@ -24,6 +24,8 @@ DASHES = np.array(
 OVERHANG = 0.07
 #: Thicknesses of lines [pixels].
 AXIS_LINE, JOINT_PATH, POINT_PATH = 1.4, 1.8, 2.8
+#: The lines of axodes: how thick [pixels], and their colours.
+AXODE_LINE, FIXED_AXODE, MOVING_AXODE = 1.0, "#56B4E9", "#CC79A7"
 #: How much white is in the path of a joint that has its link's colour.
 PALE = 0.4
 #: Opacity of ghosts, and the most there are.
@@ -227,6 +229,14 @@ class Stage:
         turn, scale = np.tile([1.0, 0.0, 0.0, 0.0], (len(places), 1)), np.full((len(places), 3), MARK)
         balls = (turn, np.where(known, places, 0.0), np.where(known, scale, 0.0))
         self._marks.put({"ball": balls}, {"ball": np.tile(rgb(MARK_COLOUR), (len(places), 1))})
+
+    def axodes(self, fixed: Floats, moving: Floats) -> None:
+        """Draws the lines (n, 2, 3) [length] of a fixed and of a moving axode; none clears them."""
+        for name, lines, colour in (
+            ("fixed_axode", fixed, FIXED_AXODE),
+            ("moving_axode", moving, MOVING_AXODE),
+        ):
+            self._draw_lines(name, self.in_scene(lines), rgb(colour, PALE), AXODE_LINE)
 
     def labels(self, on: bool) -> None:
         """Shows or hides the names of joints and points."""

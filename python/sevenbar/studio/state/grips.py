@@ -9,7 +9,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.kinematics.poses import frames_of, joint_frames
 from sevenbar.kinematics.rigid import inverse
 from sevenbar.kinematics.word import Place
 from sevenbar.studio.state.view import View
@@ -67,11 +66,7 @@ def grips(draft: Draft, view: View | None, row: float) -> list[Grip]:
             vectors.setdefault(dimension.place[:3], []).append(dimension.value)
     linkage = draft.linkage
     found: list[Grip] = []
-    frames = np.empty((0, 4, 4))
     drawn = linkage.form == "drawn"
-    if not drawn and view is not None:
-        _, after = joint_frames(linkage, frames_of(linkage, view.joints(row)[None]))
-        frames = after[0]
     for place, values in vectors.items():
         number = place[1]
         assert isinstance(number, int)
@@ -85,7 +80,6 @@ def grips(draft: Draft, view: View | None, row: float) -> list[Grip]:
             continue
         else:
             link = int(draft.raw["point"][number]["link"])
-            own = linkage.point_frames[link - 1]
-            frame = frames[link - 1] @ own if link < len(linkage.joints) else own
+            frame = view.point_frame(link, row)
         found.append(Grip((place,), given, frame))
     return found
