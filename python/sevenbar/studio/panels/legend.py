@@ -6,8 +6,8 @@ from html import escape
 
 import viser
 
-from sevenbar.drawing.scene import COUPLER, GROUND, INPUT, OUTPUT, link_colours
-from sevenbar.studio.panels.scenery import ACCELERATION, VELOCITY
+from sevenbar.drawing.scene import link_colours
+from sevenbar.drawing.style import ACCELERATION, COUPLER, GROUND, INPUT, OUTPUT, VELOCITY
 from sevenbar.studio.pictures.stage import MARK_COLOUR
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View, own_points
