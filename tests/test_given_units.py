@@ -8,7 +8,7 @@ import pytest
 
 import sevenbar as sb
 from commands import sevenbar
-from sevenbar.errors import AngleUnitWarning, DescriptionError, RequestError
+from sevenbar.errors import AngleUnitWarning, DescriptionError, RequestError, SevenbarError
 
 TWISTS_DEG = [80, -95, 0, 0, -75, 80, 150]
 LENGTHS = [45, 15, 100, -115, 10, 35, 35]
@@ -45,7 +45,8 @@ def test_rows_take_texts_with_units():
 
 def test_the_rssr_and_a_drawing_take_texts_with_units():
     assert (
-        sb.rssr(M="70 cm", N=700, L1="25cm", L3="0.55 m").dimensions == sb.rssr(700, 700, 250, 550).dimensions
+        sb.rssr(M="70 cm", N=700, L1="25cm", L3="0.55 m", D=0).dimensions
+        == sb.rssr(700, 700, 250, 550, 0).dimensions
     )
     joints = [
         {"kind": "R", "at": (0, 0, "70 cm"), "axis": (0, 0, 1)},
@@ -86,7 +87,7 @@ def test_a_text_without_a_unit_that_fits_is_refused(given):
             RequestError, match=r"is not a number with a unit that fits; give one as in '30 deg', or a"
         ):
             call()
-    with pytest.raises(DescriptionError, match=r"link\[2\]\.twist: "):
+    with pytest.raises(SevenbarError, match=r"link\[2\]\.twist: |twist\[1\]: "):
         seven_r(twist=[0, given, 0, 0, 0, 0, 0])
 
 
