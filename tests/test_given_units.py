@@ -102,7 +102,7 @@ def test_degrees_in_place_of_radians_are_doubted():
         sb.loads("format = 1\n[[link]]\ntwist = 1\n[[link]]\ntwist = 400\n[[link]]\n")
 
 
-@pytest.mark.parametrize("twists", [[0, 0, 0], [90, 1, 2], [360, -360, 0], [3.5, 0, 1]])
+@pytest.mark.parametrize("twists", [[0, 0, 0], [90, 1, 2], [360, -360, 0], [3.5, 0, 1], [0.375, 0, 0]])
 def test_ordinary_twists_in_degrees_are_not_doubted(twists):
     rows = "".join(f"[[link]]\ntwist = {twist}\n" for twist in twists)
     with warnings.catch_warnings():

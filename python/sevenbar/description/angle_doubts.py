@@ -29,7 +29,8 @@ def angle_doubt(description: Mapping[str, Any]) -> str:
             doubt = f"twist of link {link} is {twist:.6g} {unit}, more than a turn"
             return f"{doubt}; is it in degrees?" if unit == "rad" else doubt
     turned = [abs(twist) for twist in twists.values() if twist]
-    if unit == "deg" and turned and max(turned) < SMALL_DEG:
+    # one alone may be an error of a parallel axis
+    if unit == "deg" and len(turned) > 1 and max(turned) < SMALL_DEG:
         return f"all twists are at most {max(turned):.6g} deg; are they in radians?"
     return ""
 
