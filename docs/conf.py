@@ -22,6 +22,7 @@ extensions = [
     "formulas",
     "beyond_docs",
     "docstrings",
+    "languages",
     "made_pages",
     "own_server",
 ]
@@ -55,6 +56,18 @@ copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
 
 html_theme = "furo"
+templates_path = ["_templates"]
+html_favicon = html_logo = "_static/mark.svg"
+html_sidebars = {
+    "**": [
+        "sidebar/brand.html",
+        "sidebar/language.html",
+        "sidebar/search.html",
+        "sidebar/scroll-start.html",
+        "sidebar/navigation.html",
+        "sidebar/scroll-end.html",
+    ]
+}
 html_title = f"Sevenbar {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
