@@ -20,7 +20,7 @@ def _hear_the_terminal():
 
 
 class Served:
-    """A program that prints its address `http://HOST:PORT` and serves until it is ended.
+    """A program that prints its address `http://HOST:PORT`, or one with a path, and serves until it is ended.
 
     It runs in `folder / "here"`, which is empty before; what it prints is kept beside that.
     """
@@ -38,7 +38,7 @@ class Served:
     def _address(self):
         end = time.monotonic() + START
         while time.monotonic() < end:
-            if found := re.search(r"http://[\w.]+:\d+(?=\s)", self.stdout):
+            if found := re.search(r"http://[\w.]+:\d+(?:/[\w-]+/)?(?=\s)", self.stdout):
                 return found[0]
             if not self.runs:
                 break

@@ -5,11 +5,9 @@ import time
 
 import msgspec
 import numpy as np
-import viser
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
 
-from evidence.benches.cases.studio_client import CAMERA, unpacked
+from evidence.benches.cases.studio_client import CAMERA, opened, unpacked
 
 
 class TabClient:
@@ -17,11 +15,9 @@ class TabClient:
 
     def __init__(self, address):
         self.gui, self.scene, self.values, self.told = {}, {}, {}, []
+        self.owners, self.places = {}, {}
         self.received, self.last = 0, 0.0
-        version = f"viser-v{viser.__version__}"
-        self._socket = connect(
-            address.replace("http://", "ws://"), subprotocols=[version], max_size=None, compression=None
-        )
+        self._socket = opened(address)
         self._lock = threading.Lock()
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -66,6 +62,9 @@ class TabClient:
                     self.values[message["uuid"]] = message["value"]
             case _ if "name" in message and "props" in message:
                 self.scene[message["name"]] = dict(message["props"])
+                self.owners[message["name"]] = message.get("owner", "")
+            case "SetPositionMessage":
+                self.places[message["name"]] = np.array(message["position"])
 
     def settled(self, quiet=0.15, limit=600.0):
         """Waits until nothing has come for a while [s] from now on."""
@@ -105,6 +104,17 @@ class TabClient:
     def click(self, label):
         """Clicks a button."""
         self._send({"type": "GuiUpdateMessage", "uuid": self.find(label)[0], "updates": {"value": True}})
+
+    def pull(self, key, *places):
+        """Pulls a handle of the scene to places in it, one after another, and lets it go."""
+        with self._lock:
+            own = self.owners[f"/handles/{key}"]
+        name = {"name": f"/handles/{key}", "owner": own}
+        self._send({"type": "TransformControlsDragStartMessage"} | name)
+        for place in places:
+            where = {"wxyz": (1.0, 0.0, 0.0, 0.0), "position": tuple(map(float, place))}
+            self._send({"type": "TransformControlsUpdateMessage"} | name | where)
+        self._send({"type": "TransformControlsDragEndMessage"} | name)
 
     def html(self):
         """All HTML that is on the page, the visible pieces alone."""

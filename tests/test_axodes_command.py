@@ -53,7 +53,7 @@ def test_a_motion_is_a_sequence_of_its_circuits():
     assert list(motion) == list(motion.circuits)
     with pytest.raises(IndexError, match="no circuit 2; it has 2, counted from 0"):
         motion[2]
-    apart = sb.rssr(M=700, N=700, L1=10, L2=20, L3=30).motion()
+    apart = sb.rssr(M=700, N=700, L1=10, L2=20, L3=30, D=0).motion()
     assert len(apart) == 0
     assert apart
 
@@ -85,7 +85,7 @@ def test_modules_offer_their_own_names_only():
     [
         lambda: sb.load("no such linkage"),
         lambda: sb.loads("format = 2"),
-        lambda: sb.rssr(M=1, N=2, L1=-3, L3=4),
+        lambda: sb.rssr(M=1, N=2, L1=-3, L3=4, D=0),
         lambda: sb.from_dh("RR", length=[1], twist=[0, 0], offset=[0, 0]),
         lambda: sb.load("rssr").motion(samples=1),
         lambda: sb.load("rssr").assembly_modes("wide"),

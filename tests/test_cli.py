@@ -479,7 +479,7 @@ def test_circuits_of_two_kinds_tell_their_kind_and_narrow_consoles_fold_at_the_p
         assert words in told
     narrow = _report(motion, width=80)
     assert max(len(line) for line in narrow.splitlines()) <= 80
-    assert all(cell in narrow for cell in ("-0.18743 ", "@ 306.021°", "118.968°", "@ 47.539°"))
+    assert all(cell in narrow for cell in (" 0.18743 ", "@ 306.021°", "-118.968°", "@ 47.539°"))
 
 
 @pytest.mark.slow

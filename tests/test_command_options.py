@@ -13,7 +13,7 @@ import typer
 from commands import mistake, sevenbar
 from sevenbar.commands.cli import app
 from sevenbar.commands.command import EXAMPLES
-from sevenbar.commands.consent import Ahead, agree
+from sevenbar.commands.consent import Ahead, confirm
 from sevenbar.errors import RequestError
 from sevenbar.export import ALIASES, FORMATS, INSTEAD
 
@@ -150,19 +150,19 @@ def answered(monkeypatch, answer):
 def test_at_a_terminal_it_asks(monkeypatch):
     much = Ahead("--samples", "rows.csv", bytes=3e9)
     with answered(monkeypatch, "y\n") as error:
-        agree(much, yes=False)
+        confirm(much, yes=False)
     assert "--samples: rows.csv, about 3.0 GB; go on?" in error.getvalue()
     with answered(monkeypatch, "n\n") as error, pytest.raises(typer.Exit) as end:
-        agree(much, yes=False)
+        confirm(much, yes=False)
     assert end.value.exit_code == 2
     assert "nothing is written" in error.getvalue()
 
 
 def test_it_asks_only_before_much():
-    agree(Ahead("--samples", "rows.csv", bytes=1e8, seconds=30), yes=False)
-    agree(Ahead("--samples", "rows.csv", bytes=1e12), yes=True)
+    confirm(Ahead("--samples", "rows.csv", bytes=1e8, seconds=30), yes=False)
+    confirm(Ahead("--samples", "rows.csv", bytes=1e12), yes=True)
     with pytest.raises(RequestError, match=r"--steps: a run, about a minute; give --yes"):
-        agree(Ahead("--steps", "a run", seconds=70), yes=False)
+        confirm(Ahead("--steps", "a run", seconds=70), yes=False)
 
 
 @pytest.mark.parametrize(

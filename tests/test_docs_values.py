@@ -14,7 +14,7 @@ from sevenbar.commands.path import parsed_bounds
 from sevenbar.commands.points import parsed_box
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import axes_of, split_ranges
-from sevenbar.errors import SevenbarError
+from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.sweep.axes import axis_from_text, axis_of
 from sevenbar.text.amounts import value_of
 from sevenbar.text.ranges import split_name
@@ -99,7 +99,7 @@ REFUSING: dict[str, Callable[[str], object]] = {
 
 
 def test_every_table_of_the_page_has_its_reader():
-    assert set(tables()) == {*READERS, "word", "option"}
+    assert set(tables()) == {*READERS, "word", "option", "call"}
 
 
 @pytest.mark.parametrize("kind", READERS)
@@ -108,6 +108,13 @@ def test_every_example_means_what_the_page_says(kind: str):
     assert rows
     for text, meaning in rows:
         assert READERS[kind](text) == meaning
+
+
+def test_a_text_in_python_has_the_message_of_the_page():
+    for call, text, message in tables()["call"]:
+        with pytest.raises(RequestError) as caught:
+            getattr(LINKAGE, call)(text)
+        assert str(caught.value) == message
 
 
 def test_names_and_values_are_parted_as_the_page_says():

@@ -103,6 +103,21 @@ def test_a_screw_moves_in_exudyn_though_it_has_none():
     assert any("has no screw: thread" in note for note in run.record.notes)
 
 
+#: Its last joint slides in a plane of the ground, and counts its link from there.
+ON_A_PLATE = [
+    {"kind": "R", "name": "crank", "at": (0, 0, 0), "axis": (0, 0, 1)},
+    {"kind": "R", "name": "knee", "at": (30, 0, 0), "axis": (0, 1, 1)},
+    {"kind": "U", "name": "cross", "at": (80, 20, 10), "axes": [(1, 0, 0), (0, 1, 0)]},
+    {"kind": "E", "name": "plate", "at": (100, 60, 0), "axis": (0, 1, 2)},
+]
+
+
+@pytest.mark.parametrize("input", ["crank", "plate.1", "plate.2", "plate.3"])
+def test_a_plate_on_the_ground_moves_and_drives_in_exudyn_as_sevenbar_says(input):
+    run = simulate(sb.from_axes(ON_A_PLATE), "exudyn", input=input, steps=400)
+    assert max(turns(run), slides(run), run.tilt, run.gap / run.course.circuit.size) < 1e-9
+
+
 @pytest.mark.parametrize("name", names())
 def test_gallery_linkages_move_in_mujoco_as_sevenbar_says(name):
     run = simulate(sb.load(name), "mujoco", steps=3600)

@@ -304,6 +304,7 @@ def test_each_mistake_in_a_call_has_its_own_message(arguments, messages):
     assert str(caught.value).splitlines() == messages
 
 
+@pytest.mark.filterwarnings("ignore::sevenbar.errors.AngleUnitWarning")
 def test_mutated_files_of_every_form_load_or_say_why():
     """Words of a good file moved, dropped and exchanged end in a linkage or a message, never in a crash."""
     random = np.random.default_rng(9)

@@ -240,7 +240,10 @@ def test_a_drawn_loop_closes_at_zero_and_carries_its_points(kinds):
 
 @pytest.mark.parametrize("kinds", LOOPS)
 def test_a_drawn_joint_moves_about_its_axes_as_written(kinds):
-    """Right-handed turns and slides of the links after it, a joint at a time; of a ball about z, y, x of the ground."""
+    """Right-handed turns and slides of the links after it, a joint at a time; of a ball about z, y, x of the ground.
+
+    The last joint moves the links before it so, seen from the ground: from these the ground goes the other way.
+    """
     joints = drawing(np.random.default_rng(6), kinds)
     linkage = sb.from_axes(joints)
     column = 0
@@ -248,11 +251,16 @@ def test_a_drawn_joint_moves_about_its_axes_as_written(kinds):
         axes = joint.get("axes", [joint["axis"]] if "axis" in joint else np.eye(3)[::-1])
         if joint["kind"] == "C":
             axes = axes * 2
+        last = i == len(joints) - 1
+        if last and joint["kind"] == "S":
+            # in loop order from the link to the ground, the turn about x comes first
+            axes = axes[::-1]
         for k, axis in enumerate(axes):
             q = np.zeros(len(linkage.columns))
             q[column] = 0.3
             axis = np.asarray(axis) / np.linalg.norm(axis)
             moved = link_frames(linkage, q)[i] @ np.linalg.inv(link_frames(linkage, 0 * q)[i])
+            moved = np.linalg.inv(moved) if last else moved
             slides = joint["kind"] == "P" or (joint["kind"] == "C" and k == 1)
             cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
             rotation = (
@@ -284,7 +292,11 @@ def test_the_links_of_a_drawing_do_not_depend_on_the_frame_it_is_drawn_in(kinds)
     ]
     one, other = sb.from_axes(joints), sb.from_axes(moved)
     # a ball's frame keeps the ground's axes where every other frame goes along with the drawing
-    turned = [motion[:3, :3] if kind == "S" else np.eye(3) for kind in kinds]
+    balls = [motion[:3, :3] for _ in kinds]
+    # of the last joint z and x of that frame change places
+    half = np.array([[0, 0, -1], [0, -1, 0], [-1, 0, 0]])
+    balls[-1] = half @ balls[-1] @ half
+    turned = [ball if kind == "S" else np.eye(3) for kind, ball in zip(kinds, balls, strict=True)]
     for i, link in enumerate(one.links):
         want = link.copy()
         want[:3] = turned[i] @ want[:3]

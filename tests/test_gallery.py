@@ -271,16 +271,16 @@ def about_x(angle: float) -> Floats:
 
 def test_rssp_slides_by_a_quadratic() -> None:
     """The slider B is where a sphere about A meets the line of the slide: two places for each crank angle."""
-    crank, place, back = (
+    crank, place, along = (
         drawn("rssp", "ball_a"),
         drawn("rssp", "ball_b"),
-        -drawn("rssp", "slider", "axis"),
+        drawn("rssp", "slider", "axis"),
     )
     coupler = np.linalg.norm(place - crank)
     circuits = moved("rssp").circuits
     alpha = of(circuits[0], "crank")[0]
     from_a = place - turned(np.array([0.0, 0.0, 1.0]), alpha, crank)
-    b, c = from_a @ back, (from_a**2).sum(axis=1) - coupler**2
+    b, c = from_a @ along, (from_a**2).sum(axis=1) - coupler**2
     root = np.sqrt(b**2 - c)
     slides = sorted((of(circuit, "slider")[0] for circuit in circuits), key=lambda s: s[0])
     for got, want in zip(slides, (-b - root, -b + root), strict=True):
@@ -318,7 +318,7 @@ def rscr_outputs(alpha: float) -> Floats:
     radius = np.linalg.norm(np.cross(ball - place, along))
     arm = turned(drawn(name, "crank", "axis"), np.array([alpha]), ball)[0] - pivot
     fixed = axis * (axis @ arm)
-    e, f, g = (np.cross(v, along) for v in (pivot + fixed - place, arm - fixed, np.cross(axis, arm)))
+    e, f, g = (np.cross(v, along) for v in (pivot + fixed - place, arm - fixed, np.cross(arm, axis)))
     c2 = (f @ f - g @ g) / 4 - 0.5j * (f @ g)
     c1 = e @ f - 1j * (e @ g)
     c0 = e @ e + (f @ f + g @ g) / 2 - radius**2
@@ -375,14 +375,12 @@ def test_six_bar_has_the_angles_of_a_spherical_4r_and_a_slide_that_follows() -> 
     alpha = of(circuits[0], "crank")[0]
     n_now = turned(up, alpha, n)
     mean = along * (along @ hinge)
-    solutions = angles_with(
-        n_now @ (hinge - mean), -(n_now @ np.cross(along, hinge)), n @ hinge - n_now @ mean
-    )
+    solutions = angles_with(n_now @ (hinge - mean), n_now @ np.cross(along, hinge), n @ hinge - n_now @ mean)
     turns = [of(c, "cylinder.1")[0] for c in circuits]
     assert each_is_one_of(solutions, turns).max() < EXACT
     for circuit, turn in zip(circuits, turns, strict=True):
-        place = turned(along, -turn, arm) + drawn(name, "cylinder")
-        slide = ((n_now * place).sum(axis=1) - n @ drawn(name, "hinge")) / (n_now @ along)
+        place = turned(along, turn, arm) + drawn(name, "cylinder")
+        slide = (n @ drawn(name, "hinge") - (n_now * place).sum(axis=1)) / (n_now @ along)
         assert np.abs(of(circuit, "cylinder.2")[0] - slide).max() < 10 * EXACT * np.linalg.norm(arm)
 
 

@@ -2,7 +2,8 @@
 
 Source: geometry alone. The same bodies drawn in another frame, another unit, as their mirror image, from the other end
 of the loop or from another joint on move alike; joint values are turns and slides of one body against the next one, so
-they stay, but for a slide's sign in a mirror and its size in another unit. What a ball's turns are named is left out.
+they stay, but for a slide's sign in a mirror and its size in another unit. The last joint counts its link against the
+ground, so that its axes are reversed where it becomes one between links. What a ball's turns are named is left out.
 """
 
 from __future__ import annotations
@@ -126,7 +127,14 @@ def begun_at(joints: Joints, start: int) -> Joints:
     count = len(joints)
     starts = [k % count for k in range(start, start + count)]
     fitting = [k for k in starts if k and {joints[k]["kind"], joints[k - 1]["kind"]} != {"S"}]
-    return joints[fitting[0] :] + joints[: fitting[0]]
+    begun = [*joints[:-1], reversed_axes(joints[-1])]
+    begun = begun[fitting[0] :] + begun[: fitting[0]]
+    return [*begun[:-1], reversed_axes(begun[-1])]
+
+
+def reversed_axes(joint: dict[str, Any]) -> dict[str, Any]:
+    """A joint that counts the other of its two links."""
+    return changed([joint], lambda p: p, lambda _, a: -a)[0]
 
 
 def ends_told(ends: tuple[float, float] | None, unit: float, *, turns: bool) -> list[float]:
@@ -258,14 +266,15 @@ def test_the_mirror_image_moves_alike_with_its_slides_turned_round(joints: Joint
 @few
 @given(loops)
 def test_the_loop_written_from_its_other_end_moves_alike(joints: Joints) -> None:
-    # joint i now carries the other body, so its axis is turned round and its turn is the same
-    back = changed(joints[::-1], lambda p: p, lambda _, a: -a)
+    # an inner joint now carries the other body, so its axis is turned round and its turn is the same
+    first, *inner, last = joints[::-1]
+    back = changed([first, *map(reversed_axes, inner), last], lambda p: p, lambda _, a: a)
     for joint in back:
         joint |= {"axes": joint["axes"][::-1]} if "axes" in joint else {}
-    first, second = sb.from_axes(joints), sb.from_axes(back)
-    ends = ends_of(first)
-    other = {name: reversed_column(first, name) for name in (ends.input, ends.output)}
-    alike(first, second, ends, Ends(other[ends.input], other[ends.output]))
+    one, second = sb.from_axes(joints), sb.from_axes(back)
+    ends = ends_of(one)
+    other = {name: reversed_column(one, name) for name in (ends.input, ends.output)}
+    alike(one, second, ends, Ends(other[ends.input], other[ends.output]))
 
 
 def reversed_column(linkage: sb.Linkage, name: str) -> str:

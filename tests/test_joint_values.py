@@ -17,7 +17,7 @@ OPEN = sb.from_axes(
         {"name": "sleeve", "kind": "C", "at": (30, 5, 9), "axis": (0, 3, 4)},
         {"name": "cross", "kind": "U", "at": (35, 15, 5), "axes": [(1, 0, 0), (1, 1, 1)]},
         {"name": "ball", "kind": "S", "at": (40, 0, 0)},
-        {"name": "last", "kind": "R", "at": (0, 50, 0), "axis": (0, 0, 1)},
+        {"name": "last", "kind": "E", "at": (0, 50, 0), "axis": (0, 0, 1)},
     ]
 )
 
@@ -34,11 +34,13 @@ def courses(t):
 
 def bodies_at(t):
     """Links that move so, by differences of fourth order of their frames; the ground moves on with the last joint."""
-    step = 2e-3
+    step = 5e-4
 
     def frames(at):
         moving = frames_of(OPEN, courses(at)[0])
-        last = moving[:, -1] @ OPEN.links[-1] @ turn_z(courses(at)[0][:, -1])
+        # backwards: it turns first, and its slides are carried by the ground
+        turn, *slides = courses(at)[0][:, OPEN.places[-1]].T
+        last = moving[:, -1] @ OPEN.links[-1] @ turn_z(turn) @ shifts(*slides)
         return np.concatenate([moving, last[:, None]], axis=1)
 
     around = [frames(t + k * step) for k in (-2, -1, 0, 1, 2)]
@@ -50,6 +52,12 @@ def bodies_at(t):
     # the rest of the second derivative is symmetric
     rate = axial(second[..., :3, :3] @ back)
     return BodyStates(around[2], first[..., :3, 3], second[..., :3, 3], spin, rate)
+
+
+def shifts(x, y):
+    matrices = np.tile(np.eye(4), (len(x), 1, 1))
+    matrices[:, 0, 3], matrices[:, 1, 3] = x, y
+    return matrices
 
 
 def turn_z(angle):

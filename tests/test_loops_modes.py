@@ -229,8 +229,10 @@ def _axes_stand_where_they_were_drawn(case: Drawn, linkage: sb.Linkage, loop: Lo
     for joint, after in zip(case.joints, loop.ends, strict=True):
         start, end = end + 1, after
         wanted = joint.get("axes") or [joint["axis"]] * (end - start + 1) if joint["kind"] != "S" else []
+        # the last joint moves the ground about its axes reversed
+        way = -1 if joint is case.joints[-1] else 1
         for column, want in zip(range(start, end + 1), wanted, strict=False):
-            assert np.abs(axes[column] - want / np.linalg.norm(want)).max() < 1e-12
+            assert np.abs(axes[column] - way * want / np.linalg.norm(want)).max() < 1e-12
         if joint["kind"] != "P":
             for column in range(start, end + 1):
                 if loop.turns[column]:

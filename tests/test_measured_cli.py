@@ -47,7 +47,7 @@ def test_a_comparison_is_printed_written_and_told_as_json(tmp_path):
     options = ("--align", "phase,offset")
     out = tmp_path / "new" / "folder"
     run = sevenbar("compare", "rssr", BENCH, *options, "--out", out, "--figures", "svg")
-    assert (run.returncode, run.stderr) == (0, "")
+    assert (run.returncode, run.stderr) == (0, f"writing {out} ..\n")
     for words in ("explained by  circuit 0, branch 0", "not by        circuit 1", "phase         1.2128°"):
         assert words in run.stdout
     assert set(files(out)) == {"comparison.json", "table.csv", "rows.csv", "comparison.svg"}

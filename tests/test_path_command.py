@@ -84,7 +84,7 @@ def test_a_design_is_written_opens_and_makes_the_path(tmp_path):
         ((*ASKED, "--vary", "length_*", "--size", "1:2cm"), "20; give other limits, or another start"),
         ((*ASKED, "--transmission", "40deg"), "transmission: its angle is that of an RSSR"),
         ((*ASKED, "--motion-type", "crank"), "motion type: 'crank' is not offered"),
-        ((*ASKED, "--designs", 0), "designs: 0 is not a count; give 1 to 50"),
+        ((*ASKED[:-4], "--starts", 0, "--designs", 0), "designs: 0 is not a count; give 1 to 50"),
         ((*ASKED, "--figures", "png"), "--figures: a folder for them is missing"),
     ],
 )

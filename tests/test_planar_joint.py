@@ -46,7 +46,11 @@ def drawn(kinds: str, seed: int) -> list[dict[str, Any]]:
 
 
 def in_parts(joints: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The same loop with each E as P, P and R: x of its plane goes towards the joint after, of the last before."""
+    """The same loop with each E as P, P and R: x of its plane goes towards the joint after, of the last before.
+
+    The last one counts from the ground: its slides are the ground's, so that the turn comes first, and reversed, as
+    the ground's place from the link.
+    """
     found: list[dict[str, Any]] = []
     for i, joint in enumerate(joints):
         if joint["kind"] != "E":
@@ -56,7 +60,12 @@ def in_parts(joints: list[dict[str, Any]]) -> list[dict[str, Any]]:
         towards = joints[i + 1 if i + 1 < len(joints) else i - 1]["at"] - joint["at"]
         x = towards - (towards @ z) * z
         x /= np.linalg.norm(x)
-        for number, (kind, axis) in enumerate((("P", x), ("P", np.cross(z, x)), ("R", z)), start=1):
+        parts = [("P", x), ("P", np.cross(z, x)), ("R", z)]
+        if i == len(joints) - 1:
+            # of the parts only the last one is at the ground
+            (slide, along), *others = parts
+            parts = [*((kind, -axis) for kind, axis in others[::-1]), (slide, along)]
+        for number, (kind, axis) in enumerate(parts, start=1):
             found.append({"kind": kind, "at": joint["at"], "axis": axis, "name": f"{joint['name']}_{number}"})
     return found
 
@@ -106,16 +115,17 @@ def test_a_pin_in_a_plane_goes_round_its_pivot() -> None:
     )
     assert (linkage.mobility().finite, len(linkage.mobility().redundant)) == (1, 3)
     (circuit,) = linkage.motion(36).circuits
-    # from the link the ground goes back: x of the joint points to the pivot
+    assert linkage.columns == ("pivot", "pin.3", "pin.2", "pin.1")
+    # x of the joint points to the pivot
     x = -arm / np.linalg.norm(arm)
     y = np.cross([0, 0, 1], x)
     for theta, row, rate in zip(circuit.input, circuit.q, circuit.dq, strict=True):
         c, s = math.cos(theta), math.sin(theta)
-        place = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ arm - arm
-        assert row[1:3] == pytest.approx([place @ x, place @ y], abs=EXACT)
-        assert (row[3] + theta + math.pi) % math.tau == pytest.approx(math.pi, abs=EXACT)
-        turning = np.array([[-s, c, 0], [-c, -s, 0], [0, 0, 0]]) @ arm
-        assert rate == pytest.approx([1, turning @ x, turning @ y, -1], abs=EXACT)
+        place = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ arm - arm
+        assert row[3:1:-1] == pytest.approx([place @ x, place @ y], abs=EXACT)
+        assert (row[1] - theta + math.pi) % math.tau == pytest.approx(math.pi, abs=EXACT)
+        turning = np.array([[-s, -c, 0], [c, -s, 0], [0, 0, 0]]) @ arm
+        assert rate == pytest.approx([1, 1, turning @ y, turning @ x], abs=EXACT)
     # the slide may drive, too, up to where the pin turns back
     (rocks,) = linkage.motion(36, input="pin.1", output="pivot").circuits
     reach = float(np.linalg.norm(arm))

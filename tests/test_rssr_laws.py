@@ -470,8 +470,7 @@ def test_the_parallelogram_s_two_circuits_are_the_parallel_and_the_crossed_one()
     """On the parallel one the rocker turns as the crank does, on the crossed one the other way."""
     motion = folding(2, 1, 2, 1).linkage().motion(samples=360)
     assert [c.turns for c in motion] == [1, 1]
-    # the last joint turns the ground against the rocker
     turns = sorted(np.sign(c.output[-1] - c.output[0]) for c in motion)
     assert turns == [-1, 1]
-    parallel = next(c for c in motion if c.output[-1] < c.output[0])
-    np.testing.assert_allclose(parallel.input + parallel.output, parallel.output[0], atol=1e-12)
+    parallel = next(c for c in motion if c.output[-1] > c.output[0])
+    np.testing.assert_allclose(parallel.output - parallel.input, parallel.output[0], atol=1e-12)

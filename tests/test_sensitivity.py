@@ -125,8 +125,10 @@ class Lines:
                     "H": [("turn", axis, pitch / (2 * mp.pi))],
                     "C": [("turn", axis, 0), ("slide", axis, 0)],
                 }[table["kind"]]
-            for kind, axis, advance in lines:
-                whole = whole * self._step(kind, axis, at, q[column], advance)
+            # the last joint moves the link before it against the ground, so the ground the other way
+            last = i == len(self.table) - 1
+            for kind, axis, advance in lines[::-1] if last and table["kind"] == "S" else lines:
+                whole = whole * self._step(kind, axis, at, -q[column] if last else q[column], advance)
                 column += 1
         return whole
 

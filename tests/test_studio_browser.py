@@ -402,7 +402,7 @@ def test_the_input_is_driven_by_another_joint(desk):
 def test_files_are_saved_and_opened_again(desk, tmp_path):
     page = desk.page
     open_tab(page, "Files")
-    saved = download(page, "Save as TOML", tmp_path)
+    saved = download(page, "Download as TOML", tmp_path)
     assert saved.name == f"{desk.name}.toml"
     assert sb.load(saved).dimensions == desk.linkage.dimensions
     bad = tmp_path / "bad.toml"
@@ -506,4 +506,4 @@ def test_closing_the_terminal_ends_it(studio, pages, how):
 @pytest.mark.slow
 def test_another_address_is_told_for_what_it_is(studio):
     one = studio("rssr", "--host", "0.0.0.0")
-    assert "whoever reaches 0.0.0.0 over the network can see and change what is open here" in one.stderr
+    assert "served at 0.0.0.0, over the network: whoever has the address printed here" in one.stderr

@@ -185,7 +185,7 @@ def test_quantities_are_the_output_then_every_other_column_then_the_points() -> 
     points = [
         f"point.{point.name}.{word}" for point in motion.linkage.points for word in ("speed", "acceleration")
     ]
-    assert [q.key for q in found[3:]] == keys + points
+    assert [q.key for q in found[3:]] == ["transmission", *keys, *points]
 
 
 def test_names_differ_even_where_a_joint_and_a_point_are_called_the_same() -> None:
@@ -303,3 +303,38 @@ def test_a_pass_on_which_the_input_falls_is_dashed() -> None:
     falls = [path.input[part][-1] < path.input[part][0] for part in path.passes]
     assert falls == [line.get("stroke-dasharray") is not None for line in lines]
     assert any(falls)
+
+
+# --- the transmission angle
+
+
+def test_the_transmission_angle_of_a_four_bar_is_that_of_its_triangle() -> None:
+    motion = sb.load("planar_4r").motion()
+    (found,) = (quantity for quantity in quantities(motion) if quantity.name == "transmission angle")
+    view = views_of(motion)[0]
+    values = found.values(view)
+    # crank 40, coupler 100, rocker 80, ground 90: law of cosines about the joint of coupler and rocker
+    turned = math.pi - view.path.input
+    diagonal = 40**2 + 90**2 - 2 * 40 * 90 * np.cos(math.pi - turned)
+    other = 40**2 + 90**2 - 2 * 40 * 90 * np.cos(turned)
+    angles = [np.degrees(np.arccos((100**2 + 80**2 - d) / (2 * 100 * 80))) for d in (diagonal, other)]
+    wanted = [np.minimum(angle, 180 - angle) for angle in angles]
+    assert min(np.abs(values - each).max() for each in wanted) < 1e-9
+    assert values.min() == pytest.approx(29.686295, abs=1e-4)
+    assert not any(quantity.key == "transmission" for quantity in quantities(sb.load("seven_r").motion()))
+
+
+def test_axodes_are_the_axes_of_the_joints_at_their_moments() -> None:
+    view = views_of(sb.load("planar_4r").motion())[0]
+    # the crank turns about its own axis, in the ground and in itself
+    for lines in view.axodes(1):
+        middle = lines.mean(axis=1)
+        assert np.abs(np.cross(lines[0, 1] - lines[0, 0], middle - middle[0])).max() < 1e-6
+    # fixed and moving axode of the coupler touch along the axis of the moment, at every row
+    fixed, moving = view.axodes(2)
+    axes = view.circuit.screw_axes(2)
+    for row in (0, 45, 200):
+        frame = view.point_frame(2, float(row))
+        place = frame[:3, :3] @ axes.moving_point[row] + frame[:3, 3]
+        assert np.abs(place - axes.point[row]).max() < 1e-9 * view.frame.span
+    assert len(fixed) == len(moving) > 50

@@ -106,7 +106,7 @@ def restless(client, dice):
             curve = dice.choice(["curve 1", "curve 2", "curve 3"])
             client.put(curve, dice.choice(client.gui[client.find(curve)[0]]["options"]))
         case 7:
-            client.put("step", dice.choice(["-10", "-1", "+1", "+10"]))
+            client.put("step samples", dice.choice(["-10", "-1", "+1", "+10"]))
         case _:
             # a drag, faster than the studio can show it
             slider = dice.choice(sliders)

@@ -73,7 +73,7 @@ def test_the_tour_of_the_manual_is_true(desk, tmp_path):
     assert len(sb.rssr(M=560, N=700, L1=250, L3=550, D=0).motion().circuits) == 2
     # take it home
     open_tab(page, "Files")
-    saved = download(page, "Save as TOML", tmp_path)
+    saved = download(page, "Download as TOML", tmp_path)
     assert "M = 560\n" in saved.read_text()
     assert saved.read_text().startswith("# The example of Sun and Zhou")
     choose(page, "export", "page that plays (HTML)")

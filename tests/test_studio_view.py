@@ -34,7 +34,7 @@ def test_the_modes_of_every_input_are_the_assembly_modes(name: str) -> None:
         turn = linkage.column_kinds[index] == "turn"
         gap = 1e-6 * (1.0 if turn else motion.circuits[0].size)
         worst = []
-        for value in rng.uniform(min(ends), max(ends), 5):
+        for value in rng.uniform(min(ends), max(ends), 9):
             # a whole turn more is the same
             asked = value + 2 * np.pi * int(rng.integers(-3, 4)) if turn else value
             met = modes_at(views_of(motion), asked)

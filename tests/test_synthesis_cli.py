@@ -20,7 +20,7 @@ def test_a_function_is_printed_written_and_told_as_json(tmp_path):
     out = tmp_path / "new" / "folder"
     words = ("design", "function", "--y", "x^2", "--points", "7", "--designs", "2")
     run = sevenbar(*words, "--out", out, "--figures", "svg")
-    assert (run.returncode, run.stderr) == (0, "searching RSSRs for y = x^2 ..\n")
+    assert (run.returncode, run.stderr) == (0, f"searching RSSRs for y = x^2 ..\nwriting {out} ..\n")
     for told in ("wanted    y = x^2", "transmission angle >= 30 deg", "L1 [mm]"):
         assert told in run.stdout
     names = {path.name for path in out.iterdir()}

@@ -166,7 +166,7 @@ def planar(shift):
         {"kind": "R", "at": (0, 0, 0), "axis": (0, 0, 1), "name": "crank"},
         {"kind": "R", "at": (40, 0, 0), "axis": (0, 0, 1), "name": "a"},
         {"kind": "R", "at": (*b, 0), "axis": (0, 0, 1), "name": "b"},
-        {"kind": "R", "at": (120, 0, 0), "axis": (0, 0, -1), "name": "rocker"},
+        {"kind": "R", "at": (120, 0, 0), "axis": (0, 0, 1), "name": "rocker"},
     ]
     return sb.from_axes(joints)
 

@@ -208,8 +208,14 @@ def _first_lowest(motion: sb.Motion) -> float:
     [
         ([0.1, 0.2], "theta: 2 values where one belongs; give one number"),
         ([], "theta: 0 values where one belongs; give one number"),
-        ("a", "theta: 'a' is not a number; give a number"),
-        ("0.3", "theta: '0.3' is not a number; give a number"),
+        (
+            "a",
+            "theta: 'a' is not a number with a unit that fits; give one as in '30 deg', or a number in radians",
+        ),
+        (
+            "0.3",
+            "theta: '0.3' is not a number with a unit that fits; give one as in '30 deg', or a number in radians",
+        ),
         (None, "theta: None is not a number; give a number"),
         (True, "theta: True is not a number; give a number"),
         (np.True_, f"theta: {np.True_!r} is not a number; give a number"),
@@ -243,8 +249,14 @@ def test_one_number_of_any_kind_is_a_number(value):
 @pytest.mark.parametrize(
     ("value", "message"),
     [
-        ("a", "input: 'a' is not a number; give a number"),
-        (["a", "b"], "input: ['a', 'b'] is not an array of numbers; give an array of numbers"),
+        (
+            "a",
+            "input: 'a' is not a number with a unit that fits; give one as in '30 deg', or a number in radians",
+        ),
+        (
+            ["a", "b"],
+            "input[0]: 'a' is not a number with a unit that fits; give one as in '30 deg', or a number in radians",
+        ),
         (None, "input: None is not a number; give a number"),
         ([True], "input: [True] is not an array of numbers; give an array of numbers"),
         ([0.0, None], "input: [0.0, None] is not an array of numbers; give an array of numbers"),
@@ -266,7 +278,10 @@ def test_every_place_that_takes_numbers_says_what_is_none():
             lambda: circuit.point(1, (0, 0, None)),
             "at: (0, 0, None) is not an array of numbers; give an array of numbers",
         ),
-        (lambda: linkage.circuit("pose"), "pose: 'pose' is not a number; give a number"),
+        (
+            lambda: linkage.circuit("pose"),
+            "pose: 'pose' is not a number with a unit that fits; give one as in '30 deg', or a number in radians",
+        ),
         (
             lambda: Law.of([0, 1], [True, False], 0, 0),
             "q: [True, False] is not an array of numbers; give an array of numbers",

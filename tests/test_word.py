@@ -11,7 +11,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names
 from sevenbar.errors import DescriptionError
-from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.kinematics.rigid import inverse, pose, unit
 from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.kinematics.word import word_of
 
@@ -43,7 +43,7 @@ def rows(rng):
 
 def drawn(rng):
     """Joints of any kind as drawn."""
-    kinds = ["R", *rng.choice(list("RPHCUSE"), size=rng.integers(2, 6)), "R"]
+    kinds = ["R", *rng.choice(list("RPHCUSE"), size=rng.integers(2, 6)), *rng.choice(list("RPHCUSE"), size=1)]
     joints = []
     for kind in kinds:
         joint = {"kind": str(kind), "at": rng.normal(size=3)}
@@ -112,17 +112,20 @@ def check_rows(linkage, rng):
 
 
 def check_drawn(linkage, _):
-    """By places and axes: with all joints at zero each frame is where its joint is drawn."""
+    """By places and axes: with all joints at zero each frame is where its joint is drawn, the last one reversed."""
     _, _, (base, *links, ground) = word_at(linkage)
     frame = base
     for i, (joint, table) in enumerate(zip(linkage.joints, linkage.description["joint"], strict=True)):
         np.testing.assert_allclose(frame[:3, 3], table["at"], atol=1e-12)
-        first, second = table.get("axes", (table.get("axis", (0, 0, 1)),) * 2)
-        np.testing.assert_allclose(frame[:3, 2], first / np.linalg.norm(first), atol=1e-12)
+        # of a ball at the end x and z change places
+        straight = (1, 0, 0) if joint.kind == "S" and i == len(links) else (0, 0, 1)
+        first, second = table.get("axes", (table.get("axis", straight),) * 2)
+        way = -1.0 if i == len(links) else 1.0
+        np.testing.assert_allclose(frame[:3, 2], way * unit(first), atol=1e-12)
         if joint.kind == "U":
             c, s = math.cos(joint.angle), math.sin(joint.angle)
             frame = frame @ pose([[1, 0, 0], [0, c, -s], [0, s, c]], np.zeros(3))
-        np.testing.assert_allclose(frame[:3, 2], second / np.linalg.norm(second), atol=1e-12)
+        np.testing.assert_allclose(frame[:3, 2], way * unit(second), atol=1e-12)
         frame = frame @ (links[i] if i < len(links) else inverse(ground))
     np.testing.assert_allclose(frame, np.eye(4), atol=1e-12)
 

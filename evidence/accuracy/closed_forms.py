@@ -106,9 +106,9 @@ def clemens(turn: Series) -> list[Series]:
 def slider(alpha: Series) -> list[Series]:
     """The slider is where a sphere about the crank's ball meets the line of the slide."""
     a, b = (_joint("rssp", joint, "at") for joint in ("ball_a", "ball_b"))
-    back = _joint("rssp", "slider", "axis")
-    length = mp.sqrt(mp.fdot(back, back))
-    along = [-x / length for x in back]
+    axis = _joint("rssp", "slider", "axis")
+    length = mp.sqrt(mp.fdot(axis, axis))
+    along = [x / length for x in axis]
     coupler = mp.fsum((x - y) ** 2 for x, y in zip(a, b, strict=True))
     c, s = cos_sin(alpha)
     ball = [a[0] * c - a[1] * s, a[0] * s + a[1] * c, Series.of(a[2])]

@@ -52,7 +52,10 @@ MANY = 200
 
 
 class Jointed(Protocol):
-    """A joint of a linkage: kind, pitch [length per turn], angle between the axes of U [rad]."""
+    """A joint of a linkage: kind, pitch [length per turn], angle between the axes of U [rad].
+
+    `backwards`: in its own frame a joint E turns first, then slides.
+    """
 
     @property
     def kind(self) -> str: ...
@@ -60,6 +63,8 @@ class Jointed(Protocol):
     def pitch(self) -> float: ...
     @property
     def angle(self) -> float: ...
+    @property
+    def backwards(self) -> bool: ...
 
 
 class Looped(Protocol):
@@ -144,6 +149,9 @@ class Loop:
                     rates, between = [(1.0, 0.0), (0.0, 1.0)], [np.eye(4)]
                 case "U":
                     rates, between = [(1.0, 0.0)] * 2, [turn(0, joint.angle)]
+                case "E" if joint.backwards:
+                    rates = [(1.0, 0.0), (0.0, 1.0), (0.0, 1.0)]
+                    between, back = [_Z_TO_X, _Z_TO_X.T @ _Z_TO_Y], _Z_TO_Y.T
                 case "E":
                     rates = [(0.0, 1.0), (0.0, 1.0), (1.0, 0.0)]
                     front, between = _Z_TO_X, [_Z_TO_X.T @ _Z_TO_Y, _Z_TO_Y.T]

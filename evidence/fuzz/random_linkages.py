@@ -60,9 +60,9 @@ class Drawing:
         return sb.from_axes(self.joints())
 
     def reference(self) -> Rssr:
-        """The crank is turned against the ground, and the ground against the rocker."""
+        """Crank and rocker are turned against the ground."""
         crank = Side(self.crank_at, self.crank_axis, self.ball_a)
-        rocker = Side(self.rocker_at, -self.rocker_axis, self.ball_b)
+        rocker = Side(self.rocker_at, self.rocker_axis, self.ball_b)
         return Rssr(crank, rocker, float(np.linalg.norm(self.ball_a - self.ball_b)), drawn=True)
 
     def moved(self, rotation: np.ndarray, shift: np.ndarray, scale: float = 1.0) -> Drawing:

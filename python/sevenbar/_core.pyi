@@ -68,7 +68,13 @@ class Loop:
     """A single closed loop of R, P, H and S joints."""
 
     def __new__(
-        cls, letters: str, advances: _Floats, base: _Floats, ground: _Floats, links: _Floats
+        cls,
+        letters: str,
+        advances: _Floats,
+        base: _Floats,
+        ground: _Floats,
+        links: _Floats,
+        agree: float = ...,
     ) -> Loop: ...
     @property
     def size(self) -> float: ...

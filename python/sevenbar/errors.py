@@ -58,6 +58,10 @@ def ends_here(public: Callable[P, T]) -> Callable[P, T]:
     return call
 
 
+class AngleUnitWarning(UserWarning):
+    """Angles that may have been written in another unit; the answer takes them as they are."""
+
+
 @dataclass(frozen=True)
 class Problem:
     """One thing that is wrong in a description: its place and what is the matter."""

@@ -61,14 +61,17 @@ fn no_input(column: usize) -> PyErr {
 #[pymethods]
 impl Loop {
     /// From the joints' letters R P H S, the advance of each for a radian (H), the frames of the first joint and of the ground's
-    /// side of the last, each (4, 4), and the transforms of the moving links (n - 1, 4, 4).
+    /// side of the last, each (4, 4), and the transforms of the moving links (n - 1, 4, 4); redundant constraints agree up to a closure
+    /// error [rad, or relative to the size].
     #[new]
+    #[pyo3(signature = (letters, advances, base, ground, links, agree=loops::AGREE))]
     fn new(
         letters: &str,
         advances: PyReadonlyArray1<'_, f64>,
         base: PyReadonlyArray2<'_, f64>,
         ground: PyReadonlyArray2<'_, f64>,
         links: PyReadonlyArray3<'_, f64>,
+        agree: f64,
     ) -> PyResult<Self> {
         let advances = flat("advances", &advances)?;
         let kinds = kinds(letters, advances)?;
@@ -83,7 +86,8 @@ impl Loop {
             ));
         }
         let links: Vec<Pose> = links.axis_iter(Axis(0)).map(pose).collect();
-        Ok(Self(loops::Loop::new(&kinds, pose(base), pose(ground), &links)))
+        let own = loops::Loop::new(&kinds, pose(base), pose(ground), &links);
+        Ok(Self(own.agreeing(agree)))
     }
 
     /// The size of which residuals are parts.

@@ -27,6 +27,19 @@ LONGEST_WAIT = 30.0
 Message = dict[str, Any]
 
 
+def opened(address: str) -> Any:
+    """A socket to the studio at its address, opened as its own page opens one."""
+    from urllib.parse import urlsplit
+
+    import viser
+    from websockets.sync.client import connect
+
+    protocol: Any = f"viser-v{viser.__version__}"
+    origin: Any = f"http://{urlsplit(address).netloc}"
+    there = address.replace("http://", "ws://").rstrip("/")
+    return connect(there, subprotocols=[protocol], origin=origin, max_size=None, compression=None)
+
+
 def unpacked(frame: bytes) -> tuple[list[Message], list[bytes]]:
     """The messages of a frame, and the buffers of their arrays."""
     import msgspec
@@ -53,14 +66,9 @@ class Listener:
 
     def __init__(self, address: str) -> None:
         import msgspec
-        import viser
-        from websockets.sync.client import connect
 
-        protocol: Any = f"viser-v{viser.__version__}"
         self.frames = [(time.perf_counter(), b"")]
-        self.socket = connect(
-            address.replace("http://", "ws://"), subprotocols=[protocol], max_size=None, compression=None
-        )
+        self.socket = opened(address)
         self.socket.send(msgspec.msgpack.encode(CAMERA))
         threading.Thread(target=self._listen, daemon=True).start()
 

@@ -5,20 +5,22 @@ from __future__ import annotations
 import importlib
 import sys
 import traceback
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any, NoReturn, TextIO
 
 import typer
 import typer.core
 
 import sevenbar as sb
 from sevenbar.commands.command import Command
-from sevenbar.commands.consent import agree
+from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import (
+    agreed,
     check_law,
     film_of,
     input_column,
@@ -29,6 +31,7 @@ from sevenbar.commands.given import (
 )
 from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     FigureSize,
     FigureStyle,
@@ -50,7 +53,7 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.commands.progress import STOPPED, progress_bar
-from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.errors import AngleUnitWarning, RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import sample_count
 from sevenbar.kinematics.motion import chosen_circuit
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
@@ -142,6 +145,7 @@ def analyze(
     output: OutputJoint = None,
     speed: Speed = None,
     law: Law = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for report.md, report.json, motion.csv and the figures.")
     ] = None,
@@ -170,13 +174,18 @@ def analyze(
     if out is None and animate is None:
         _refuse_unused({"--circuit": circuit, "--view": view, "--size": size, "--style": style})
     check_law(law, speed)
+    if not json:
+        # the report has it
+        warnings.simplefilter("ignore", AngleUnitWarning)
     loaded = sb.load(linkage)
     report = motion_report(formats)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint)
-    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, law=read)
+    moved = partial(
+        loaded.motion, input=input_joint, output=output, speed=speed, law=read, agree=agreed(agree)
+    )
     if out is not None and read is None:
-        agree(table_ahead(moved, samples, "motion.csv"), yes=yes)
+        confirm(table_ahead(moved, samples, "motion.csv"), yes=yes)
     motion = long_motion(moved, samples)
     if circuit is not None:
         chosen_circuit(motion, circuit)
@@ -244,6 +253,7 @@ def modes(
     input_joint: Annotated[
         str | None, typer.Option("--input", help="The joint that is held; the file's input by default.")
     ] = None,
+    agree: Agree = None,
     out: Annotated[Path | None, typer.Option(help="Draw all modes into this .png, .svg or .pdf.")] = None,
     force: Force = False,
     json: Json = False,
@@ -254,7 +264,8 @@ def modes(
     loaded = sb.load(linkage)
     column = input_column(loaded, input_joint)
     check_targets([] if out is None else [out], force=force)
-    found = loaded.assembly_modes(input_value("--at", at, loaded, input_joint), input=loaded.columns[column])
+    value = input_value("--at", at, loaded, input_joint)
+    found = loaded.assembly_modes(value, input=loaded.columns[column], agree=agreed(agree))
     elsewhere: dict[Path, Callable[[Path], object]] = {}
     if out is not None:
         elsewhere[out] = partial(_draw_modes, loaded, found, loaded.columns[column])
@@ -284,6 +295,7 @@ def plot_(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    agree: Agree = None,
     figures: Figures = None,
     view: FigureView = None,
     size: FigureSize = None,
@@ -302,8 +314,9 @@ def plot_(
         kinds.remove("point")
     # more rows than that are no better to look at
     motion = loaded.motion(
-        min(sample_count("samples", samples), MOST_DRAWN), input=input_joint, output=output, speed=speed
-    )
+        min(sample_count("samples", samples), MOST_DRAWN),
+        input=input_joint, output=output, speed=speed, agree=agreed(agree),
+    )  # fmt: skip
     if "transmission" in kinds and all(found.transmission_angle is None for found in motion):
         if kind is not None and "transmission" in kind:
             raise RequestError("--kind: this linkage has no transmission angle; leave transmission out")
@@ -361,8 +374,33 @@ def gallery(
         typer.echo(f"{name:<{width}}  {sb.load(name).name}")
 
 
+def _tell_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Writes a warning of ours as one line on the error stream, any other as Python does."""
+    ours = issubclass(category, AngleUnitWarning)
+    text = (
+        f"sevenbar: {message}\n"
+        if ours
+        else warnings.formatwarning(message, category, filename, lineno, line)
+    )
+    (file or sys.stderr).write(text)
+
+
 def main() -> NoReturn:
     """The program: exit 0 well, 2 the caller's mistake, 1 our own fault."""
+    with warnings.catch_warnings():
+        warnings.showwarning = _tell_warning
+        warnings.simplefilter("always", AngleUnitWarning)
+        _run()
+
+
+def _run() -> NoReturn:
     try:
         app(standalone_mode=True, prog_name="sevenbar")
     except SevenbarError as error:

@@ -36,7 +36,7 @@ class Ahead:
         return f"{self.option}: {', '.join(parts)}"
 
 
-def agree(ahead: Ahead, *, yes: bool) -> None:
+def confirm(ahead: Ahead, *, yes: bool) -> None:
     """Goes on where it is not much, or wanted; at a terminal it asks.
 
     Raises `RequestError` where nobody can answer; a no ends the command with exit 2, too.

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import sevenbar as sb
-from sevenbar.commands.consent import agree
+from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import tell_written
-from sevenbar.commands.given import input_value
+from sevenbar.commands.given import agreed, input_value
 from sevenbar.commands.long_tables import long_motion, table_ahead
-from sevenbar.commands.options import Force, InputJoint, OutputJoint, Samples, Source, Speed, Yes
+from sevenbar.commands.options import Agree, Force, InputJoint, OutputJoint, Samples, Source, Speed, Yes
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.folder import check_targets
@@ -62,6 +62,7 @@ def export(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    agree: Agree = None,
     units: Annotated[
         str | None, typer.Option(help="Of tables: file (the default), or si for metres and radians.")
     ] = None,
@@ -81,10 +82,10 @@ def export(
     check_targets([out] if out.suffix else [], force=force)
     loaded = sb.load(linkage)
     value = None if at is None else input_value("--at", at, loaded, input_joint)
-    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed)
+    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, agree=agreed(agree))
     if isinstance(form, Table):
         text = out.suffix.lower() in TEXT
-        agree(table_ahead(moved, samples, out.name, text=text), yes=yes)
+        confirm(table_ahead(moved, samples, out.name, text=text), yes=yes)
     motion = long_motion(moved, samples)
     with progress_bar(f"writing {out}") as progress:
         if sys.stderr.isatty():

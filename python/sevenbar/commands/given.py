@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.joint_text import joint_value
+from sevenbar.kinematics.linkage import agreement
 from sevenbar.text.expression import number_of
 from sevenbar.text.ranges import Place, split_list, split_range, three_numbers, with_common_unit
 from sevenbar.text.units import amount, examples_of, sizes_of
@@ -23,6 +24,11 @@ def check_law(law: Path | None, speed: str | None) -> None:
     """Refuses a speed beside a law."""
     if law is not None and speed is not None:
         raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
+
+
+def agreed(agree: float | None) -> float | None:
+    """The closure error of --agree, if one is given."""
+    return None if agree is None else agreement("--agree", agree)
 
 
 def law_of(law: Path | None, linkage: sb.Linkage, input_joint: str | None) -> Law | None:

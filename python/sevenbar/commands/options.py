@@ -60,6 +60,13 @@ FigureSize = Annotated[
 FigureStyle = Annotated[
     str | None, typer.Option("--style", help="Style of the figures: screen, paper or ieee.")
 ]
+Agree = Annotated[
+    float | None,
+    typer.Option(
+        help="Closure error up to which redundant constraints agree, in rad or relative to the size: "
+        "1e-9 by default, 1e-3 at most."
+    ),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Go on without asking where it is much or long.")]
 InputJoint = Annotated[

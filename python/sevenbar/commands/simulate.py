@@ -10,7 +10,7 @@ import typer
 
 import sevenbar as sb
 from sevenbar.commands.command import count_of
-from sevenbar.commands.consent import Ahead, agree
+from sevenbar.commands.consent import Ahead, confirm
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.options import (
     Figures,
@@ -58,7 +58,7 @@ def simulate(
     report = simulation_report(engine, formats)
     check_out(report, out, force=force)
     ahead = Ahead("--steps", f"{steps} steps in {engine}", seconds=steps / STEPS[engine])
-    agree(ahead, yes=yes)
+    confirm(ahead, yes=yes)
     with progress_bar(f"{engine}: {loaded.name}") as progress:
         if sys.stderr.isatty():
             # a refusal takes it away

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-import ipaddress
 import webbrowser
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -35,20 +35,23 @@ def studio(
     for name in ("viser", "tomlkit"):
         if importlib.util.find_spec(name) is None:
             raise MissingExtraError(f"studio needs {name}; install it with: pip install 'sevenbar[studio]'")
+    from sevenbar.studio.guard import is_loopback
     from sevenbar.studio.server import StudioServer
 
+    # the folder of the file that was opened, else that in which the command was called
+    folder = Path(linkage).resolve().parent if Path(linkage).is_file() else Path.cwd()
     try:
-        server = StudioServer(text, linkage, host, port)
+        server = StudioServer(text, linkage, host, port, folder)
     except OSError as error:
         reason = (error.strerror or str(error)).lower().partition(" (")[0]
         raise RequestError(
             f"--host, --port: cannot serve at {host}:{port}: {reason}; give another address"
         ) from None
     try:
-        if not _loopback(host):
+        if not is_loopback(host):
             typer.echo(
-                f"whoever reaches {host} over the network can see and change what is open here: there is no "
-                "password",
+                f"served at {host}, over the network: whoever has the address printed here can see and "
+                "change what is open; it is sent unencrypted",
                 err=True,
             )
         typer.echo(f"the studio is at {server.address} (Ctrl+C ends it)")
@@ -57,11 +60,3 @@ def studio(
         server.wait()
     finally:
         server.stop()
-
-
-def _loopback(host: str) -> bool:
-    """Whether an address is this machine's own alone."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"

@@ -7,6 +7,7 @@ import re
 import tomllib
 from pathlib import Path
 
+from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
 from sevenbar.description.tables import ENDINGS, description_of_bytes, is_table
@@ -90,7 +91,9 @@ def loads(content: str, source: str = "text") -> Linkage:
         raise _unreadable(source, _told(error, content.split("\n"))) from None
     except RecursionError:
         raise _unreadable(source, "nested too deep; a linkage file has tables of plain keys only") from None
-    return from_description(raw, source)
+    linkage = from_description(raw, source)
+    warn_of_angles(raw, source)
+    return linkage
 
 
 #: How files of other programs begin, and what to do with them.

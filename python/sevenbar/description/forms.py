@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.proportions import disproportions
 from sevenbar.description.table_reader import described_frame
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
@@ -65,7 +66,7 @@ def rssr(
         "name": name,
         "length_unit": length_unit,
         "drive": {"speed": _plain(speed)},
-        "rssr": {key: _plain(value) for key, value in dimensions.items()},
+        "rssr": _plain(dimensions),
     }
     return from_description(raw)
 
@@ -83,7 +84,9 @@ def from_axes(
 
     Each joint is a mapping with `kind` (a letter), `at` (three coordinates), `axis` (three numbers;
     `axes`, two of them, for U; none for S), `pitch` (length per turn) for H, and perhaps `name`. Link i lies
-    between joints i and i + 1, the last is the ground. Every joint is at zero in this pose.
+    between joints i and i + 1, the last is the ground. Every joint is at zero in this pose. Coordinates and
+    pitches are in `length_unit`, or texts as in "12 mm", "8 mm/turn". A joint at the ground, first or last,
+    counts its link against the ground.
 
         >>> import sevenbar as sb
         >>> linkage = sb.from_axes([
@@ -127,19 +130,23 @@ def from_dh(
     `A_i = Rz(theta_i) Tz(offset_i) Tx(length_i) Rx(twist_i)`, joint i stands before link i, and the product
     of all is the identity. `joints` has a letter R, P or H for each joint. Lengths and offsets are in
     `length_unit` and may be negative, angles in radians; a text has a unit of its own, as in "30 deg". What
-    is left out is 0. Lists, arrays and columns of a data frame are taken; a column whose name has a unit,
-    `alpha [deg]`, is in that. The variable of R and H is theta,
-    that of P the offset, its theta being the fixed `angle`; `pitch` is the length per turn of H, whose offset
-    is its value at theta = 0. What a joint has not (the offset of P, the angle of R and H, the pitch of R and
-    P) is `None` or 0. A point is `{"name": .., "link": .., "at": (u, v, w)}`: from where the link before
-    meets the joint's axis, u along that axis, v along the link, w = u x v. `joints` may be a data frame of
-    all columns instead, as `from_table` takes it. Raises `DescriptionError` with all that is wrong.
+    is left out is 0. A twist of more than a turn gets an `AngleUnitWarning`. The last joint turns the ground
+    relative to the link before it, as the paper's does. Lists, arrays and columns of a data frame are taken;
+    a column whose name has a unit, `alpha [deg]`, is in that. The variable of R and H is theta, that of P the
+    offset, its theta being the fixed `angle`; `pitch` is the length per turn of H, whose offset is its value
+    at theta = 0. What a joint has not (the offset of P, the angle of R and H, the pitch of R and P) is `None`
+    or 0. A point is `{"name": .., "link": .., "at": (u, v, w)}`: from where the link before meets the joint's
+    axis, u along that axis, v along the link, w = u x v. `joints` may be a data frame of all columns instead,
+    as `from_table` takes it. Raises `DescriptionError` with all that is wrong.
 
         >>> import sevenbar as sb
         >>> twists = [0.3, 0.6320397, 0.3, 0.6320397]
         >>> bennett = sb.from_dh("RRRR", length=[1, 2, 1, 2], twist=twists)
         >>> bennett.columns
         ('theta_1', 'theta_2', 'theta_3', 'theta_4')
+        >>> square = sb.from_dh("RRRR", length=[1] * 4, twist=["30 deg"] * 4, offset=[0] * 4)
+        >>> square.dimensions["twist_1_deg"]
+        30.0
 
     Source: docs/conventions.md, (1); the 7R paper's loop and its u, v, w.
     """
@@ -160,7 +167,9 @@ def from_dh(
         "link": rows,
         "point": _plain(points),
     }
-    return from_description(raw)
+    linkage = from_description(raw)
+    warn_of_angles(linkage.description)
+    return linkage
 
 
 #: The columns of `from_dh`.
@@ -337,7 +346,8 @@ def _from_dimensions(form: LinkageForm, rssr: RssrForm) -> Linkage:
     return _linkage(
         form,
         "rssr",
-        tuple(Joint(kind, name) for name, kind in form.joints),
+        # the rocker turns against the ground about x, as the last joint of a drawing does
+        tuple(Joint(kind, name, backwards=name == "rocker") for name, kind in form.joints),
         points=(Point("A", 1, (rssr.L1, 0.0, 0.0)), Point("B", 3, (0.0, 0.0, 0.0))),
         dimensions={**{key: getattr(rssr, key) for key in ("M", "N", "L1")}, "L2": rssr.coupler}
         | {key: getattr(rssr, key) for key in ("L3", "D")},
@@ -366,10 +376,17 @@ def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) 
     problems = _coincident(drawn, names) if rssr else _coincident_balls(drawn)
     if problems:
         raise DescriptionError(problems, source)
+    last = len(drawn) - 1
     joints = tuple(
         # a joint U at zero is not the identity: it turns from its first axis to its second
-        Joint(joint.kind, name, joint.pitch or 0.0, between(*joint.axes) if joint.axes else 0.0)
-        for joint, name in zip(drawn, names, strict=True)
+        Joint(
+            joint.kind,
+            name,
+            joint.pitch or 0.0,
+            between(*joint.axes) if joint.axes else 0.0,
+            backwards=i == last,
+        )
+        for i, (joint, name) in enumerate(zip(drawn, names, strict=True))
     )
     points = (Point("A", 1, drawn[1].at), Point("B", 3, drawn[2].at)) if rssr else ()
     return _linkage(form, "drawn", joints, points=points)

@@ -33,6 +33,7 @@ from sevenbar.description.values import (
     Vector,
     crossing,
     one_of,
+    one_word,
     refuse,
 )
 from sevenbar.description.written import (
@@ -161,9 +162,15 @@ class DriveForm(_Form):
         Speed,
         _key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
     ] = 1.0
-    joint: Annotated[Text | None, _key("the input; left out, the first joint that is no ball")] = None
+    joint: Annotated[
+        Text | None,
+        BeforeValidator(one_word("input")),
+        _key("the input; left out, the first joint that is no ball"),
+    ] = None
     output: Annotated[
-        Text | None, _key("the output; left out, the last joint that is neither a ball nor the input")
+        Text | None,
+        BeforeValidator(one_word("output")),
+        _key("the output; left out, the last joint that is neither a ball nor the input"),
     ] = None
 
 

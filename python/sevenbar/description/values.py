@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
@@ -127,6 +127,25 @@ def _text(value: object) -> str:
 #: A formula before a unit of speed: `2*pi*5 rad/s`.
 _SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])
 _FORMULA_OF_SPEED = re.compile(rf"(.+?)\s*({_SPEED_UNITS})")
+
+
+def one_word(end: str) -> Callable[[object], object]:
+    """A check that refuses a list where one joint is the input or the output of the linkage."""
+
+    def choose(value: object) -> object:
+        if isinstance(value, list) and len(value) != 1:
+            what = f"{shown(value)} are {len(value)} {end}s" if value else f"{shown(value)} names no {end}"
+            raise refuse(
+                f"{what}; a linkage has one {end} here, so give one joint, as in {end_example(value)}"
+                + ("; with two inputs lock one of them: leave that joint out" if end == "input" else "")
+            )
+        return value
+
+    def end_example(value: list[object]) -> str:
+        first = next((name for name in value if isinstance(name, str)), "crank")
+        return shown(first)
+
+    return choose
 
 
 def _speed(value: object, info: ValidationInfo) -> float:

@@ -145,7 +145,9 @@ def skeleton_of(
     reach: dict[int, tuple[Floats, Floats]] = {}
     links: list[tuple[int, ...]] = []
     for i, joint in enumerate(linkage.joints):
-        first, second = before[:, i, :3, 2], after[:, i, :3, 2]
+        # the axis as it is written
+        written = -1.0 if joint.backwards else 1.0
+        first, second = written * before[:, i, :3, 2], written * after[:, i, :3, 2]
         near, far = before[:, i, :3, 3], after[:, i, :3, 3]
         if sphere:
             near, far = _on_sphere(sphere, near, first), _on_sphere(sphere, far, second)

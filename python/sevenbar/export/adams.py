@@ -16,8 +16,8 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
-from sevenbar.kinematics.joints import Step
-from sevenbar.kinematics.rigid import about, inverse
+from sevenbar.kinematics.joints import KINDS, Step
+from sevenbar.kinematics.rigid import about, half_turn, inverse
 from sevenbar.kinematics.rigid import pose as matrix
 from sevenbar.text.units import LENGTHS
 
@@ -219,14 +219,19 @@ class _AdamsCommands:
         if joint.row.has_cross:
             self._universal(i, on_before, on_after)
             return
-        j_marker = self._marker(before, f"{word}_j", on_before)
-        i_marker = self._marker(after, f"{word}_i", on_after)
+        row, j_side, i_side = joint.row, (before, on_before), (after, on_after)
+        if joint.backwards:
+            # as written: the link, from the ground, about the axis as drawn
+            row, turned = KINDS[joint.kind], half_turn(joint.row.half_turn)
+            j_side, i_side = (after, on_after @ turned), (before, on_before @ turned)
+        j_marker = self._marker(j_side[0], f"{word}_j", j_side[1])
+        i_marker = self._marker(i_side[0], f"{word}_i", i_side[1])
         name = self._connect(joint.row.adams, word, i_marker, j_marker)
         if joint.row.is_screw:
             # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
             self._connect("screw", f"{word}_thread", i_marker, j_marker, self.scale * joint.pitch)
         if not joint.row.is_ball:
-            for column, step in joint.row.named(joint.name):
+            for column, step in row.named(joint.name):
                 self.columns[column] = (name, i_marker, j_marker, step)
 
     def _universal(self, i: int, on_before: Floats, on_after: Floats) -> None:

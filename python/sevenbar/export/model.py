@@ -24,7 +24,7 @@ def write_mjcf(assembly: Assembly, path: Path) -> None:
     speed = linkage.drive.speed if math.isnan(motion.speed) else motion.speed
     # rows of just this input, one for each pass of the circuit
     law = Law.of([0.0], [pose.input], [speed], [0.0])
-    circuit = linkage.circuit(pose.q, input=motion.input, output=motion.output, law=law)
+    circuit = linkage.circuit(pose.q, input=motion.input, output=motion.output, law=law, agree=motion.agree)
     usable = np.flatnonzero(circuit.status == "ok")
     if not usable.size:
         raise RequestError(

@@ -76,6 +76,7 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
         input=motion.input,
         output=motion.output,
         law=Law.of([0.0], [at], 0.0, 0.0),
+        agree=motion.agree,
     ).circuits[circuit]
     rows = np.flatnonzero(exact.branch == (branch or 0))
     frames = frames_along(linkage, exact, rows[:1])

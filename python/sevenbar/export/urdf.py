@@ -12,7 +12,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
-from sevenbar.kinematics.rigid import zyx_turns
+from sevenbar.kinematics.rigid import half_turn, zyx_turns
 from sevenbar.text.units import LENGTHS
 
 #: The mass of a link that only joins the freedoms of one joint, as a share of the next link's.
@@ -102,25 +102,27 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
     joint = linkage.joints[-1]
     count = len(linkage.joints)
     factors = np.where([kind == "slide" for kind in linkage.column_kinds], scale, 1.0)
-    own: dict[str, Any] = {"name": joint.name, "kind": joint.kind, "columns": list(joint.columns)}
+    frames = {assembly.bodies[count - 2]: linkage.links[-1], "ground": linkage.ground}
+    columns, angle = joint.columns, joint.angle
+    if joint.backwards:
+        # as written: the link from the ground, about the axes as drawn; of U the ground has the second
+        turned = half_turn(joint.row.half_turn)
+        frames = {link: frame @ turned for link, frame in reversed(frames.items())}
+        columns, angle = columns[:: -1 if joint.row.has_cross or joint.row.numbered_back else 1], -angle
+    sides = [{"link": link, "frame": _scaled(frame, scale).tolist()} for link, frame in frames.items()]
+    own: dict[str, Any] = {"name": joint.name, "kind": joint.kind, "columns": list(columns)}
     if joint.row.is_screw:
         own["pitch"] = scale * joint.pitch
     if joint.row.has_cross:
-        own["angle"] = joint.angle
+        own["angle"] = angle
     return {
         "format": 1,
         "tree": path.name,
-        "about": "The joint that closes the loop. With the pose T of the parent link and the joint's motion "
-        "Z(q), T parent.frame Z(q) = child.frame; pose holds values of all columns for which it does.",
+        "about": "The joint that closes the loop. With the poses T of both links (of the ground 1) and the "
+        "joint's motion Z(q), T_parent parent.frame Z(q) = T_child child.frame; pose holds values of all "
+        "columns for which it does.",
         "units": {"length": "m", "angle": "rad"},
-        "loop_joint": own
-        | {
-            "parent": {
-                "link": assembly.bodies[count - 2],
-                "frame": _scaled(linkage.links[-1], scale).tolist(),
-            },
-            "child": {"link": "ground", "frame": _scaled(linkage.ground, scale).tolist()},
-        },
+        "loop_joint": own | {"parent": sides[0], "child": sides[1]},
         "pose": {
             "circuit": assembly.pose.circuit.index,
             "input": assembly.pose.motion.input,

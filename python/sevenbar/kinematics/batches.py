@@ -115,7 +115,7 @@ def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int
         parts[0].letters,
         np.array([part.advances for part in parts]),
         np.stack([part.base for part in parts]),
-        np.stack([linkage.ground for linkage in linkages]),
+        np.stack([part.ground for part in parts]),
         np.stack([np.array(part.links) for part in parts]),
         input,
         output,

@@ -83,6 +83,7 @@ class ClosedForm:
             search=Search("closed-form"),
             # two circles and a distance never repeat each other
             redundant=(),
+            agree=_core.AGREE,
             law=law,
         )
 

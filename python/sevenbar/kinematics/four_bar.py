@@ -52,7 +52,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     names = [columns[i] for i in moves]
     if len(moves) != 4 or letters.count("P") > 1 or set(letters) - {"R", "P"}:
         return None
-    between = _between(parts.links, inverse(loop.ground) @ parts.base, moves)
+    between = _between(parts.links, inverse(parts.ground) @ parts.base, moves)
     roles = _roles(names, input, output)
     if found is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]

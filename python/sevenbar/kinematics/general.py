@@ -25,7 +25,7 @@ from sevenbar.kinematics.sensitivity import sensitivity_of
 
 T = TypeVar("T")
 
-#: The closure error [rad, or parts of the size] up to which redundant constraints agree.
+#: The closure error [rad, or relative to the size] up to which redundant constraints agree by default.
 AGREE = _core.AGREE
 
 #: Rank six, and the one that is driven.
@@ -44,17 +44,17 @@ SAME_LIMIT = 1e-6
 class GeneralLoop:
     """The solver of one loop. Some joints are several for the core, so links are counted anew there."""
 
-    def __init__(self, linkage: Solvable) -> None:
-        self._linkage = linkage
+    def __init__(self, linkage: Solvable, agree: float = AGREE) -> None:
+        self._linkage, self._agree = linkage, agree
         parts = expanded(linkage)
         self._base, self._link = parts.base, parts.last
         self._core = _core.Loop(
-            parts.letters, np.array(parts.advances), parts.base, linkage.ground, np.array(parts.links)
+            parts.letters, np.array(parts.advances), parts.base, parts.ground, np.array(parts.links), agree
         )
         self._found: dict[int, Mobility] = {}
 
-    def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable]]:
-        return GeneralLoop, (self._linkage,)
+    def __reduce__(self) -> tuple[type[GeneralLoop], tuple[Solvable, float]]:
+        return GeneralLoop, (self._linkage, self._agree)
 
     @property
     def size(self) -> float:
@@ -148,7 +148,8 @@ class GeneralLoop:
         q, residual, completeness, misfits = self._solve(
             column, partial(self._core.assembly_modes, column, value)
         )
-        return Modes(q, residual * self.size, completeness, self._linkage.columns, value, np.array(misfits))
+        columns = self._linkage.columns
+        return Modes(q, residual * self.size, completeness, columns, value, np.array(misfits), self._agree)
 
     def mobility(self, column: int) -> Mobility:
         """How freely the loop moves; poses are looked for over the values of a column."""
@@ -185,6 +186,7 @@ class GeneralLoop:
             search=search_from(raw.search, linkage.columns),
             redundant=mobility.redundant,
             law=law,
+            agree=self._agree,
         )
 
     def circuit(
@@ -299,14 +301,15 @@ class Expanded(NamedTuple):
     """The joints as the core takes them, each about or along z of its frame.
 
     `letters` R P H S, `advances` [length for a radian], `base` (4, 4) the frame of the first, `links` (4, 4)
-    between them; `last` the number of the last one of each joint of the linkage, `columns` the column of
-    each, a ball's first.
+    between them, `ground` (4, 4) the frame behind the last; `last` the number of the last one of each joint
+    of the linkage, `columns` the column of each, a ball's first.
     """
 
     letters: str
     advances: list[float]
     base: Floats
     links: list[Floats]
+    ground: Floats
     last: list[int]
     columns: list[int]
 
@@ -329,7 +332,8 @@ def expanded(linkage: Loop) -> Expanded:
         last.append(len(letters) - 1)
         if i < len(linkage.links):
             ahead = linkage.links[i] if ahead is STILL else ahead @ linkage.links[i]
-    return Expanded(letters, advances, fixed[0], fixed[1:], last, columns)
+    ground = linkage.ground if ahead is STILL else linkage.ground @ inverse(ahead)
+    return Expanded(letters, advances, fixed[0], fixed[1:], ground, last, columns)
 
 
 def size_of(linkage: Loop) -> float:

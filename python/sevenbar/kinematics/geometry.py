@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
-from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z, column_names
+from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z
 from sevenbar.kinematics.rigid import about, inverse, pose
 from sevenbar.text.printing import Drawable
 
@@ -26,23 +26,30 @@ Form = Literal["rssr", "rows", "drawn"]
 class Joint:
     """A joint: the letter of its kind, and its name.
 
-    `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U.
+    `pitch` [length per turn, right-handed] of H; `angle` [rad] between the two axes of U. `backwards`: its
+    values are those of the link before it against the link after it, as of the last joint of a drawing.
     """
 
     kind: str
     name: str
     pitch: float = 0.0
     angle: float = 0.0
+    backwards: bool = False
 
     @property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind]
+        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """One name for each of its freedoms."""
-        return column_names(self.name, self.row.freedoms)
+        """One name for each of its freedoms, in loop order."""
+        return self.row.columns(self.name)
+
+    @property
+    def first(self) -> str:
+        """The column that its plain name means: its first freedom by number."""
+        return self.columns[-1 if self.row.numbered_back else 0]
 
     @property
     def advance(self) -> float:
@@ -184,7 +191,7 @@ class Loop(Drawable):
                     f"give a joint with one freedom: {', '.join(self.drivable())}"
                 )
             if name == joint.name:
-                return self.columns.index(joint.columns[0])
+                return self.columns.index(joint.first)
         if name not in self.columns:
             raise RequestError(f"{key}: {no_joint(name, known)}")
         return self.columns.index(name)
@@ -198,7 +205,7 @@ class Loop(Drawable):
             for joint in self.joints
             if not joint.row.is_ball and self.columns[column] not in joint.columns
         ]
-        name = last[-1].columns[0] if last else self.drivable(column)[-1]
+        name = last[-1].first if last else self.drivable(column)[-1]
         return self.columns.index(name)
 
     def speed_of(self, column: int) -> float:

@@ -1,10 +1,13 @@
-"""The value of a joint as people write it."""
+"""The value of a joint as people write it: on the command line, and in calls."""
 
 from __future__ import annotations
 
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.units import amount, examples_of, sizes_of
+from sevenbar.text.units import amount, examples_of, number_in, sizes_of
 
 
 def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
@@ -22,3 +25,57 @@ def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
             f"give {examples_of(unit)}"
         )
     return value
+
+
+def given_number(key: str, value: object, unit: str) -> object:
+    """What a caller gives for a number in a unit, "rad" or a length: a text is read, anything else as it is.
+
+    Raises `RequestError` for a text that is no number with a unit that fits.
+    """
+    if not isinstance(value, str):
+        return value
+    number = number_in(unit, value)
+    if number is None:
+        example = "one as in '30 deg'" if unit == "rad" else f"one as in '12 {unit}'"
+        plain = "radians" if unit == "rad" else unit
+        raise RequestError(
+            f"{key}: {shown(value)} is not a number with a unit that fits; give {example}, "
+            f"or a number in {plain}"
+        )
+    return number
+
+
+def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> float:
+    """The value of a joint [rad, or length] that a caller gives: a number, or a text as in "30 deg"."""
+    return finite_number(key, given_number(key, value, _unit(linkage, column)))  # type: ignore[arg-type]
+
+
+def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
+    """Values of a joint (n,) [rad, or length] that a caller gives: numbers, or texts; finite or not."""
+    return real_array(key, _read(key, values, [_unit(linkage, column)] * len_of(values)))
+
+
+def pose_numbers(key: str, values: npt.ArrayLike, linkage: Loop) -> Floats:
+    """The values of all columns (columns,) [rad, or length] that a caller gives: finite numbers, or texts."""
+    units = [_unit(linkage, column) for column in range(len(linkage.columns))]
+    return finite_array(key, _read(key, values, units))
+
+
+def len_of(values: npt.ArrayLike) -> int:
+    """How many values there are."""
+    return len(values) if isinstance(values, (list, tuple)) else 1
+
+
+def _read(key: str, values: npt.ArrayLike, units: list[str]) -> npt.ArrayLike:
+    """Values with texts read, each in its unit."""
+    if isinstance(values, str) and units:
+        return given_number(key, values, units[0])  # type: ignore[return-value]
+    if not isinstance(values, (list, tuple)) or not any(isinstance(value, str) for value in values):
+        return values
+    return [
+        given_number(f"{key}[{i}]", value, units[min(i, len(units) - 1)]) for i, value in enumerate(values)
+    ]  # type: ignore[return-value]
+
+
+def _unit(linkage: Loop, column: int) -> str:
+    return linkage.length_unit if linkage.column_kinds[column] == "slide" else "rad"

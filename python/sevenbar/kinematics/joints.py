@@ -2,13 +2,20 @@
 
 A joint moves the link after it against the link before by `Z(q)`, the product of its steps. A step is a turn
 about or a slide along an axis of the frame that the steps before it have moved; the columns of a joint are
-the values of its steps, but for a slide that a screw's turn drives.
+the values of its steps, except a slide that a screw's turn drives.
+
+The last joint of a drawing is `backwards`: it counts the link before it against the ground, as the first
+joint counts the link after it. So its own motion is taken back,
+
+    Z(q)^-1 = Z_k(-q_k) .. Z_1(-q_1),
+
+which is a product of steps again, in a frame turned by half: about x, where z is the only axis that counts.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -52,7 +59,8 @@ class JointKind:
     `legend` is what figures call it, `words` are those that people write for it. `steps` stand in loop order,
     the last of all but a ball about or along z. `drawn_keys` are the keys that it needs as drawn beside its
     place, `row_keys` the numbers of a Denavit-Hartenberg row; a kind without them is written `as_rows`.
-    `shape` is how it is drawn and built, `adams` what ADAMS calls it.
+    `shape` is how it is drawn and built, `adams` what ADAMS calls it. `numbered_back`: the names of its
+    columns count from its last step.
     """
 
     letter: str
@@ -64,6 +72,7 @@ class JointKind:
     adams: str
     row_keys: tuple[str, ...] = ()
     as_rows: str = ""
+    numbered_back: bool = False
 
     @cached_property
     def freedoms(self) -> tuple[Freedom, ...]:
@@ -101,9 +110,38 @@ class JointKind:
         """Whether its slide follows from its turn."""
         return any(step.driven for step in self.steps)
 
+    @cached_property
+    def half_turn(self) -> tuple[int, int, int]:
+        """The axis of the half turn that takes its frame to that of the joint `backwards`.
+
+        It reverses z. Where several axes of the frame count, two of them change places: reversed, all three
+        would make no frame.
+        """
+        if self.is_ball:
+            return (1, 0, -1)
+        return (1, -1, 0) if self.has_plane else (1, 0, 0)
+
+    @cached_property
+    def backwards(self) -> JointKind:
+        """The kind of a joint that counts the link before it against the link after it, in the turned frame.
+
+        A ball turns about the same axes of the turned frame, and a joint in a plane turns first; both are
+        numbered from the last step. In other kinds the steps are on one axis, or each has a link of its own
+        that holds its axis: the order is that of the kind itself.
+        """
+        if self.has_plane:
+            turn, one, other = Step("turn"), Step("slide", X), Step("slide", Y)
+            return replace(self, steps=(turn, one, other), numbered_back=True)
+        return replace(self, numbered_back=True) if self.is_ball else self
+
+    def columns(self, joint: str) -> tuple[str, ...]:
+        """The names of the columns of a joint of this name, in loop order."""
+        names = column_names(joint, self.freedoms)
+        return names[::-1] if self.numbered_back else names
+
     def named(self, joint: str) -> list[tuple[str, Step]]:
         """The steps of a joint of this name, each by its column's; a screw's slide has a name of its own."""
-        names = iter(column_names(joint, self.freedoms))
+        names = iter(self.columns(joint))
         return [(f"{joint}.slide" if step.driven else next(names), step) for step in self.steps]
 
     @cached_property

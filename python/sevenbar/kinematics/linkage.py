@@ -9,16 +9,17 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number, real_array
+from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.four_bar import four_bar_of
-from sevenbar.kinematics.general import GeneralLoop
+from sevenbar.kinematics.general import AGREE, GeneralLoop
 from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.joint_text import joint_number, joint_numbers, pose_numbers
 from sevenbar.kinematics.mobility import Mobility
-from sevenbar.kinematics.motion import Modes, Motion, Output, Solvable
+from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
 from sevenbar.text.units import sliding_speed, turning_speed
 
@@ -47,6 +48,19 @@ class Linkage(Solvable):
     @cached_property
     def _general(self) -> GeneralLoop:
         return GeneralLoop(self)
+
+    @cached_property
+    def _agreeing(self) -> dict[float, GeneralLoop]:
+        return {}
+
+    def _general_at(self, agree: float | None) -> GeneralLoop:
+        """The general solver with redundant constraints that agree up to a closure error."""
+        if agree is None or agree == AGREE:
+            return self._general
+        value = agreement("agree", agree)
+        if value not in self._agreeing:
+            self._agreeing[value] = GeneralLoop(self, value)
+        return self._agreeing[value]
 
     def _rssr(self, what: str) -> ClosedForm:
         if self.kind != "RSSR":
@@ -93,10 +107,10 @@ class Linkage(Solvable):
     ) -> Output:
         """Both branches of the other joint at many inputs: the closed form, vectorised.
 
-        `values` (n,) [rad] are inputs; `order` 0 to 3 how many derivatives. The input moves at `speed`
-        [rad/s] (the drive's where none is given); `speed`, `acceleration` [rad/s^2] and `jerk` [rad/s^3]
-        may also be arrays (n,), an input law. Branch 0 of `beta = f(alpha)` is eq. (8) of Sun and Zhou;
-        with `input` the last joint, branch 0 of `alpha = phi(beta)` is eq. (9).
+        `values` (n,) [rad, or texts as in "30 deg"] are inputs; `order` 0 to 3 how many derivatives. The
+        input moves at `speed` [rad/s] (the drive's where none is given); `speed`, `acceleration` [rad/s^2]
+        and `jerk` [rad/s^3] may also be arrays (n,), an input law. Branch 0 of `beta = f(alpha)` is eq. (8)
+        of Sun and Zhou; with `input` the last joint, branch 0 of `alpha = phi(beta)` is eq. (9).
 
         Raises `RequestError` for values that are not finite, lengths that differ, an order out of range.
 
@@ -109,7 +123,7 @@ class Linkage(Solvable):
         """
         solver = self._rssr("output")
         column = self._input(input)
-        array = real_array("input", values)
+        array = joint_numbers("input", values, self, column)
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
             raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
         law = None
@@ -127,13 +141,19 @@ class Linkage(Solvable):
 
     @ends_here
     def assembly_modes(
-        self, theta: float, *, input: str | None = None, method: Literal["auto", "general"] = "auto"
+        self,
+        theta: float | str,
+        *,
+        input: str | None = None,
+        method: Literal["auto", "general"] = "auto",
+        agree: float | None = None,
     ) -> Modes:
         """Every assembly mode at one value of the input [rad, or length]; none where the loop does not close.
 
         An RSSR is solved in closed form, any loop of turning and sliding joints (and joints made of these) by
         following all solutions over the complex numbers; with screws modes are searched. `method` "general"
-        takes the general way for an RSSR too.
+        takes the general way for an RSSR too; `agree` is that of `motion`. `theta` may be a text with a unit,
+        as in "30 deg", too.
 
             >>> import sevenbar as sb
             >>> len(sb.load("seven_r").assembly_modes(0.3))
@@ -142,24 +162,23 @@ class Linkage(Solvable):
         Source: docs/theory.md, (6); docs/rssr.md, (4).
         """
         column = self._input(input)
-        value = finite_number("theta", theta)
+        value = joint_number("theta", theta, self, column)
+        general = self._general_at(agree)
         if self._has_closed_form(method):
             return self._closed_form.modes(column, value)
         self._refuse_unheld()
-        return self._general.modes(column, value)
+        return general.modes(column, value)
 
-    def mobility(self) -> Mobility:
+    def mobility(self, *, agree: float | None = None) -> Mobility:
         """How freely the loop moves: the count of freedoms, idle ones and redundant constraints by name.
+
+        `agree` is that of `motion`.
 
         >>> import sevenbar as sb
         >>> print(sb.load("bennett").mobility())
         Gruebler -2, redundant constraints 3, moves with 1
         """
-        return self._mobility
-
-    @cached_property
-    def _mobility(self) -> Mobility:
-        return self._general.mobility(self.columns.index(self.drive.joint))
+        return self._general_at(agree).mobility(self.columns.index(self.drive.joint))
 
     @cached_property
     def plane(self) -> MotionPlane | None:
@@ -258,6 +277,7 @@ class Linkage(Solvable):
         speed: float | str | None = None,
         law: Law | None = None,
         method: Literal["auto", "general"] = "auto",
+        agree: float | None = None,
     ) -> Motion:
         """Every circuit over the whole input range.
 
@@ -265,6 +285,10 @@ class Linkage(Solvable):
         [rad/s, or length/s], the drive's where none is given, or by a `law`, whose samples take the place of
         the grid: a circuit that turns back holds them once for each of its passes. `input` and `output` name
         joints. `method` "general" takes the general way for an RSSR too, which has a closed form.
+
+        Redundant constraints, those of an overconstrained loop, agree up to a closure error of 1e-9 (rad, or
+        relative to the linkage size). With more for `agree`, up to 1e-3, a loop of rounded dimensions moves
+        as the exact one next to it would; rows then close up to the error that `residual` gives.
 
         Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which links
         spin idly between two balls with a screw among them.
@@ -277,11 +301,12 @@ class Linkage(Solvable):
             [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
+        general = self._general_at(agree)
         if self._has_closed_form(method):
             found = self._closed_form.motion(column, samples, rate, law)
         else:
             self._refuse_unheld()
-            found = self._general.motion(column, output_column, samples, rate, law)
+            found = general.motion(column, output_column, samples, rate, law)
         written = speed if speed is not None else self.speed_written(column)
         return replace(found, speed_written=written) if isinstance(written, str) and written else found
 
@@ -295,6 +320,7 @@ class Linkage(Solvable):
         output: str | None = None,
         speed: float | str | None = None,
         law: Law | None = None,
+        agree: float | None = None,
     ) -> Circuit:
         """The one circuit through a pose, without a search for the others.
 
@@ -310,14 +336,14 @@ class Linkage(Solvable):
             'double-crank'
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
-        values = finite_array("pose", pose)
+        values = pose_numbers("pose", pose, self)
         if values.size != len(self.columns):
             raise RequestError(
                 f"pose: {values.size} values where the linkage has {len(self.columns)} columns; "
                 f"give one for each of {', '.join(self.columns)}"
             )
         self._refuse_unheld()
-        return self._general.circuit(values, column, output_column, samples, rate, law)
+        return self._general_at(agree).circuit(values, column, output_column, samples, rate, law)
 
     def _asked(
         self, samples: int, input: str | None, output: str | None, speed: float | str | None
@@ -332,6 +358,20 @@ class Linkage(Solvable):
         if method not in ("auto", "general"):
             raise RequestError(f"method: {shown(method)} is not offered; give auto or general")
         return method == "auto" and self.kind == "RSSR"
+
+
+def agreement(name: str, value: object) -> float:
+    """A closure error up to which redundant constraints agree, or `RequestError` that names it."""
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, (int, float, np.number))
+        or not LEAST_AGREE <= value <= MOST_AGREE
+    ):
+        raise RequestError(
+            f"{name}: {shown(value)} is not a closure error; give {LEAST_AGREE:g} to {MOST_AGREE:g} "
+            "(rad, or relative to the linkage size)"
+        )
+    return float(value)
 
 
 def sample_count(name: str, value: object) -> int:

@@ -50,12 +50,14 @@ class LongCircuit(Circuit):
     @cached_property
     def transmission(self) -> Extremes | None:
         """As of any circuit; the rows that it takes are not kept."""
-        return Circuit.transmission.func(self.fleeting())
+        rows = self.fleeting()
+        return super().transmission if rows is self else rows.transmission
 
     @cached_property
     def advantage(self) -> Extremes | None:
         """As of any circuit; the rows that it takes are not kept."""
-        return Circuit.advantage.func(self.fleeting())
+        rows = self.fleeting()
+        return super().advantage if rows is self else rows.advantage
 
     def fleeting(self) -> Circuit:
         """The circuit with its rows; this one does not keep them, unless it has them already."""

@@ -26,6 +26,19 @@ from sevenbar.kinematics.grashof import FourBar
 from sevenbar.text.printing import Drawable, Printed
 from sevenbar.text.units import LENGTHS
 
+#: The least and the greatest closure error [rad, or relative to the size] up to which redundant constraints
+#: may be taken to agree: rounding is near the one, and another linkage near the other.
+LEAST_AGREE, MOST_AGREE = 1e-12, 1e-3
+
+#: What is proposed is greater than the closure error on the rows by this: there may be more between them.
+NEAR_ENOUGH = 2.0
+
+#: Inputs in a turn at which that error is computed.
+NEAR_SAMPLES = 72
+
+#: A loop of so many freedoms moves without redundant constraints.
+SPARE_FREEDOMS = 7
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -97,6 +110,8 @@ class Modes(Printed):
     input: float
     #: Other poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
     misfits: Floats = field(default_factory=_none)
+    #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
+    agree: float = math.nan
 
     @property
     def status(self) -> Words:
@@ -158,6 +173,20 @@ class Search:
     uncounted: Literal["searched", "lost", "still"] | None = None
 
 
+@dataclass(frozen=True)
+class NearMotion:
+    """How a linkage without a circuit moves if its redundant constraints are taken to agree.
+
+    `miss` [length] is the greatest closure error on the way, `share` the same relative to the linkage size
+    (or in rad); with the closure error `agree` the motion is the one of `motion_type`.
+    """
+
+    motion_type: str
+    miss: float
+    share: float
+    agree: float
+
+
 class Solvable(Loop, ABC):
     """A loop that answers: what results know of the `Linkage` of which they are."""
 
@@ -201,12 +230,17 @@ class Solvable(Loop, ABC):
         """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
 
     @abstractmethod
-    def mobility(self) -> Mobility:
+    def mobility(self, *, agree: float | None = None) -> Mobility:
         """How freely the loop moves."""
 
     @abstractmethod
     def assembly_modes(
-        self, theta: float, *, input: str | None = None, method: Literal["auto", "general"] = "auto"
+        self,
+        theta: float | str,
+        *,
+        input: str | None = None,
+        method: Literal["auto", "general"] = "auto",
+        agree: float | None = None,
     ) -> Modes:
         """Every assembly mode at one value of the input."""
 
@@ -220,6 +254,7 @@ class Solvable(Loop, ABC):
         speed: float | str | None = None,
         law: Law | None = None,
         method: Literal["auto", "general"] = "auto",
+        agree: float | None = None,
     ) -> Motion:
         """Every circuit over the whole input range."""
 
@@ -233,6 +268,7 @@ class Solvable(Loop, ABC):
         output: str | None = None,
         speed: float | str | None = None,
         law: Law | None = None,
+        agree: float | None = None,
     ) -> Circuit:
         """The one circuit through a pose."""
 
@@ -257,6 +293,8 @@ class Motion(Drawable):
     search: Search
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...]
+    #: The closure error [rad, relative to the size] up to which redundant constraints agree.
+    agree: float
     law: Law | None = None
     #: The speed as it was written, "3000 rpm", where it was a text.
     speed_written: str = ""
@@ -281,7 +319,34 @@ class Motion(Drawable):
     @property
     def mobility(self) -> Mobility:
         """How freely the linkage moves."""
-        return self.linkage.mobility()
+        return self.linkage.mobility(agree=self.agree)
+
+    @cached_property
+    def near_motion(self) -> NearMotion | None:
+        """By how little a linkage without a circuit misses a motion; `None` where it has one, or misses more.
+
+        It is worked out on demand, up to a closure error of 1e-3 of the size.
+
+        >>> import sevenbar as sb
+        >>> rows = {"length": [50, 98.48] * 2, "twist": ["30 deg", "100 deg"] * 2, "offset": [0] * 4}
+        >>> sb.from_dh("RRRR", **rows).motion().near_motion.agree
+        1e-05
+        """
+        if self.circuits or len(self.linkage.columns) >= SPARE_FREEDOMS:
+            return None
+
+        def eased(agree: float) -> Motion:
+            return self.linkage.motion(NEAR_SAMPLES, input=self.input, output=self.output, agree=agree)
+
+        widest = eased(MOST_AGREE)
+        if not widest.circuits:
+            return None
+        miss = max(float(np.nanmax(circuit.residual)) for circuit in widest.circuits)
+        share = miss / widest.circuits[0].size
+        agree = min(MOST_AGREE, float(f"1e{math.ceil(math.log10(NEAR_ENOUGH * share))}"))
+        if eased(agree).motion_type != widest.motion_type:
+            agree = MOST_AGREE
+        return NearMotion(widest.motion_type, miss, share, agree)
 
     @property
     def four_bar(self) -> FourBar | None:

@@ -105,7 +105,7 @@ def in_plane(loop: Loop) -> InPlane | None:
     if "H" in letters:
         return None
     # the last leads from the last joint to the first
-    links = [*parts.links, inverse(loop.ground) @ parts.base]
+    links = [*parts.links, inverse(parts.ground) @ parts.base]
     turns = [] if "S" in letters else [i for i, letter in enumerate(letters) if letter == "R"]
     for still in (None, *turns):
         first = 0 if still is None else (still + 1) % count
@@ -199,7 +199,7 @@ def sphere_of(loop: Loop) -> MotionSphere | None:
     off = np.linalg.norm(np.cross(places[turning] - centre, axes[turning]), axis=1)
     apart = np.linalg.norm(places[balls] - centre, axis=1)
     # round the loop the centre comes back to itself
-    round_trip = loop.ground @ inverse(frames[-1]) @ (*centre, 1.0)
+    round_trip = parts.ground @ inverse(frames[-1]) @ (*centre, 1.0)
     if max(*off, *apart, float(np.linalg.norm(round_trip[:3] - centre))) > near:
         return None
     drawn = np.linalg.norm(places - centre, axis=1).max()

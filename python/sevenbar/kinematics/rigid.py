@@ -49,6 +49,17 @@ def about(axis: int, angle: npt.ArrayLike) -> Floats:
     return matrix
 
 
+def half_turn(axis: npt.ArrayLike) -> Floats:
+    """The motion (4, 4) of half a turn about an axis (3,) through the origin: `2 a a^T / a.a - 1`.
+
+    >>> half_turn((1, -1, 0))[:3, :3].tolist()
+    [[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]
+    """
+    a = np.asarray(axis, dtype=np.float64)
+    # no -0
+    return pose(2.0 * np.outer(a, a) / float(a @ a) - np.eye(3) + 0.0)
+
+
 def unit(vector: npt.ArrayLike) -> Floats:
     """The unit vector (3,) along a vector (3,) that is not zero."""
     direction = np.asarray(vector, dtype=np.float64)

@@ -8,6 +8,11 @@ what stands behind a factor by the twist w dp in the frame there, and that goes 
 
     dF = F w dp,        F = A B:  w = Ad(B^-1) w_A + w_B                                                  (2)
 
+The last joint of a drawing counts the link before it against the ground, right-handed about its axes as they
+are written. It moves in a frame that is turned from the drawn one by half, so that its axes are reversed:
+
+    Z_kind(q)^-1 = H Z(q) H,        H = H^-1                                                              (3)
+
 A ball before a link that would spin idly stands here as the two turns that the core holds it to.
 
 Source: docs/theory.md, (1); docs/theory_design.md, (2).
@@ -26,7 +31,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Form
-from sevenbar.kinematics.joints import KINDS, Z
+from sevenbar.kinematics.joints import KINDS, JointKind, Z
 from sevenbar.kinematics.rigid import (
     ON_AXIS,
     about,
@@ -34,6 +39,7 @@ from sevenbar.kinematics.rigid import (
     axis_to_z,
     cross,
     frame_about,
+    half_turn,
     inverse,
     pose,
     unit,
@@ -405,8 +411,7 @@ def word_of(form: Form, kinds: Sequence[str], spun: Mapping[int, Floats | None] 
     spun = spun or {}
     freedoms, inner = [], []
     column = 0
-    for i, kind in enumerate(kinds):
-        row = KINDS[kind]
+    for i, (kind, row) in enumerate(zip(kinds, _rows_of(form, kinds), strict=True)):
         columns = range(column, column := column + len(row.freedoms))
         if i in spun:
             own = [WordStep("R", i, (c,), held=c == columns[-1]) for c in columns]
@@ -417,10 +422,22 @@ def word_of(form: Form, kinds: Sequence[str], spun: Mapping[int, Floats | None] 
             inner.append(())
         else:
             own = [WordStep(step.letter, i, (c,)) for c, step in zip(columns, row.steps, strict=True)]
-            inner.append(_inner(kinds, i))
+            inner.append(_inner(kinds, i, row))
         freedoms.append(tuple(own))
     shape = {"rssr": _rssr, "rows": _rows, "drawn": _drawn}[form]
     return Word(*shape(kinds), tuple(freedoms), tuple(inner))
+
+
+def _rows_of(form: Form, kinds: Sequence[str]) -> list[JointKind]:
+    """The kinds of the joints in loop order: the last one of a drawing counts its link against the ground."""
+    rows = [KINDS[kind] for kind in kinds]
+    return [*rows[:-1], rows[-1].backwards] if form == "drawn" else rows
+
+
+def _turned(kinds: Sequence[str], joint: int) -> Product:
+    """From the frame of a drawn joint to that in which it moves: by half a turn of the last one, (3)."""
+    last = joint + 1 == len(kinds)
+    return Product((Still(half_turn(KINDS[kinds[joint]].half_turn)),) if last else ())
 
 
 def holding_axis(form: Form, kinds: Sequence[str], ball: int, axis: Floats, values: Values) -> Floats | None:
@@ -483,19 +500,22 @@ def _drawn_frames(kinds: Sequence[str], joint: int) -> tuple[DrawnFrame, DrawnFr
 
 def _drawn(kinds: Sequence[str]) -> _Outer:
     """Joints as drawn, all at zero: the frames on both sides of each, in ground coordinates."""
-    before, behind = zip(*(_drawn_frames(kinds, i) for i in range(len(kinds))), strict=True)
-    links = tuple(Product((Back(a), b)) for a, b in zip(behind[:-1], before[1:], strict=True))
-    frames = (*(Product((Back(frame),)) for frame in behind[:-1]), Product(()))
-    return Product((before[0],)), links, Product((behind[-1],)), frames
+    pairs = [_drawn_frames(kinds, i) for i in range(len(kinds))]
+    sides = [[Product((side,)) + _turned(kinds, i) for side in pair] for i, pair in enumerate(pairs)]
+    before, behind = zip(*sides, strict=True)
+    links = tuple(a.back + b for a, b in zip(behind[:-1], before[1:], strict=True))
+    frames = (*(frame.back for frame in behind[:-1]), Product(()))
+    return before[0], links, behind[-1], frames
 
 
-def _inner(kinds: Sequence[str], joint: int) -> tuple[Product, ...]:
+def _inner(kinds: Sequence[str], joint: int, row: JointKind) -> tuple[Product, ...]:
     """What stands before, between and behind the steps of a joint, each about or along z."""
     parts, ahead = [], Product(())
-    for step in KINDS[kinds[joint]].steps:
+    for step in row.steps:
         if step.tilted:
             before, behind = _drawn_frames(kinds, joint)
-            ahead += Product((Back(before), behind))
+            turned = _turned(kinds, joint)
+            ahead += turned.back + Product((Back(before), behind)) + turned
         if step.axis == Z:
             parts.append(ahead)
             ahead = Product(())

@@ -144,7 +144,7 @@ def _files(
             # a limit is no place to show modes at: there two are one
             ends = chosen.pass_range(0)
             value = float(chosen.input[0]) if ends is None else (ends[0] + ends[1]) / 2
-            modes = motion.linkage.assembly_modes(value, input=motion.input)
+            modes = motion.linkage.assembly_modes(value, input=motion.input, agree=motion.agree)
             yield (
                 "modes",
                 lambda: plot.modes_overview(

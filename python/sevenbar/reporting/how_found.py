@@ -53,7 +53,9 @@ def how_found(motion: Motion) -> str:
     if told := _counted(search):
         text += f"; {told}"
     if search.misfits.size:
-        text += f"; {left_open(search.misfits)}"
+        text += f"; {left_open(search.misfits, motion.agree)}"
+    if motion.agree != AGREE:
+        text += f"; redundant constraints are taken to agree up to {motion.agree:.0e}, by request"
     return text
 
 
@@ -78,11 +80,11 @@ def _counted(search: Search) -> str:
     return f"branch points of {count.joint} are not all accounted for: {', '.join(told)}{more}"
 
 
-def left_open(misfits: Floats) -> str:
+def left_open(misfits: Floats, agree: float) -> str:
     """How many poses redundant constraints alone keep open, and by how much; of one or more, rising."""
     count = len(misfits)
     return (
         f"{count} more pose{'s close' if count > 1 else ' closes'} but for redundant constraints, which miss "
         f"by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad, or parts of the size) and are taken to agree up to "
-        f"{AGREE:.0e}"
+        f"{agree:.0e}"
     )

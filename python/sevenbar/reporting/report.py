@@ -108,6 +108,8 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "completeness": motion.completeness,
         "established": how_found(motion),
         "misfits": motion.search.misfits.tolist(),
+        "agree": motion.agree,
+        "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
         "circuits": [_circuit_dict(circuit) for circuit in motion.circuits],
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),
@@ -302,6 +304,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
         "input": {"joint": linkage.columns[column], "value": modes.input},
         "completeness": modes.completeness,
         "misfits": modes.misfits.tolist(),
+        "agree": modes.agree,
         "count": len(modes),
         "columns": [
             {"name": name, "kind": kind}
@@ -324,7 +327,7 @@ def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
             f"{modes.completeness}: {COMPLETE[modes.completeness]}"
         )
         if modes.misfits.size:
-            yield Text(left_open(modes.misfits))
+            yield Text(left_open(modes.misfits, modes.agree))
         for sheet in modes_sheets(linkage, modes, width) if count else ():
             yield Text()
             yield _table(sheet)

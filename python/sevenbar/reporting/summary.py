@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from sevenbar.description.angle_doubts import angle_doubt
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
@@ -79,7 +80,9 @@ def summary(motion: Motion, room: int = 100) -> Summary:
     Angles are in degrees, rates in radians.
     """
     linkage = motion.linkage
-    sheets = [_dimension_sheet(linkage)] if linkage.form == "rows" else []
+    # of an overconstrained loop the last digits decide
+    exact = bool(motion.redundant)
+    sheets = [_dimension_sheet(linkage, exact=exact)] if linkage.form == "rows" else []
     if len(motion.circuits) > MOST_COLUMNS:
         sheets += _compared(motion, room)
     elif motion.circuits:
@@ -135,11 +138,16 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     """What the report tells of the motion as a whole: names and words."""
     linkage = motion.linkage
     facts = [("loop", joints_text(linkage))]
+    if linkage.form == "rows":
+        before = f"link {len(linkage.joints) - 1}" if len(linkage.joints) > 2 else "the link before it"
+        facts.append(("last joint", f"{linkage.joints[-1].name} counts the ground relative to {before}"))
     if numbers := dimensions_text(linkage):
         facts.append(("dimensions", numbers))
     if bar := motion.four_bar:
         facts.append(("links", links_text(bar, linkage.length_unit)))
         facts.append(("Grashof", grashof_text(bar, linkage.length_unit)))
+    if doubt := angle_doubt(linkage.description):
+        facts.append(("angles", doubt))
     speed = motion.speed if motion.law is None else None
     unit, written = _units(motion)[0], motion.speed_written
     facts.append(("drive", drive_text(motion.input, speed, unit, motion.output, written=written)))
@@ -150,6 +158,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts.append(("motion type", motion.motion_type))
     if told := meaning(motion):
         facts.append(("", told))
+    if near := nearly_moves(motion):
+        facts.append(("nearly moves", near))
     facts.append(("circuits", _circuit_count(motion)))
     if motion.circuits or motion.limits.size:
         facts.append(("input limits", _limits_text(motion)))
@@ -228,8 +238,9 @@ def _units(motion: Motion) -> tuple[str, str]:
     return first, second
 
 
-def _dimension_sheet(linkage: Loop) -> Sheet:
-    """The rows as they were written, one a link; a joint's own value is none of the dimensions."""
+def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
+    """The rows as written, one a link, to the last digit if `exact`; a joint's own value is no dimension."""
+    digits = _every_digit if exact else "{:.6g}".format
     unit = linkage.length_unit
     columns = {
         "length": f"length [{unit}]",
@@ -247,7 +258,7 @@ def _dimension_sheet(linkage: Loop) -> Sheet:
     for place, joint in enumerate(linkage.joints, start=1):
         own = {"angle": "angle_deg"}.get(joint.row.moving_key, "offset")
         cells = [
-            f"{numbers[key][place]:.6g}" if place in numbers[key] else "moves" if key == own else "-"
+            digits(numbers[key][place]) if place in numbers[key] else "moves" if key == own else "-"
             for key in kept
         ]
         ground = " (ground)" if place == len(linkage.joints) else ""
@@ -256,13 +267,29 @@ def _dimension_sheet(linkage: Loop) -> Sheet:
     return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1})
 
 
+def _every_digit(number: float) -> str:
+    return f"{number!r}".removesuffix(".0")
+
+
+def nearly_moves(motion: Motion) -> str:
+    """By how little a linkage without a circuit misses a motion; empty where it moves, or misses more."""
+    near = motion.near_motion
+    if near is None:
+        return ""
+    return (
+        f"as a {near.motion_type}: redundant constraints miss by up to {near.share:.1e} of the size "
+        f"({near.miss:.2g} {motion.linkage.length_unit}), or as many rad; --agree {near.agree:.0e} takes "
+        "them to agree"
+    )
+
+
 def meaning(motion: Motion) -> str:
     """A sentence on a motion type that is not a pair of words for input and output."""
     match motion.motion_type:
         case "two-inputs":
             return (
                 f"the loop moves with {motion.mobility.finite} freedoms, so one input does not determine it: "
-                "drive or lock another joint"
+                "lock a joint (leave it out)"
             )
         case "rigid":
             taken = motion.mobility.freedoms

@@ -160,14 +160,20 @@ class _Assembly:
         )
 
     def _add_constraints(
-        self, joint: Connection, held: list[int], offset: Callable[..., list[float]] | None = None
+        self,
+        joint: Connection,
+        held: list[int],
+        offset: Callable[..., list[float]] | None = None,
+        *,
+        from_after: bool = False,
     ) -> None:
+        markers = [
+            self._marker(joint.before, joint.frame_before),
+            self._marker(joint.after, joint.frame_after),
+        ]
         self.system.AddObject(
             self.items.ObjectJointGeneric(
-                markerNumbers=[
-                    self._marker(joint.before, joint.frame_before),
-                    self._marker(joint.after, joint.frame_after),
-                ],
+                markerNumbers=markers[::-1] if from_after else markers,
                 constrainedAxes=held,
                 **({} if offset is None else {"offsetUserFunction": offset}),
             )
@@ -203,7 +209,11 @@ class _Assembly:
     def add_drive(self) -> None:
         """Constrains the driven freedom alone; the joint itself has the other constraints."""
         drive = self.model.drive
-        unit = 1.0 if drive.turns else self.model.size
+        joint = self.model.connections[drive.connection]
+        # Exudyn slides along axes of its first body: where the body after carries them, that one is first,
+        # and the slide is the other way
+        carried = joint.row.has_plane and joint.backwards and not drive.turns
+        unit = (1.0 if drive.turns else self.model.size) * (-1.0 if carried else 1.0)
 
         def offset(_system: Any, time: float, _item: int, _parameters: Any) -> list[float]:
             values = [0.0] * 6
@@ -211,7 +221,7 @@ class _Assembly:
             return values
 
         held = [int(row == drive.freedom) for row in range(6)]
-        self._add_constraints(self.model.connections[drive.connection], held, offset)
+        self._add_constraints(joint, held, offset, from_after=carried)
 
     def add_spin_rule(self, rule: SpinRule) -> None:
         # of a turn about z alone held, x of the first frame and y of the second stay at right angles

@@ -12,6 +12,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Joint, Loop
+from sevenbar.kinematics.joints import Z
 from sevenbar.kinematics.rigid import axial, zyx_turns
 
 
@@ -73,8 +74,13 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
         way = after[:, :3, 3] - before[:, :3, 3]
         local = np.einsum("nji,nj->ni", before[:, :3, :3], way)
         columns: list[tuple[Floats, Floats, Floats]] = []
+        turned = False
         for step in () if joint.row.is_ball or joint.row.has_cross else joint.row.steps:
-            axis = before[:, :3, step.axis]
+            # what is behind a turn goes with it: across its axis that is the body after
+            behind = turned and step.axis != Z
+            axis = (after if behind else before)[:, :3, step.axis]
+            own = (bodies.spin[:, i], bodies.spin_rate[:, i]) if behind else (spin, spin_rate)
+            turned = turned or step.freedom == "turn"
             if step.driven:
                 continue
             if step.freedom == "turn":
@@ -90,9 +96,9 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
                 apart = bodies.velocity[:, i] - motion[0]
                 columns.append(
                     (
-                        local[:, step.axis],
-                        _dot(apart, axis) + _dot(way, np.cross(spin, axis)),
-                        _slide_acceleration(bodies, i, way, axis, motion, spin, spin_rate),
+                        _dot(way, axis),
+                        _dot(apart, axis) + _dot(way, np.cross(own[0], axis)),
+                        _slide_acceleration(bodies, i, way, axis, motion, *own),
                     )
                 )
         if joint.row.has_cross:
@@ -129,7 +135,7 @@ def _slide_acceleration(
     spin: Floats,
     spin_rate: Floats,
 ) -> Floats:
-    """The second derivative of `way . axis`, the axis carried by the body before."""
+    """The second derivative of `way . axis`, the axis carried by a body that turns so."""
     turning = np.cross(spin, axis)
     return (
         _dot(bodies.acceleration[:, i] - motion[1], axis)

@@ -51,6 +51,7 @@ class Connection:
 
     `before` and `after` number the bodies, `GROUND` for the ground; `frame_before` and `frame_after` (4, 4)
     are the joint's frames in the two, equal where the joint is at zero. `advance` [length for a radian] of H.
+    `backwards`: as of a joint of the linkage.
     """
 
     name: str
@@ -60,11 +61,12 @@ class Connection:
     frame_before: Floats
     frame_after: Floats
     advance: float = 0.0
+    backwards: bool = False
 
     @property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind]
+        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +188,10 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         name, kind = joint.name, joint.kind
         if joint.row.has_cross:
             name, kind = joint.columns[-1], steps[-1][0].letter
-        connections.append(Connection(name, kind, before, after, frame_before, frame_after, joint.advance))
+        frames_of_joint = (frame_before, frame_after)
+        connections.append(
+            Connection(name, kind, before, after, *frames_of_joint, joint.advance, joint.backwards)
+        )
         values += [np.full(6, math.nan) for _ in connections[first:]]
         rates += [np.full(6, math.nan) for _ in connections[first:]]
         column = own.start

@@ -5,11 +5,16 @@ from __future__ import annotations
 import threading
 import time
 from contextlib import suppress
+from pathlib import Path
 
 import viser
 
+from sevenbar.description.files import decoded
+from sevenbar.errors import SevenbarError
+from sevenbar.studio.guard import is_loopback
 from sevenbar.studio.local_server import LocalServer
 from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.shelf import Shelf
 from sevenbar.studio.tab import Tab
 
 #: How often [s] a server that waits looks whether it is to end.
@@ -17,11 +22,16 @@ GLANCE = 0.25
 
 
 class StudioServer:
-    """Serves a linkage to browsers; every tab begins with the linkage as it was given."""
+    """Serves a linkage to browsers; every tab begins with it as it was given, or as its file has it."""
 
-    def __init__(self, text: str, source: str, host: str, port: int) -> None:
-        """`text` is TOML, `source` its name. Raises `DescriptionError`; `OSError` for a bad address."""
+    def __init__(self, text: str, source: str, host: str, port: int, folder: Path | None = None) -> None:
+        """`text` is TOML, `source` its name, or the path of its file.
+
+        Tabs may save to the files of `folder`, if one is given and nobody else can reach the server. Raises
+        `DescriptionError`; `OSError` for a bad address.
+        """
         Session(text, source)  # before anything is served
+        self._folder = folder if is_loopback(host) else None
         self._server = LocalServer(host, port)
         self._text, self._source = text, source
         self._tabs: dict[int, Tab] = {}
@@ -32,10 +42,7 @@ class StudioServer:
     @property
     def address(self) -> str:
         """What to open in a browser."""
-        host = self._server.get_host()
-        # every address of this machine is no address to go to
-        host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)
-        return f"http://{f'[{host}]' if ':' in host else host}:{self._server.get_port()}"
+        return self._server.address
 
     @property
     def tabs(self) -> tuple[Tab, ...]:
@@ -44,12 +51,23 @@ class StudioServer:
             return tuple(self._tabs.values())
 
     def _connected(self, client: viser.ClientHandle) -> None:
-        tab = Tab(client, Session(self._text, self._source))
+        tab = Tab(client, *self._begun())
         with self._lock:
             self._tabs[client.client_id] = tab
         tab.start()
         if client.client_id not in self._server.get_clients():  # left while all this was made
             self._left(client)
+
+    def _begun(self) -> tuple[Session, Shelf | None]:
+        """What a tab begins with; a file that was saved, or changed, since is read anew if it can be."""
+        shelf = None if self._folder is None else Shelf(self._folder)
+        if shelf is not None and Path(self._source).is_file():
+            try:
+                content = shelf.read(Path(self._source))
+                return Session(decoded(content, self._source), self._source), shelf
+            except (OSError, SevenbarError):
+                shelf = Shelf(shelf.folder)
+        return Session(self._text, self._source), shelf
 
     async def _disconnected(self, client: viser.ClientHandle) -> None:
         # awaited by viser, where a plain function would be given to threads that `stop` has ended

@@ -9,25 +9,27 @@ import viser
 
 from sevenbar.studio.panels.curves import CurvesPanel
 from sevenbar.studio.panels.files import FilesPanel
+from sevenbar.studio.panels.handles import Handles
+from sevenbar.studio.panels.legend import Legend
 from sevenbar.studio.panels.points import PointsPanel
 from sevenbar.studio.panels.scenery import Scenery
 from sevenbar.studio.panels.shaping import ShapePanel
 from sevenbar.studio.panels.transport import Transport
 from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.shelf import Shelf
 from sevenbar.studio.state.verdict import verdict
 from sevenbar.studio.worker import Worker
 
-#: Widths of the panels [px].
-LEFT, RIGHT = 440, 380
+#: Widths of the panels [px]: at most, at least, and as a share of the window's; more is the linkage's.
+LEFT, RIGHT = (440, 300, 0.3), (380, 290, 0.265)
 
 #: The boxes that viser puts beside sliders hold only what a slider can; the studio has boxes of its own.
 STYLE = (
     "<style>.mantine-Slider-root + .mantine-NumberInput-root { display: none }"
-    " .mantine-Slider-root { margin-bottom: 0.55em }</style>"
+    " .mantine-Slider-root { margin-bottom: 0.55em }"
+    # four tabs in the narrowest panel
+    " [role=tab] { padding-inline: 0.45em !important }</style>"
 )
-
-#: Until the browser has docked the panels [s].
-DOCKED = 1.0
 
 FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the terminal"
 
@@ -35,39 +37,46 @@ FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the 
 class Tab:
     """What one browser tab shows; nothing of it is shared with another."""
 
-    def __init__(self, client: viser.ClientHandle, session: Session) -> None:
+    def __init__(self, client: viser.ClientHandle, session: Session, shelf: Shelf | None) -> None:
+        """`shelf` has the files that the tab may save to."""
         self.session, self._client = session, client
         self.worker = Worker(self._tick, self._show, self._fault)
         gui = client.gui
         gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
         gui.set_panel_label("Sevenbar")
+        # the first that a browser says of itself, before anything is docked
+        window = client.camera.image_width
         with client.atomic():
             gui.add_html(STYLE)
             self._transport = Transport(gui, self.worker, session)
+            self._legend = Legend(gui, session)
             tabs = gui.add_tab_group()
             with tabs.add_tab("Shape", viser.Icon.RULER_2):
                 self._shape = ShapePanel(gui, self.worker, session)
             with tabs.add_tab("Show", viser.Icon.EYE):
                 self._scenery = Scenery(client, self.worker, session)
+            with self._shape.handles:
+                self._handles = Handles(
+                    client, self.worker, session, self._scenery.stage, self._transport.pause
+                )
             with tabs.add_tab("Points", viser.Icon.POINT):
                 self._points = PointsPanel(gui, self.worker, session)
             with tabs.add_tab("Files", viser.Icon.FILE):
-                FilesPanel(client, self.worker, session)
+                self._files = FilesPanel(client, self.worker, session, shelf)
             gui.main_panel.dock_right()
-            gui.main_panel.set_width(RIGHT)
+            gui.main_panel.set_width(_width(RIGHT, window))
             left = gui.add_panel()
             with left.add_tab("Curves and verdict", viser.Icon.CHART_LINE):
-                self._curves = CurvesPanel(gui, self.worker, session)
+                self._curves = CurvesPanel(gui, self.worker, session, _width(LEFT, window))
                 self._verdict = gui.add_html("")
             left.dock_left()
-            left.set_width(LEFT)
+            left.set_width(_width(LEFT, window))
         self._told: tuple[object, ...] = ()
 
     def start(self) -> None:
         """Shows the session, and goes on to do so."""
         self.worker.ask("first", lambda: None)
-        # by then the panels are at the sides, and the picture is as wide as it stays
-        self.worker.ask("aim", self._scenery.aim, delay=DOCKED)
+        self._scenery.watch()
         self.worker.start()
 
     def _tick(self, seconds: float) -> None:
@@ -75,6 +84,7 @@ class Tab:
 
     def _show(self) -> None:
         """Shows what the session has come to."""
+        self._handles.follow()
         with self._client.atomic():
             self._transport.show()
             self._scenery.show()
@@ -85,8 +95,11 @@ class Tab:
         told = (self.session.motion, self.session.view, self.session.problem)
         content = self._verdict.content if told == self._told else verdict(self.session)
         with self._client.atomic():
+            self._legend.show()
+            self._handles.show()
             self._shape.show()
             self._points.show()
+            self._files.show()
             if told != self._told:
                 self._told = told
                 self._verdict.content = content
@@ -99,3 +112,9 @@ class Tab:
     def end(self) -> None:
         """Ends the tab's thread."""
         self.worker.end()
+
+
+def _width(panel: tuple[int, int, float], window: int) -> int:
+    """The width of a panel [px] in a window of a width [px]."""
+    most, least, share = panel
+    return min(most, max(least, round(share * window)))

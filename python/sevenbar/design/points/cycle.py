@@ -177,11 +177,15 @@ def driven(
     law = Law.of(np.arange(float(len(inputs))), inputs, motion.speed if speed is None else speed, 0.0)
     if not circuit.goes_round or circuit.turns > 1:
         # a pose alone distinguishes neither passes nor turns
-        all_of_them = motion.linkage.motion(input=motion.input, output=motion.output, law=law)
+        all_of_them = motion.linkage.motion(
+            input=motion.input, output=motion.output, law=law, agree=motion.agree
+        )
         again = all_of_them.circuits[circuit.index]
         return again, again.branch == branch
     pose = circuit.q[np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0]]
-    again = motion.linkage.circuit(pose, input=motion.input, output=motion.output, law=law)
+    again = motion.linkage.circuit(
+        pose, input=motion.input, output=motion.output, law=law, agree=motion.agree
+    )
     return again, np.ones(len(inputs), dtype=bool)
 
 

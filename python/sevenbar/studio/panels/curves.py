@@ -13,6 +13,8 @@ from sevenbar.studio.svg.quantities import Quantity, quantities
 
 #: How many curves there are, and the size of each [px].
 CURVES, WIDTH, HEIGHT = 3, 420, 172
+#: What of the panel's width is left of a curve [px].
+MARGIN = 20
 
 OVER: dict[str, Over] = {"the input": "input", "time": "time"}
 
@@ -20,8 +22,11 @@ OVER: dict[str, Over] = {"the input": "input", "time": "time"}
 class CurvesPanel:
     """Three curves, each of a quantity that is chosen above it."""
 
-    def __init__(self, gui: viser.GuiApi, worker: Asked, session: Session) -> None:
-        self._session = session
+    def __init__(
+        self, gui: viser.GuiApi, worker: Asked, session: Session, width: int = WIDTH + MARGIN
+    ) -> None:
+        """`width` is that of the panel [px]."""
+        self._session, self._width = session, width - MARGIN
         self._over = gui.add_dropdown("over", tuple(OVER))
         self._choices, self._pictures, self._cursors = [], [], []
         for number in range(CURVES):
@@ -55,7 +60,7 @@ class CurvesPanel:
                 wanted,
                 view.circuit.index,
                 over=OVER[self._over.value],
-                width=WIDTH,
+                width=self._width,
                 height=HEIGHT,
             )
             stale = ' style="filter:grayscale(1);opacity:0.45"' if self._session.problem else ""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import viser
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.skeleton import places_of
+from sevenbar.drawing.skeleton import places_of, skeleton_of
 from sevenbar.drawing.style import ACCELERATION, CIRCUIT_COLOURS, VELOCITY
+from sevenbar.kinematics.poses import frames_of
 from sevenbar.studio.panels.controls import Asked
 from sevenbar.studio.pictures.stage import FIELD, Stage
 from sevenbar.studio.state.session import Session
@@ -17,7 +20,13 @@ from sevenbar.studio.state.view import View, own_points
 POSITIONS = 8
 #: The longest arrow, as a share of the linkage's extent.
 LONGEST_ARROW = 0.35
+#: When, after the page has opened, the browser is asked what shape the picture has [s].
+QUESTIONS = (0.3, 0.6, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 20.0, 30.0)
+#: Changes of the field of view that make the browser answer, of the camera's place in the scene that are a
+#: person's, and of the picture's shape that are none; shares, and [1].
+NUDGE, MOVED, SAME_SHAPE = 1e-4, 1e-3, 0.01
 
+NO_AXODES = "no link"
 NO_GHOSTS, ALONG, MODES = "none", "positions along the motion", "all modes at this input"
 
 
@@ -25,7 +34,7 @@ class Scenery:
     """Draws the session into the scene of a tab."""
 
     def __init__(self, client: viser.ClientHandle, worker: Asked, session: Session) -> None:
-        self._client, self._session = client, session
+        self._client, self._worker, self._session = client, worker, session
         self.stage = Stage(client.scene)
         gui = client.gui
         self._ghosts = gui.add_dropdown("ghosts", (NO_GHOSTS, ALONG, MODES))
@@ -40,36 +49,79 @@ class Scenery:
                 ("extremes", True, "where the points you have added are fastest and slowest"),
             )
         }
+        self._axodes = gui.add_dropdown(
+            "axodes of",
+            (NO_AXODES,),
+            hint="its screw axes against the ground: blue in the ground, pink in the link",
+        )
         look = gui.add_button("Look at it all", color="gray", icon=viser.Icon.FOCUS_CENTERED)
         look.on_click(lambda _: worker.ask("look", self.look))
         self._ghosts.on_update(lambda _: worker.ask("scenery", lambda: None))
+        self._axodes.on_update(lambda _: worker.ask("scenery", lambda: None))
         for switch in self._switches.values():
             switch.on_update(lambda _: worker.ask("scenery", lambda: None))
-        self._looked_at: object = None
+        self._framed: object = None
+        self._aimed: tuple[Floats, float] | None = None
+        self._arrived = False
+        client.camera.on_update(self._camera_changed)
         self._drawn: dict[str, object] = {}
         self._everything = np.empty((0, 3))
+        self._lines: tuple[Any, ...] = ()
         self._units: dict[int, tuple[float, float]] = {}
 
     def look(self) -> None:
         """Turns the camera so that the whole motion is seen, at the size it has now."""
-        self._looked_at = None
+        self._framed = None
         self._drawn.clear()
 
     def aim(self) -> None:
-        """Turns the camera to what is drawn, by the shape that the window has now."""
+        """Turns the camera to what is drawn, by the shape of the picture as last sent."""
         camera = self._client.camera
-        place, target = self.stage.look(camera.aspect, self._everything)
+        aspect = camera.aspect
+        place, target = self.stage.look(aspect, self._everything)
         camera.fov = FIELD
         camera.position, camera.look_at = place, target
+        self._aimed, self._arrived = (place, aspect), False
+
+    def watch(self) -> None:
+        """Aims again while the page is put together, until the picture keeps its shape.
+
+        The picture is as wide as the window at first, then the panels are put at its sides. The browser says
+        nothing of that until the camera changes.
+        """
+        for number, delay in enumerate(QUESTIONS):
+            self._worker.ask(("look", number), self._ask_shape, delay=delay)
+
+    def _ask_shape(self) -> None:
+        """Has the browser say its camera, and with it the picture's shape, by a change that nobody sees."""
+        camera = self._client.camera
+        if self._aimed is not None:
+            camera.fov = FIELD * (1 + NUDGE) if abs(camera.fov - FIELD) < FIELD * NUDGE / 2 else FIELD
+
+    def _camera_changed(self, _: viser.CameraHandle) -> None:
+        if self._aimed is not None:
+            self._worker.ask("camera", self._seen)
+
+    def _seen(self) -> None:
+        """Aims again where the picture has another shape, unless a person has turned the camera since."""
+        if self._aimed is None:
+            return
+        camera, (place, aspect) = self._client.camera, self._aimed
+        moved = float(np.abs(camera.position - place).max()) > MOVED
+        if moved and self._arrived:
+            self._aimed = None
+        elif not moved:
+            self._arrived = True
+            if abs(camera.aspect - aspect) > SAME_SHAPE * aspect:
+                self.aim()
 
     def show(self) -> None:
         """Draws what has changed."""
         view = self._session.view
         if view is None:
-            if self._drawn:
-                self._drawn.clear()
-                self.stage.clear()
+            self._still()
             return
+        self._drawn.pop("still", None)
         row, problem = self._session.row, bool(self._session.problem)
         switches = {name: switch.value for name, switch in self._switches.items()}
         if self._is_new("view", (view, problem)):
@@ -83,9 +135,33 @@ class Scenery:
             self._mark(view, switches["extremes"])
         if self._is_new("arrows", (view, row, problem, *switches.values())):
             self._point(view, switches)
+        if self._is_new("axodes", (view, row, self._axodes.value)):
+            self._draw_axodes(view, row)
         ghosts = self._ghosts.value
         if self._is_new("ghosts", (view, ghosts, row if ghosts == MODES else None)):
             self._ghost(view)
+
+    def _still(self) -> None:
+        """Draws a drawn linkage that never moved as it is drawn, in grey; nothing of another one."""
+        draft = self._session.draft
+        if not self._is_new("still", draft):
+            return
+        self.stage.clear()
+        self._drawn = {"still": draft}
+        linkage = draft.linkage
+        if linkage.form != "drawn":
+            return
+        zero = np.zeros((1, len(linkage.columns)))
+        frame = skeleton_of(linkage, frames_of(linkage, zero), linkage.added_points)
+        self._everything = frame.places.reshape(-1, 3)
+        if self._framed is not draft.text:
+            self.stage.frame_view(self._everything)
+        self.stage.set(frame, (linkage.drive.joint, linkage.drive.output))
+        self.stage.pose(frame.places[0])
+        self.stage.grey(True)
+        if self._framed is not draft.text:
+            self._framed = draft.text
+            self.aim()
 
     def _is_new(self, what: str, state: object) -> bool:
         """Whether something has to be drawn anew, since what it shows has changed."""
@@ -96,7 +172,7 @@ class Scenery:
 
     def _take(self, view: View, *, grey: bool) -> None:
         """Draws another view; what was opened anew is checked from where all of it is seen."""
-        fresh = self._looked_at is not self._session.draft.text
+        fresh = self._framed is not self._session.draft.text
         if fresh:
             # of every circuit, so that none is out of the picture when it is chosen
             every = np.concatenate([each.frame.places.reshape(-1, 3) for each in self._session.views])
@@ -114,8 +190,23 @@ class Scenery:
             for index in own_points(view)
         }
         if fresh:
-            self._looked_at = self._session.draft.text
+            self._framed = self._session.draft.text
             self.aim()
+
+    def _draw_axodes(self, view: View, row: float) -> None:
+        """The screw axes of the link that is chosen, in the ground and in the link."""
+        links = (NO_AXODES, *(f"link {number}" for number in range(1, len(view.linkage.joints))))
+        if links != self._axodes.options:
+            self._axodes.options = links
+        chosen = links.index(self._axodes.value) if self._axodes.value in links else 0
+        if not chosen:
+            self.stage.axodes(np.empty((0, 2, 3)), np.empty((0, 2, 3)))
+            self._lines = ()
+            return
+        if not self._lines or self._lines[0] is not view or self._lines[1] != chosen:
+            self._lines = (view, chosen, *view.axodes(chosen))
+        frame = view.point_frame(chosen, row)
+        self.stage.axodes(self._lines[2], self._lines[3] @ frame[:3, :3].T + frame[:3, 3])
 
     def _ghost(self, view: View) -> None:
         match self._ghosts.value:

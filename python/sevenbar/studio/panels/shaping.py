@@ -73,6 +73,7 @@ class ShapePanel:
         self._input = gui.add_dropdown("input", ("-",), hint="the joint that drives")
         self._output = gui.add_dropdown("output", ("-",), hint="the joint whose motion is told")
         self._alert = Alert(gui)
+        self.handles = gui.add_folder(None)
         self._list = DimensionList(gui, worker, session, lambda d: d.place[0] != "point")
         self._history.on_click(self._back)
         self._input.on_update(self._driven)

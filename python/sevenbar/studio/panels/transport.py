@@ -21,6 +21,8 @@ from sevenbar.studio.worker import Worker
 #: A cycle takes so long [s] at the speed "1 x".
 CYCLE = 6.0
 SPEEDS = {"1/8 x": 0.125, "1/4 x": 0.25, "1/2 x": 0.5, "1 x": 1.0, "2 x": 2.0, "4 x": 4.0}
+#: Values below this share of the linkage's size are 0.
+ZERO = 1e-12
 STEPS = {"-10": -10, "-1": -1, "+1": 1, "+10": 10}
 
 
@@ -31,7 +33,7 @@ class Transport:
         self._worker, self._session = worker, session
         self._heading = gui.add_html("")
         self._play = gui.add_button("Play", icon=viser.Icon.PLAYER_PLAY_FILLED, hint="the space bar, too")
-        self._steps = gui.add_button_group("step", tuple(STEPS), hint="by samples, of which a turn has 360")
+        self._steps = gui.add_button_group("step samples", tuple(STEPS))
         self._travel = gui.add_slider("input", min=0.0, max=360.0, step=0.5, initial_value=0.0)
         self._goto = gui.add_text("go to input", "", hint="a value of the input, as in 30, 30deg or 0.5rad")
         self._alert = Alert(gui)
@@ -64,7 +66,8 @@ class Transport:
             viser.Icon.PLAYER_PAUSE_FILLED if self._worker.playing else viser.Icon.PLAYER_PLAY_FILLED
         )
 
-    def _pause(self) -> None:
+    def pause(self) -> None:
+        """Ends what plays."""
         if self._worker.playing:
             self._toggle()
 
@@ -73,7 +76,7 @@ class Transport:
         self._worker.ask(("step", object()), lambda: self._halt_and(lambda: self._session.step(rows)))
 
     def _halt_and(self, action: Callable[[], None]) -> None:
-        self._pause()
+        self.pause()
         action()
 
     def _scrubbed(self, event: viser.GuiEvent[Any]) -> None:
@@ -127,7 +130,7 @@ class Transport:
         for control in (self._play, self._travel, self._goto, self._circuit, self._next):
             control.disabled = view is None
         if view is None:
-            self._pause()
+            self.pause()
             return
         options = tuple(f"{c.index}: {c.motion_type}" for c in view.motion)
         if options != self._circuit.options:
@@ -153,6 +156,8 @@ def _reading(session: Session, view: View) -> str:
     """Where the linkage stands: input, output, time and mode."""
     circuit = view.circuit
     second = float(at_row(view.path.output, session.row))
+    # a slide at zero is so up to rounding only
+    second = 0.0 if abs(second) < ZERO * circuit.size else second
     way = ""
     if not circuit.goes_round:
         way = " rising" if view.path.sign[int(session.row)] * view.motion.speed > 0 else " falling"

@@ -32,6 +32,9 @@ NO_LINK = 0.02
 
 #: Radii, and lengths where two are given, in units.
 LINK, POINT, STAY, RAIL, STEM = 0.55, 0.9, 0.2, 0.45, 0.6
+#: Links that lie in one line would flicker where they are equally thick: of neighbours each is thicker by
+#: this share than the one before, and the ground is thinner than all, and than rails.
+THICKER, THICKNESSES, GROUND_LINK = 0.09, 3, 0.36
 HINGE, PIN, SLEEVE, NUT, ARM = (1.05, 3.4), (0.5, 4.1), (1.05, 5.0), (1.75, 2.2), (0.62, 5.0)
 BALL, SOCKET, KNUCKLE, THREAD = 1.2, 1.5, 0.95, 0.85
 PLATE, SLIPPER = 0.4, (1.5, 1.4)
@@ -107,12 +110,13 @@ def plan(frame: Skeleton, ends: tuple[str, str]) -> SolidPlan:
     links, joints = link_colours(frame.linkage, ends)
     links.append(GROUND)
     joints = [OTHER_JOINT if colour == JOINT else colour for colour in joints]
-    for way, colour in zip(where.links, links, strict=True):
+    for i, (way, colour) in enumerate(zip(where.links, links, strict=True)):
         moves = colour is not GROUND
+        thick = unit * (LINK * (1 + THICKER * (i % THICKNESSES)) if moves else GROUND_LINK)
         for pair in pairwise(way):
-            solids.add("cylinder", pair, LINK * unit, colour, moves=moves)
+            solids.add("cylinder", pair, thick, colour, moves=moves)
         for corner in way[1:-1]:
-            solids.add("ball", (corner, corner), LINK * unit, colour, length=LINK * unit, moves=moves)
+            solids.add("ball", (corner, corner), thick, colour, length=thick, moves=moves)
     for i, (joint, colour) in enumerate(zip(where.joints, joints, strict=True)):
         if joint.kind.rides:
             _add_slide(solids, i, joint, colour, every, unit)

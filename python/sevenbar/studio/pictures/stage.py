@@ -26,6 +26,8 @@ DASHES = np.array(
 OVERHANG = 0.07
 #: Thicknesses of lines [pixels].
 AXIS_LINE, JOINT_PATH, POINT_PATH = 1.4, 1.8, 2.8
+#: The lines of axodes: how thick [pixels], and their colours.
+AXODE_LINE, FIXED_AXODE, MOVING_AXODE = 1.0, "#56B4E9", "#CC79A7"
 #: How much white is in the path of a joint that has its link's colour.
 PALE = 0.4
 #: Opacity of ghosts, and the most there are.
@@ -113,6 +115,10 @@ class Stage:
         """Places (..., 3) [length] in the scene's own frame."""
         return (places - self.centre) * self.scale
 
+    def from_scene(self, places: Floats) -> Floats:
+        """Places (..., 3) [length] from those in the scene's own frame."""
+        return np.asarray(places / self.scale + self.centre)
+
     def look(self, aspect: float = ASPECT, also: Floats | None = None) -> tuple[Floats, Floats]:
         """Where the camera stands and what it looks at, in the scene, to see the whole motion well.
 
@@ -160,7 +166,7 @@ class Stage:
         self._draw_path("points", [(place, rgb(colour)) for place, colour in drawn[:count]], POINT_PATH)
 
     def clear(self) -> None:
-        """Takes everything out of the scene, but for the floor."""
+        """Takes everything out of the scene; the floor stays."""
         self._plan = self._moving = self._frame = self._places = None
         for batches in (self._solids, self._ghosts, self._arrows, self._marks):
             batches.clear()
@@ -225,6 +231,14 @@ class Stage:
         turn, scale = np.tile([1.0, 0.0, 0.0, 0.0], (len(places), 1)), np.full((len(places), 3), MARK)
         balls = (turn, np.where(known, places, 0.0), np.where(known, scale, 0.0))
         self._marks.put({"ball": balls}, {"ball": np.tile(rgb(MARK_COLOUR), (len(places), 1))})
+
+    def axodes(self, fixed: Floats, moving: Floats) -> None:
+        """Draws the lines (n, 2, 3) [length] of a fixed and of a moving axode; none clears them."""
+        for name, lines, colour in (
+            ("fixed_axode", fixed, FIXED_AXODE),
+            ("moving_axode", moving, MOVING_AXODE),
+        ):
+            self._draw_lines(name, self.in_scene(lines), rgb(colour, PALE), AXODE_LINE)
 
     def labels(self, on: bool) -> None:
         """Shows or hides the names of joints and points."""

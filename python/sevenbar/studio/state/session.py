@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.word import Place
 from sevenbar.reporting.summary import meaning
-from sevenbar.studio.state.view import View, modes_at, nearest, views_of
+from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
 SAMPLES = 360
@@ -20,6 +21,8 @@ SAMPLES = 360
 MOST_STEPS = 500
 #: Changes of one dimension that follow each other within this time [s] are one step.
 ONE_DRAG = 1.0
+#: A pose so far from the one drawn [rad, or parts of the linkage's size] is another mode.
+AS_DRAWN = 1e-3
 
 
 class Session:
@@ -37,7 +40,7 @@ class Session:
         self.row, self.forwards = 0.0, True
         self.past: list[Draft] = []
         self.future: list[Draft] = []
-        self._last_change: tuple[Place, float] = ((), -math.inf)
+        self._last_change: tuple[object, float] = ((), -math.inf)
         self.draft = Draft.of(text, source)
         self._take(self.draft)
 
@@ -71,16 +74,42 @@ class Session:
                 (self.views[0], 0.0) if self.view is None else nearest(self.views, self.view, self.row)
             )
 
-    def change(self, place: Place, value: object) -> None:
-        """Gives a number of the description another value.
+    def change(self, place: Place, value: object, stroke: object = None) -> None:
+        """Gives a number of the description, or a place, another value.
 
-        Raises `DescriptionError` for a value that is refused, and then nothing has changed.
+        Changes of one stroke are one step of undo, however long it lasts. Raises `DescriptionError` for a
+        value that is refused, and then nothing has changed.
         """
-        draft = self.draft.with_value(place, value)
+        self.move((place,), value, stroke)
+
+    def move(self, places: Sequence[Place], value: object, stroke: object = None) -> None:
+        """The same for several places, which get one value in one step."""
+        draft = self.draft
+        for place in places:
+            draft = draft.with_value(place, value)
+        if draft.raw == self.draft.raw:
+            return
         now = time.monotonic()
-        goes_on = self._last_change[0] == place and now - self._last_change[1] < ONE_DRAG
+        what = tuple(places) if stroke is None else stroke
+        goes_on = self._last_change[0] == what and (
+            stroke is not None or now - self._last_change[1] < ONE_DRAG
+        )
         self._step(draft, remember=not goes_on)
-        self._last_change = (place, now)
+        self._last_change = (what, now)
+
+    @property
+    def drawn(self) -> tuple[View, float] | None:
+        """Where all joints are at zero, as drawn; `None` where it does not move, or has no drawing."""
+        if self.problem or not self.views or self.draft.linkage.form != "drawn":
+            return None
+        modes = modes_at(self.views, 0.0)
+        apart = [distance_from_zero(view, row) for view, row in modes]
+        return modes[int(np.argmin(apart))] if apart and min(apart) < AS_DRAWN else None
+
+    def as_drawn(self) -> None:
+        """Shows the linkage as it is drawn, where it is."""
+        if (drawn := self.drawn) is not None:
+            self.view, self.row = drawn
 
     def drive(self, input: str, output: str) -> None:
         """Drives the joint `input` and tells of `output`; where both are one, the two change places.

@@ -15,7 +15,7 @@ from sevenbar.drawing.skeleton import Skeleton, skeleton
 from sevenbar.kinematics.circuits import Circuit, Trace
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.poses import Walk, along, at_row, walk
+from sevenbar.kinematics.poses import Walk, along, at_row, frames_of, joint_frames, walk
 from sevenbar.reporting.summary import joint_text
 
 #: Inputs [rad, or parts of the linkage's size] nearer to a limit are at it.
@@ -27,6 +27,10 @@ SAME_ROW = 1e-9
 FARTHER = 0.1
 #: What another direction counts beside another place [rad].
 COURSE = 0.1
+
+
+#: How many screw axes are drawn, half their length, and how far the farthest is from the linkage, in extents.
+MOST_AXES, HALF_AXIS, FAR_AXIS = 120, 0.15, 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,6 +247,31 @@ class View:
             at_row(trace.acceleration[path.rows], row),
         )
 
+    def point_frame(self, link: int, row: float) -> Floats:
+        """The frame (4, 4) in which points of a link are written, at a row; links are counted from 1."""
+        own: Floats = self.linkage.point_frames[link - 1]
+        if link == len(self.linkage.joints):
+            return own
+        _, after = joint_frames(self.linkage, frames_of(self.linkage, self.joints(row)[None]))
+        return np.asarray(after[0, link - 1] @ own)
+
+    def axodes(self, link: int) -> tuple[Floats, Floats]:
+        """The lines (n, 2, 3) of the screw axes of a link against the ground, at all moments.
+
+        The first in the frame of the report, the second in that in which points of the link are written; as
+        long as a share of the linkage, and without those that are far from it.
+        """
+        axes = self.circuit.screw_axes(link)
+        near = np.linalg.norm(axes.point - np.nanmean(self.frame.places, axis=(0, 1)), axis=1)
+        kept = np.flatnonzero(near < FAR_AXIS * self.frame.span)
+        kept = kept[:: max(1, len(kept) // MOST_AXES)]
+        half = HALF_AXIS * self.frame.span
+
+        def lines(point: Floats, direction: Floats) -> Floats:
+            return np.stack([point - half * direction, point + half * direction], axis=1)[kept]
+
+        return lines(axes.point, axes.direction), lines(axes.moving_point, axes.moving_direction)
+
     @cached_property
     def _joints(self) -> Floats:
         """Joint values (n, columns) along the path; in its closing row a turn on, where the joints are."""
@@ -297,6 +326,12 @@ def nearest(views: Sequence[View], view: View, row: float) -> tuple[View, float]
         _, index, at = min(here)
         return views[index], at
     return views[top], float(alike)
+
+
+def distance_from_zero(view: View, row: float) -> float:
+    """How far the joints of a view are from zero at a row; turns of balls are left out."""
+    measure = _Measure(view.motion)
+    return float(measure.apart(view.joints(row), np.zeros(len(view.linkage.columns))))
 
 
 class _Measure:

@@ -1,4 +1,4 @@
-"""What the studio's curves can show of a motion: the output, every joint, the points' speeds."""
+"""What the studio's curves can show: the output, the transmission angle, every joint, the points' speeds."""
 
 from __future__ import annotations
 
@@ -20,12 +20,17 @@ ORDERS = ("angle", "velocity", "acceleration")
 SIZES = {1: "speed", 2: "acceleration"}
 
 
+#: The key of the transmission angle.
+TRANSMISSION = "transmission"
+
+
 @dataclass(frozen=True)
 class Quantity:
     """One thing that a curve shows, by the `order` of its derivative: of a column or of a named point.
 
     `key` stays the same from one motion of a linkage to the next; `name` and `unit` are what people read;
-    one of `column` and `point` is set, their places in the linkage's `columns` and `points`.
+    one of `column` and `point` is set, their places in the linkage's `columns` and `points`, or none for the
+    transmission angle.
     """
 
     key: str
@@ -47,6 +52,9 @@ class Quantity:
         sign. Of a point's velocity and acceleration the size is given.
         """
         circuit, path = view.circuit, view.path
+        if self.key == TRANSMISSION:
+            angle = circuit.transmission_angle
+            return np.full(len(path.rows), np.nan) if angle is None else np.degrees(angle[path.rows])
         if self.column is None:
             trace = view.traces[self.point or 0]
             vectors = trace.velocity if self.order == 1 else trace.acceleration
@@ -75,7 +83,7 @@ class Quantity:
         motion, size = view.motion, view.circuit.size
         turn = self.column is not None and motion.linkage.column_kinds[self.column] == "turn"
         if self.order == 0:
-            return 90.0 if turn else size
+            return 90.0 if turn or self.key == TRANSMISSION else size
         rate = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max())
         if slides(motion, motion.input):
             rate /= size
@@ -107,6 +115,8 @@ def quantities(motion: Motion) -> tuple[Quantity, ...]:
             add(f"{key}.{word}", f"{name} {shown}", unit, order, column=column)
 
     add_column("output", "output", linkage.columns.index(motion.output))
+    if any(circuit.transmission_angle is not None for circuit in motion.circuits[:1]):
+        add(TRANSMISSION, "transmission angle", "deg", 0)
     for column, name in enumerate(linkage.columns):
         if name != motion.input:
             add_column(f"column.{name}", name, column)

@@ -13,7 +13,6 @@ use super::follow::{Start, Stop};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, Columns, dot, least_squares, length, singular_values};
 use crate::loops::equation::rotations::squared_up;
-use crate::loops::mobility::rank::{AGREE, NO_RANK};
 use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEADY, singular_place};
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
@@ -196,7 +195,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
         let mut right: Vec<f64> = placed.error.iter().map(|e| -e).collect();
         right.push(radius - distance);
         let mut by = [0.0; COLUMNS];
-        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, NO_RANK));
+        by[..chain.columns].copy_from_slice(&least_squares(&columns, &right, chain.no_rank()));
         let size = length(&by);
         // where curves touch, steps halve at least
         if !size.is_finite() || (step >= WANDERING_AFTER && size > WANDERING * radius) {
@@ -214,7 +213,7 @@ fn on_sphere(chain: &Chain, place: &Place, direction: &Columns, radius: f64) -> 
             break;
         }
     }
-    let closed = if chain.is_redundant() { AGREE } else { CLOSED };
+    let closed = if chain.is_redundant() { chain.agree } else { CLOSED };
     (before < STEADY && chain.residual(&chain.place(&at)) < closed).then_some(at)
 }
 

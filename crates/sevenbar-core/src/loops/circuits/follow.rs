@@ -3,7 +3,6 @@
 use super::curve::{self, Curve, End, Node, Stand};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
 use crate::loops::equation::dense::{COLUMNS, Columns, dot, length};
-use crate::loops::mobility::rank::AGREE;
 use crate::simd::{self, Kernel};
 use crate::vectors::{self, LANES, LaneKernel, Vector};
 
@@ -320,7 +319,7 @@ impl Walk<'_> {
         let chain = self.chain;
         let curve = &mut self.curves[walker];
         let last = curve.nodes.len() - 1;
-        if next.open > AGREE {
+        if next.open > chain.agree {
             return Some(End::Open);
         }
         curve.nodes[last].step = step;

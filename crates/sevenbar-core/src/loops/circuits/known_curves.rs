@@ -8,7 +8,7 @@ use super::found::{Found, Search};
 use super::on_curve::{lies_on, lies_on_any, not_on_any, place_on};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, dot, length, singular_values};
-use crate::loops::mobility::rank::{NO_RANK, rank, unyielding};
+use crate::loops::mobility::rank::{rank, unyielding};
 use crate::loops::modes::finder::Completeness;
 
 /// Modes of a loop without screws at an input; where more are found, curves of them are, and few are followed at once.
@@ -149,7 +149,7 @@ impl Curves {
     /// Looks at the rank of a pose.
     pub fn find_at(&mut self, chain: &Chain, pose: &Configuration) {
         let columns = chain.screws(pose);
-        let rank = rank(&singular_values(&columns).0, NO_RANK);
+        let rank = rank(&singular_values(&columns).0, chain.no_rank());
         self.find(chain, &columns, rank);
     }
 
@@ -186,7 +186,7 @@ impl Curves {
             }
             let columns = chain.screws(mode);
             let (values, vectors) = singular_values(&columns);
-            let rank = rank(&values, NO_RANK);
+            let rank = rank(&values, chain.no_rank());
             if chain.columns - rank != 1 {
                 // on a surface every pose is like this one
                 let isolated =

@@ -67,6 +67,14 @@ impl Loop {
         }
     }
 
+    /// The same with redundant constraints that agree up to a closure error [rad, or relative to the size]; [`super::AGREE`] by default.
+    pub fn agreeing(mut self, agree: f64) -> Self {
+        if let Some(chain) = &mut self.reduced.chain {
+            chain.agree = agree;
+        }
+        self
+    }
+
     /// The size of which residuals are parts.
     pub fn size(&self) -> f64 {
         self.size

@@ -12,6 +12,10 @@ use crate::number::Number;
 use crate::rigid::{Pose, norm};
 use crate::vectors::{LANES, Vector};
 
+/// The closure error [rad, or relative to the size] up to which redundant constraints agree by default: a nanometre in a metre, far below
+/// what can be made or measured, and far above rounding.
+pub const AGREE: f64 = 1e-9;
+
 /// Most balls in seven columns.
 pub(crate) const BALLS: usize = 2;
 
@@ -45,6 +49,8 @@ pub(crate) struct Chain {
     pub columns: usize,
     /// The sum of the links' lengths.
     pub around: f64,
+    /// The closure error [rad, or relative to the size] up to which redundant constraints agree.
+    pub agree: f64,
     /// Turns of which one half counts: in the other stand the same poses, with links that spin idly turned over.
     pub halves: Vec<Half>,
 }
@@ -136,7 +142,15 @@ impl Chain {
             columns += joint.columns();
         }
         let around = links.iter().map(|l| norm(l.translation)).sum();
-        Self { joints, first, links, columns, around, halves: Vec::new() }
+        Self {
+            joints,
+            first,
+            links,
+            columns,
+            around,
+            agree: AGREE,
+            halves: Vec::new(),
+        }
     }
 
     /// How many joints are balls.
@@ -161,6 +175,21 @@ impl Chain {
     /// Whether joints that move with one freedom leave constraints that say what others say: seven columns with rank six do not.
     pub fn is_redundant(&self) -> bool {
         self.columns < COLUMNS
+    }
+
+    /// Singular values below this part of the greatest are zero: those that a misfit within what agrees may bring.
+    pub fn no_rank(&self) -> f64 {
+        10.0 * self.agree
+    }
+
+    /// How far from real, and from where it closes, a solution may lie [rad, or relative to the size] that closes within what agrees, where
+    /// that is more than the default: two that meet part by the root of what parts them.
+    pub fn looseness(&self) -> f64 {
+        if self.agree > AGREE {
+            self.agree.sqrt()
+        } else {
+            0.0
+        }
     }
 
     /// The columns that are angles of joints with one axis.

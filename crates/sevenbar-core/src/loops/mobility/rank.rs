@@ -4,13 +4,6 @@
 
 use crate::loops::equation::dense::singular_values;
 
-/// The closure error [rad, or parts of the size] up to which redundant constraints agree: a nanometre in a metre, far below what can be
-/// made or measured, and far above rounding.
-pub const AGREE: f64 = 1e-9;
-
-/// Singular values below this part of the greatest are zero: those that a misfit within [`AGREE`] may bring.
-pub(crate) const NO_RANK: f64 = 10.0 * AGREE;
-
 /// The rank of columns with these singular values, falling, where those below a part of the greatest are zero.
 pub(crate) fn rank(values: &[f64], zero: f64) -> usize {
     values.iter().take(6).filter(|&&v| v > zero * values[0]).count()

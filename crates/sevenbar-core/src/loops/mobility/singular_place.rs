@@ -2,7 +2,7 @@
 //!
 //! Source: docs/theory.md, (19) and (20).
 
-use super::rank::{self, AGREE, NO_RANK, wrenches};
+use super::rank::{self, wrenches};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, Columns, least_squares, length, singular_values};
 use crate::loops::equation::rotations::squared_up;
@@ -52,6 +52,8 @@ pub(crate) struct Place {
     pub forms: Vec<(f64, Vec<f64>)>,
     /// Closure error that no form explains.
     pub open: f64,
+    /// The closure error up to which it is a pose.
+    agree: f64,
 }
 
 impl Place {
@@ -83,7 +85,7 @@ impl Place {
     pub fn counts(&self, wished: &[usize], stuck: bool) -> bool {
         let passing = self.passing();
         let limits_meet = || wished.iter().any(|&c| self.limits_apart(c) < SAME_LIMIT);
-        self.open < AGREE && (passing < TOUCHING || (passing < APART && (stuck || limits_meet())))
+        self.open < self.agree && (passing < TOUCHING || (passing < APART && (stuck || limits_meet())))
     }
 }
 
@@ -107,7 +109,7 @@ pub(crate) fn singular_place(chain: &Chain, rough: &Configuration) -> Option<Pla
         if length(&chain.difference(rough, &at)) > NEAR {
             return None;
         }
-        let there = rank::rank(&singular_values(&chain.screws(&at)).0, NO_RANK);
+        let there = rank::rank(&singular_values(&chain.screws(&at)).0, chain.no_rank());
         if there > rank {
             return None;
         }
@@ -195,7 +197,7 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
     let mut open = 0.0;
     for (size, mix) in sizes.iter().zip(&mixes) {
         let value: f64 = mix.iter().zip(&values).map(|(m, v)| m * v).sum();
-        if *size > NO_FORM {
+        if *size > NO_FORM.max(chain.no_rank()) {
             let form = (0..count * count)
                 .map(|k| mix.iter().zip(&forms).map(|(m, f)| m * f[k]).sum())
                 .collect();
@@ -204,7 +206,13 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
             open += value * value;
         }
     }
-    Place { at: *at, free: split.free, forms: found, open: f64::sqrt(open) }
+    Place {
+        at: *at,
+        free: split.free,
+        forms: found,
+        open: f64::sqrt(open),
+        agree: chain.agree,
+    }
 }
 
 /// The directions that screws of a rank leave free, and the wrenches that see a motion and those that do not.

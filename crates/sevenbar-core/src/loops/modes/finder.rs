@@ -55,6 +55,9 @@ pub(crate) const REAL: f64 = 1e-5;
 /// A real solution may move by this much [rad, or parts of the size] when it is polished on the chain itself.
 const POLISHED_MOVE: f64 = 1e-3;
 
+/// By how much farther than a solution is from real it may move.
+const FARTHER: f64 = 5.0;
+
 /// `|e^(i t)|` of the general value of an input that turns: near the real ones, and beside the places on them where solutions
 /// meet.
 pub(crate) const CIRCLE: f64 = 1.05;
@@ -317,6 +320,7 @@ impl<'a> ModeFinder<'a> {
         value: f64,
         real: f64,
     ) -> Vec<Configuration> {
+        let real = real.max(self.chain.looseness());
         ends.iter()
             .filter_map(|end| self.configuration(end, shift, value, real))
             .collect()
@@ -325,7 +329,7 @@ impl<'a> ModeFinder<'a> {
     /// Rough modes closed, each once; without those that do not close near by.
     pub fn polished(&self, rough: &[Configuration]) -> Polished {
         let (closed, open): (Vec<Settled>, Vec<Settled>) =
-            self.settled(rough).into_iter().partition(Settled::agrees);
+            self.settled(rough).into_iter().partition(|s| s.agrees);
         let open = open.iter().filter(|s| self.chain.counts(&s.at));
         Polished {
             misfits: open.map(|s| s.misfit).collect(),
@@ -336,8 +340,9 @@ impl<'a> ModeFinder<'a> {
     /// Where rough modes come to close as well as they can, each once.
     fn settled(&self, rough: &[Configuration]) -> Vec<Settled> {
         let mut out: Vec<Settled> = Vec::new();
+        let reach = POLISHED_MOVE.max(FARTHER * self.chain.looseness());
         for rough in rough {
-            if let Some(settled) = polish(self.chain, self.input, rough, POLISHED_MOVE)
+            if let Some(settled) = polish(self.chain, self.input, rough, reach)
                 && out.iter().all(|s| !same(self.chain, &s.at, &settled.at))
             {
                 out.push(settled);

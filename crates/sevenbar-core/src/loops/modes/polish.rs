@@ -2,20 +2,20 @@
 //!
 //! A loop with redundant constraints closes by its exact dimensions alone: numbers that are rounded leave it open everywhere, though by
 //! next to nothing. Newton's method, by least squares, then settles where what is left is borne by wrenches to which no joint yields.
-//! Such a pose counts as closed while its misfit is below [`AGREE`], and so does a node of a circuit. What joints could close must
-//! be closed to rounding, in every loop.
+//! Such a pose counts as closed while its misfit is below what the chain takes to agree, and so does a node of a circuit. What joints
+//! could close must be closed to rounding, in every loop.
 
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, Columns, Factored, ROWS, least_squares, singular_values};
 use crate::loops::equation::rotations::squared_up;
-use crate::loops::mobility::rank::{AGREE, NO_RANK, rank, unyielding};
+use crate::loops::mobility::rank::{rank, unyielding};
 
 /// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
 pub(crate) const CLOSED: f64 = 1e-11;
 
-/// The misfit [rad, or parts of the size] up to which it is told that redundant constraints alone keep a pose open: what a path to a
-/// real solution may leave of joints that are not there.
-const NEARLY: f64 = 1e-5;
+/// The misfit [rad, or relative to the size] up to which a pose counts as kept open by redundant constraints alone: links of 100 mm cut
+/// to a hundredth of a millimetre.
+const NEARLY: f64 = 1e-4;
 
 /// A move [rad, or parts of the size] after which the next would be rounding.
 const SETTLED: f64 = 1e-12;
@@ -36,13 +36,8 @@ pub(crate) struct Settled {
     pub at: Configuration,
     /// The closure error that is left in redundant constraints [rad, or parts of the size].
     pub misfit: f64,
-}
-
-impl Settled {
     /// Whether its redundant constraints agree, so that it is a mode.
-    pub fn agrees(&self) -> bool {
-        self.misfit < AGREE
-    }
+    pub agrees: bool,
 }
 
 /// Newton's method with the input held; `None` where it does not close but for redundant constraints, or goes farther than `reach`.
@@ -90,7 +85,7 @@ pub(crate) fn polish(chain: &Chain, input: usize, rough: &Configuration, reach: 
         .iter()
         .fold(0.0, |m: f64, d| m.max(d.abs()));
     let misfit = misfit(chain, &at)?;
-    (gone <= reach).then_some(Settled { at, misfit })
+    (gone <= reach).then_some(Settled { at, misfit, agrees: misfit < chain.agree })
 }
 
 /// The same where the other joints have freedoms to spare: each step is the shortest of those that lead as near.
@@ -118,7 +113,7 @@ pub(super) fn polish_with_spare(chain: &Chain, input: usize, rough: &Configurati
         }
         let mut columns = chain.screws(&at);
         columns[input].fill(0.0);
-        let by = least_squares(&columns, &placed.error.map(|e| -e), NO_RANK);
+        let by = least_squares(&columns, &placed.error.map(|e| -e), chain.no_rank());
         let longest = by.iter().fold(0.0, |m: f64, b| m.max(b.abs()));
         if !longest.is_finite() {
             return None;
@@ -146,11 +141,11 @@ fn misfit(chain: &Chain, at: &Configuration) -> Option<f64> {
     let error = &placed.error;
     let left = error.iter().map(|e| e * e).sum::<f64>().sqrt();
     // turned right round, the error tells nothing
-    if !chain.is_redundant() || left.is_nan() || residual > NEARLY {
+    if !chain.is_redundant() || left.is_nan() || residual > NEARLY.max(chain.agree) {
         return None;
     }
     let columns = chain.screws(at);
-    let rank = rank(&singular_values(&columns).0, NO_RANK.max(10.0 * left));
+    let rank = rank(&singular_values(&columns).0, chain.no_rank().max(30.0 * left));
     if chain.columns - rank != 1 {
         return None;
     }

@@ -174,8 +174,7 @@ pub fn circuit_through(
     let chain = linkage.reduced.chain.as_ref()?;
     let (driver, follower) = (linkage.inner(input)?, linkage.inner(output)?);
     let rough = configuration(linkage, values);
-    let Some(Settled { at: pose, .. }) =
-        polish(chain, driver.inner, &rough, PUT_RIGHT).filter(Settled::agrees)
+    let Some(Settled { at: pose, .. }) = polish(chain, driver.inner, &rough, PUT_RIGHT).filter(|s| s.agrees)
     else {
         return Some(Through::Apart(chain.residual(&chain.place(&rough))));
     };

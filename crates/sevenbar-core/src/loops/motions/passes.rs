@@ -7,7 +7,6 @@ use crate::loops::circuits::follow;
 use crate::loops::circuits::turnings::{self, begun_at, insert, turns_at};
 use crate::loops::equation::chain::{Chain, Configuration};
 use crate::loops::equation::dense::{COLUMNS, combined, dot, length};
-use crate::loops::mobility::rank::AGREE;
 use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
 use crate::vectors::LANES;
@@ -148,7 +147,7 @@ impl<'a> Passes<'a> {
         ));
         // the misfit of redundant constraints changes between its nodes
         let closed = if self.chain.is_redundant() {
-            2.0 * AGREE
+            2.0 * self.chain.agree
         } else {
             ROW_CLOSED
         };

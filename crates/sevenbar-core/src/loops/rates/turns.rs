@@ -1,6 +1,6 @@
 //! Turns of joints as power series in time, from the series of the rates.
 //!
-//! Source: docs/theory.md, "Rates".
+//! Source: docs/theory.md, (15) and (16).
 
 use super::velocities::{ORDERS, Rates};
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
