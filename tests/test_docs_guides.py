@@ -74,11 +74,19 @@ def test_the_extras_of_the_quick_start_exist():
     for page in QUICK:
         text = page.read_text(encoding="utf-8")
         _, _, table = text.partition("(extras)=" if page is ENGLISH else "## 可选组件")
-        named = [name for row in re.findall(r"^\| (`.*?) \|", table, re.MULTILINE) for name in re.findall(r"`(\w+)`", row)]
+        named = [
+            name
+            for row in re.findall(r"^\| (`.*?) \|", table, re.MULTILINE)
+            for name in re.findall(r"`(\w+)`", row)
+        ]
         assert len(named) == 11
         assert set(named) <= set(extras)
 
 
 def test_no_page_installs_an_extra_by_the_name_of_a_package_that_is_not_published():
-    for page in [DOCS.parent / "README.md", *QUICK, *(DOCS / f"{n}.md" for n in ("index", "planar", "papers", "coming-from"))]:
+    for page in [
+        DOCS.parent / "README.md",
+        *QUICK,
+        *(DOCS / f"{n}.md" for n in ("index", "planar", "papers", "coming-from")),
+    ]:
         assert "'sevenbar[" not in page.read_text(encoding="utf-8"), page.name

@@ -1,4 +1,4 @@
-"""Pages in Chinese: their language, the theme's labels on them, and the way from each page to the other language."""
+"""Pages in Chinese: their language, the theme's labels on them, the way from each page to the other language."""
 
 from __future__ import annotations
 
