@@ -5,7 +5,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
-from jupyter_client.connect import ConnectionFileMixin
+from jupyter_client.manager import KernelManager
 
 import sevenbar
 
@@ -43,8 +43,9 @@ nb_execution_timeout = 90
 nb_execution_raise_on_error = True
 nb_merge_streams = True
 
-# by sockets of this machine's files: over TCP each kernel would warn that others can listen
-ConnectionFileMixin.transport.default_value = "tcp" if sys.platform == "win32" else "ipc"
+# kernels would warn that others can listen; files as sockets do not work, since each side looks in its own folder
+if hasattr(KernelManager, "transport_encryption"):
+    KernelManager.transport_encryption.default_value = "auto"
 
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"

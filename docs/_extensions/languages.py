@@ -1,4 +1,4 @@
-"""Pages in Chinese: their language, the theme's labels on them, the way from each page to the other language."""
+"""Chinese pages: their language, the theme's labels on them, the way from each page to the other language."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _add(app: Sphinx, docname: str, _template: str, context: dict[str, Any], _do
     context["other_language_code"] = "en" if chinese else "zh-CN"
     if chinese:
         context["language"] = "zh-CN"
-        label = in_chinese(app.builder.templates.environment.globals["_"])  # type: ignore[attr-defined]
+        label = in_chinese(app.builder.templates.environment.globals["gettext"])
         context["_"] = context["gettext"] = label
 
 
