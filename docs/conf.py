@@ -5,7 +5,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "_extensions"))
 
-from jupyter_client.connect import ConnectionFileMixin
+from jupyter_client.manager import KernelManager
 
 import sevenbar
 
@@ -22,6 +22,7 @@ extensions = [
     "formulas",
     "beyond_docs",
     "docstrings",
+    "languages",
     "made_pages",
     "own_server",
 ]
@@ -42,8 +43,9 @@ nb_execution_timeout = 90
 nb_execution_raise_on_error = True
 nb_merge_streams = True
 
-# by sockets of this machine's files: over TCP each kernel would warn that others can listen
-ConnectionFileMixin.transport.default_value = "tcp" if sys.platform == "win32" else "ipc"
+# kernels would warn that others can listen; files as sockets do not work, since each side looks in its own folder
+if hasattr(KernelManager, "transport_encryption"):
+    KernelManager.transport_encryption.default_value = "auto"
 
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
@@ -55,6 +57,18 @@ copybutton_prompt_text = r">>> |\.\.\. |\$ "
 copybutton_prompt_is_regexp = True
 
 html_theme = "furo"
+templates_path = ["_templates"]
+html_favicon = html_logo = "_static/mark.svg"
+html_sidebars = {
+    "**": [
+        "sidebar/brand.html",
+        "sidebar/language.html",
+        "sidebar/search.html",
+        "sidebar/scroll-start.html",
+        "sidebar/navigation.html",
+        "sidebar/scroll-end.html",
+    ]
+}
 html_title = f"Sevenbar {version}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]

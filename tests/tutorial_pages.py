@@ -1,6 +1,7 @@
-"""The tutorial's pages as a newcomer reads them: files to write, commands to type, Python to run.
+"""The tutorial's and the quick start's pages as a newcomer reads them: files to write, commands to type, Python to run.
 
     python tests/tutorial_pages.py        writes what the commands print today, and the pictures
+    python tests/tutorial_pages.py quick  the quick start's pages alone
 
 Boxes of both pages are taken in order. A box `toml` begins with the name of its file; a box `console` has commands after `$`,
 each with what it prints.
@@ -17,6 +18,7 @@ from PIL import Image
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGES = (DOCS / "tutorial.md", DOCS / "zh" / "tutorial.md")
+QUICK = (DOCS / "quick-start.md", DOCS / "zh" / "quick-start.md")
 IMAGES = DOCS / "images"
 BOX = re.compile(r"^```(toml|console|python)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 #: Where in the newcomer's folder each picture comes from; that of the studio is taken by tests/test_tutorial.py.
@@ -102,21 +104,30 @@ def make_light(source, target):
     picture.quantize(COLOURS, dither=Image.Dither.NONE).save(target, optimize=True)
 
 
-def main():
-    """Write both pages and the pictures anew."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        first, second = PAGES
-        first.write_text(told_today(first, folder), encoding="utf-8")
-        for picture, source in PICTURES.items():
-            make_light(folder / source, IMAGES / picture)
-    # the other page shows the same: what stands below its commands is copied
+def write_anew(pages, folder):
+    """Write a page, its commands run in an empty folder, and the page that shows the same in the other language."""
+    first, second = pages
+    first.write_text(told_today(first, folder), encoding="utf-8")
+    # what stands below its commands is copied
     shown = iter([text for kind, text in boxes(first) if kind == "console"])
     copied = BOX.sub(
         lambda box: f"```console\n{next(shown)}```" if box[1] == "console" else box[0],
         second.read_text(encoding="utf-8"),
     )
     second.write_text(copied, encoding="utf-8")
+
+
+def main():
+    """Write the pages and the pictures anew; with `quick` the quick start's alone."""
+    with tempfile.TemporaryDirectory() as name:
+        write_anew(QUICK, Path(name))
+    if "quick" in sys.argv[1:]:
+        return
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_anew(PAGES, folder)
+        for picture, source in PICTURES.items():
+            make_light(folder / source, IMAGES / picture)
 
 
 if __name__ == "__main__":

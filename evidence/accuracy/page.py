@@ -74,9 +74,9 @@ def _rows(results: Results) -> Iterator[str]:
     yield (
         "**The references** (`evidence/accuracy/precise_loops.py`, `evidence/accuracy/reference_rssr.py`) "
         "know the description of a linkage and nothing else: the loop closes, or two balls keep their "
-        "distance. Poses come of Newton's method in 60 and 80 digits, derivatives of differences with steps "
-        "of 1e-14 and 1e-20, of which 18 digits and more are left. No formula is shared with the core. On "
-        f"every circuit, {settings['random']} inputs at random in a full turn (those that the circuit "
+        "distance. Poses are found by Newton's method in 60 and 80 digits, derivatives from differences with "
+        "steps of 1e-14 and 1e-20, of which 18 digits and more are left. No formula is shared with the core. "
+        f"On every circuit, {settings['random']} inputs at random in a full turn (those that the circuit "
         f"reaches), and the {settings['worst']} worst conditioned of {settings['grid']} inputs a turn. "
         "Each row compares all joints, and a point of a moving link drawn at random, within half a size "
         "of its frame. Left out: what only a convention holds (an idle spin), the turns of a ball within "

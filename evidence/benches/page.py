@@ -17,8 +17,8 @@ INTRODUCTION = """\
 
 `make bench` made this page: the same work in the same process, in turns (each round begins with another
 one, so that none always follows the same), a median over the rounds for each, and the median of the
-ratios within the rounds. `from` and `to` enclose eight of ten rounds. **Ratios are to be trusted,
-absolute times only guide**; a ratio above 1 is slower than Sevenbar, one below is faster. One thread
+ratios within the rounds. `from` and `to` enclose eight of ten rounds. **Trust the ratios;
+absolute times are only a guide**; a ratio above 1 is slower than Sevenbar, one below is faster. One thread
 unless a table is about threads. Answers are compared before anything is timed; a peer whose answer
 disagrees has that written in its row, and no ratio. The numbers lie in
 [evidence/benches/results.json](../evidence/benches/results.json), the code in

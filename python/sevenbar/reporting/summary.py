@@ -293,7 +293,7 @@ def meaning(motion: Motion) -> str:
             )
         case "rigid":
             taken = motion.mobility.freedoms
-            return f"the loop closes but cannot move: the closure takes all of its {taken} freedoms"
+            return f"the loop closes but cannot move: closing it removes all of its {taken} freedoms"
         case "cannot-assemble" if motion.linkage.kind == "RSSR":
             return "no input closes the loop: the coupler is too short or too long"
         case "cannot-assemble":

@@ -180,7 +180,7 @@ def _keys(run: Simulation, colour: str = "") -> list[Line2D]:
     return [
         Line2D([], [], color=colour or _THEORY, lw=1.3, label="Sevenbar"),
         Line2D([], [], ls="", marker="o", ms=4, mfc="white", mec=colour or _ENGINE, label=run.record.engine),
-        Line2D([], [], color=_ENGINE, lw=0.9, label=f"{run.record.engine} less Sevenbar"),
+        Line2D([], [], color=_ENGINE, lw=0.9, label=f"{run.record.engine} minus Sevenbar"),
     ]
 
 

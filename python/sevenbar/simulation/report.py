@@ -79,7 +79,7 @@ def text(run: Simulation) -> RenderableType:
             f"misses its first pose by {_sized(run.returned[0], unit)} and {_sized(run.returned[1], 'rad')}",
         )
     heads = (
-        f"{record.engine} less Sevenbar",
+        f"{record.engine} minus Sevenbar",
         "greatest",
         f"at {short(motion.input, 12)}",
         "median",

@@ -126,7 +126,8 @@ def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
     for freedom in cycle.motion.idle:
         if any(f"link {link})" in freedom or f"link {link} " in freedom for link in links or [cycle.link]):
             text.append(
-                f"the {freedom} is open in the linkage; points off that line move as the rule for it has it"
+                f"the {freedom} is open in the linkage; points off that line "
+                "move as the convention for it says"
             )
     return text
 
