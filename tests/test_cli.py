@@ -266,10 +266,10 @@ def test_a_slide_is_told_in_the_length_unit():
     assert "no bound at limits" in text
 
 
-def test_json_tells_mobility_and_how_the_circuits_were_established():
+def test_json_tells_mobility_and_how_the_circuits_were_found():
     report = json.loads(sevenbar("analyze", "bennett", "--json").stdout)
     assert report["mobility"] == {"gruebler": -2, "freedoms": 4, "rank": 3, "finite": 1}
-    assert "modes" in report["established"]
+    assert "modes" in report["how_found"]
     assert len(report["redundant"]) == 3
     assert report["linkage"]["columns"][0] == {"name": "theta_1", "kind": "turn"}
 

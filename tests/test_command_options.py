@@ -106,7 +106,7 @@ def test_a_count_may_have_an_exponent_and_flags_may_be_repeated():
     [
         (
             ["analyze", "rssr", "--samples", "1e6", "--out", "big"],
-            r"--samples: motion\.csv of 2,000,000 rows, about 1\.7 GB, some \d+ min; give --yes to go on",
+            r"--samples: motion\.csv of 2,000,000 rows, about 1\.[78] GB, some \d+ min; give --yes to go on",
         ),
         (
             ["export", "seven_r", "--samples", "200000", "--to", "csv"],
@@ -224,9 +224,9 @@ def test_ctrl_c_in_a_computation_is_no_fault():
 
 
 SLOW_FIGURE = """
-import sevenbar.drawing.plot as plot, sys
+import sevenbar.drawing.plot as plot, sevenbar.errors, sys
 def seen(*_, **__):
-    raise plot.RequestError("printed by now: " + str(printed))
+    raise sevenbar.errors.RequestError("printed by now: " + str(printed))
 printed, write = [], sys.stdout.write
 sys.stdout.write = lambda text: (printed.append(len(text)), write(text))[1]
 plot.curves = seen
@@ -244,7 +244,7 @@ def test_the_report_is_printed_before_the_first_figure_is_drawn(tmp_path):
 def test_words_of_other_programs_name_a_format():
     assert ALIASES["adams"] == "cmd"
     assert ALIASES["matlab"] == "mat"
-    assert {word for word in ALIASES.values() if word not in FORMATS} <= {"xlsx"}
+    assert set(ALIASES.values()) <= set(FORMATS)
     assert not set(INSTEAD) & set(ALIASES)
 
 

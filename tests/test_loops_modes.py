@@ -144,7 +144,7 @@ def test_no_mode_of_overconstrained_loops_is_missing(
 
 
 @pytest.mark.parametrize("family", [general, screws, drawn])
-def test_the_result_says_how_completeness_was_established(
+def test_the_result_says_how_complete_it_is(
     family: Callable[[np.random.Generator], Case],
 ) -> None:
     for case in drawn_by(family, 20):

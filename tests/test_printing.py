@@ -84,7 +84,7 @@ def test_circuits_of_several_types_are_told_apart():
         "                 the circuits differ; see below",
         "  circuits       3: 2 close after one turn of the input, 1 goes to and fro",
         "    0            crank-rocker, one turn, crank full turns, rocker -25.467° to 0.017°",
-        "    1            double-rocker, to and fro, crank -64.624° to 214.546°, rocker 55.312° to 141.603°",
+        "    1            double-rocker, to and fro, crank 295.376° to 214.546°, rocker 55.312° to 141.603°",
         "    2            crank-rocker, one turn, crank full turns, rocker -118.968° to -86.850°",
         "  input limits   214.546°  295.376°",
     ]

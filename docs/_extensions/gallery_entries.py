@@ -12,7 +12,7 @@ from sevenbar.reporting import report, summary
 PICTURES = "_made/gallery"
 
 #: Facts of the report that a gallery need not show.
-LEFT_OUT = {"dimensions", "established", "mobility", "closure error"}
+LEFT_OUT = {"dimensions", "how found", "mobility", "closure error"}
 
 
 def all_entries(pages: Path, _: str) -> str:

@@ -11,37 +11,40 @@ from __future__ import annotations
 
 import importlib
 from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 from sevenbar import errors
 from sevenbar._core import __version__
-from sevenbar.description.families import (
-    bennett,
-    bricard_line,
-    bricard_plane,
-    bricard_trihedral,
-    clemens,
-    four_bar,
-    goldberg,
-    myard,
-    sarrus,
-    slider_crank,
-    spherical_four_bar,
-    universal_joint,
-)
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
-from sevenbar.description.law_file import load_law
-from sevenbar.description.step_axes import PartAxis, axes_of_step
-from sevenbar.description.tables import from_table
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
 from sevenbar.kinematics.geometry import Drive, Joint, Point
 from sevenbar.kinematics.grashof import FourBar
-from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere
-from sevenbar.kinematics.screw_axes import ScrewAxes
 from sevenbar.text.printing import SAID_IN
+
+if TYPE_CHECKING:
+    from sevenbar.description.families import (
+        bennett,
+        bricard_line,
+        bricard_plane,
+        bricard_trihedral,
+        clemens,
+        four_bar,
+        goldberg,
+        myard,
+        sarrus,
+        slider_crank,
+        spherical_four_bar,
+        universal_joint,
+    )
+    from sevenbar.description.law_file import load_law
+    from sevenbar.description.step_axes import PartAxis, axes_of_step
+    from sevenbar.description.tables import from_table
+    from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
+    from sevenbar.kinematics.screw_axes import ScrewAxes
 
 __all__ = [
     "ChangePoint",
@@ -91,7 +94,7 @@ __all__ = [
     "universal_joint",
 ]
 
-#: What is imported at its first use, since it brings large libraries with it: the name and its module.
+#: Modules that are imported at their first use, since they bring large libraries with them.
 _ON_DEMAND = {
     "animate": "sevenbar.drawing.animate",
     "design": "sevenbar.design",
@@ -102,6 +105,33 @@ _ON_DEMAND = {
     "simulation": "sevenbar.simulation",
     "sweep": "sevenbar.sweep",
 }
+
+#: Names that many programs do without, and the modules that have them.
+_NAMES_ON_DEMAND = {
+    "InstantCentre": "sevenbar.kinematics.instant_centres",
+    "InstantCentres": "sevenbar.kinematics.instant_centres",
+    "PartAxis": "sevenbar.description.step_axes",
+    "ScrewAxes": "sevenbar.kinematics.screw_axes",
+    "axes_of_step": "sevenbar.description.step_axes",
+    "from_table": "sevenbar.description.tables",
+    "load_law": "sevenbar.description.law_file",
+} | dict.fromkeys(
+    (
+        "bennett",
+        "bricard_line",
+        "bricard_plane",
+        "bricard_trihedral",
+        "clemens",
+        "four_bar",
+        "goldberg",
+        "myard",
+        "sarrus",
+        "slider_crank",
+        "spherical_four_bar",
+        "universal_joint",
+    ),
+    "sevenbar.description.families",
+)
 
 # what results print is said where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
@@ -122,7 +152,10 @@ def _offered(module: ModuleType) -> list[str]:
     return list(getattr(module, "__all__", own))
 
 
-def __getattr__(name: str) -> ModuleType:
+def __getattr__(name: str) -> Any:
+    if name in _NAMES_ON_DEMAND:
+        found = globals()[name] = getattr(importlib.import_module(_NAMES_ON_DEMAND[name]), name)
+        return found
     if name in _ON_DEMAND:
         module = importlib.import_module(_ON_DEMAND[name])
         # what it offers, without what it imports

@@ -106,11 +106,11 @@ class _Commands(typer.core.TyperGroup):
             raise typer.Exit(STOPPED) from None
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        from sevenbar.description.files import TABLE_ENDINGS
         from sevenbar.description.gallery import names
-        from sevenbar.description.tables import ENDINGS
 
         word = args[0]
-        endings = (".toml", *ENDINGS)
+        endings = (".toml", *TABLE_ENDINGS)
         if word not in self.list_commands(ctx) and (word in names() or word.lower().endswith(endings)):
             raise RequestError(
                 f"{word}: is a linkage, where a command should stand; give: sevenbar analyze {word}"

@@ -6,14 +6,20 @@ import os
 import re
 import tomllib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.description.tables import ENDINGS, description_of_bytes, is_table
 from sevenbar.errors import DescriptionError, Problem, SevenbarError, ends_here, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.workbook import ZIP
+
+if TYPE_CHECKING:
+    from sevenbar.description.table_reader import TableDescription
+
+#: Endings of files that are tables; any other file is a workbook by its content, or TOML.
+TABLE_ENDINGS = (".csv", ".tsv", ".tab", ".xlsx", ".xlsm", ".xls")
 
 #: A linkage has some dozen numbers; a larger file [bytes] or a longer line [characters] is something else,
 #: and could keep the TOML reader busy for hours.
@@ -40,7 +46,7 @@ def load(source: str | os.PathLike[str]) -> Linkage:
         return loads(text(source), source)
     content = _read(path)
     if _is_table(content, path) and len(content) <= LARGEST_TABLE:
-        return description_of_bytes(content, str(source)).linkage(from_description, str(source))
+        return _table(content, str(source)).linkage(from_description, str(source))
     return loads(decoded(content, str(path)), str(source))
 
 
@@ -64,7 +70,7 @@ def note_of(source: str | os.PathLike[str]) -> str:
     if not _is_table(content, path):
         return ""
     try:
-        found = description_of_bytes(content, str(path))
+        found = _table(content, str(path))
         found.linkage(from_description, str(path))
     except SevenbarError:  # which the command reports
         return ""
@@ -163,7 +169,14 @@ def _read(path: Path) -> bytes:
 
 def _is_table(content: bytes, path: Path) -> bool:
     """Whether a file is a table: by its ending, a workbook by its content."""
-    return is_table(path) or content.startswith(ZIP)
+    return path.suffix.lower() in TABLE_ENDINGS or content.startswith(ZIP)
+
+
+def _table(content: bytes, place: str) -> TableDescription:
+    # most files are none
+    from sevenbar.description.tables import description_of_bytes
+
+    return description_of_bytes(content, place)
 
 
 def decoded(content: bytes, place: str) -> str:
@@ -178,7 +191,7 @@ def decoded(content: bytes, place: str) -> str:
             place, f"larger than {largest} bytes, so it is no linkage file; give a TOML file of format 1"
         )
     if table:
-        found = description_of_bytes(content, place)
+        found = _table(content, place)
         found.linkage(from_description, place)  # its mistakes, with their places in the table
         return found.toml(Path(place).name)
     # the mark of UTF-16, as Notepad's "Unicode" writes it
@@ -205,7 +218,7 @@ def _not_utf8(content: bytes, start: int) -> str:
 def _offer(path: Path) -> str:
     """`did you mean 'rssr' or 'rsur'? `: files of the folder and names of the gallery, or nothing."""
     try:
-        known = (".toml", *ENDINGS)
+        known = (".toml", *TABLE_ENDINGS)
         files = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in known)
     except (OSError, ValueError):  # a folder that may not be read; a path that cannot be
         files = []

@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.proportions import disproportions
-from sevenbar.description.table_reader import described_frame
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joints import KINDS
@@ -210,6 +209,8 @@ def _refuse_others(others: Mapping[str, object]) -> None:
 
 def _of_frame(frame: Any, *, name: str, speed: float | str, points: Sequence[Mapping[str, Any]]) -> Linkage:
     """The linkage of a data frame of Denavit-Hartenberg rows."""
+    from sevenbar.description.table_reader import described_frame
+
     found = described_frame(frame)
     if "link" not in found.raw:
         raise RequestError("joints: the table has no Denavit-Hartenberg rows; give it to sevenbar.from_table")

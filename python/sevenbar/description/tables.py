@@ -25,16 +25,8 @@ from sevenbar.text.grid import grid_of_sheet, grid_of_text
 from sevenbar.text.table import read_bytes, text_of_bytes
 from sevenbar.text.workbook import ZIP, sheets_of
 
-#: Endings of files that are tables; any other file is a workbook by its content, or TOML.
-ENDINGS = (".csv", ".tsv", ".tab", ".xlsx", ".xlsm", ".xls")
-
 #: Sheets of this title are taken before others: Sevenbar's own workbooks have it.
 SHEET = "linkage"
-
-
-def is_table(path: Path) -> bool:
-    """Whether a file is a table by its ending."""
-    return path.suffix.lower() in ENDINGS
 
 
 def from_table(

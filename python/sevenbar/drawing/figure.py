@@ -134,7 +134,7 @@ def note(motion: Motion, cut: bool) -> str:
     """How the input is driven, and whether rates were cut."""
     name = shown_name(motion.input)
     unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
-    note = f"{name} at {motion.speed:g} {unit}/s"
+    note = f"{name} at {motion.speed_written or f'{motion.speed:g} {unit}/s'}"
     if motion.law is not None:
         note = f"{name} driven by a law"
     elif not all(circuit.goes_round for circuit in motion):

@@ -106,7 +106,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
             "finite": motion.mobility.finite,
         },
         "completeness": motion.completeness,
-        "established": how_found(motion),
+        "how_found": how_found(motion),
         "misfits": motion.search.misfits.tolist(),
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),

@@ -166,7 +166,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     facts.extend(_change_points(motion))
     facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
     if motion.completeness != "closed-form":
-        facts.append(("established", how_found(motion)))
+        facts.append(("how found", how_found(motion)))
         facts.append(("mobility", _mobility(motion.mobility)))
     if motion.idle:
         facts.append(("idle freedom", "; ".join(motion.idle) + ", held by convention"))
