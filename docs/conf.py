@@ -43,7 +43,7 @@ nb_execution_timeout = 90
 nb_execution_raise_on_error = True
 nb_merge_streams = True
 
-# kernels would warn that others can listen; with files as sockets each side looks in its own folder
+# kernels would warn that others can listen; files as sockets fail, since each side looks in its own folder
 if hasattr(KernelManager, "transport_encryption"):
     KernelManager.transport_encryption.default_value = "auto"
 
