@@ -171,7 +171,7 @@ def modes_overview(
         usual = max(usual, 5.0)
         figure = new_figure(*page_size(style, figsize, (usual, usual), wide=across > 1))
         word = "mode" if count == 1 else "modes"
-        named = f"{short(linkage.name, 60)}: {count} assembly {word}\nat {shown_name(ends[0])} = {value}"
+        named = f"{short(linkage.heading, 60)}: {count} assembly {word}\nat {shown_name(ends[0])} = {value}"
         top = write_title(figure, title_text(title, named))
         foot = write_legend(figure, keys(one_pose(poses, 0), ends, seen) if legend else [])
         width, height = figure.get_size_inches()

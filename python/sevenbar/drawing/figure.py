@@ -64,7 +64,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 def title_of(motion: Motion) -> str:
     """The linkage's name and motion type."""
-    return f"{short(motion.linkage.name, 60)}: {motion.motion_type}"
+    return f"{short(motion.linkage.heading, 60)}: {motion.motion_type}"
 
 
 def title_text(title: bool | str, usual: str) -> str:

@@ -46,12 +46,12 @@ def film_page(
         allow_nan=False,
         separators=(",", ":"),
     )
-    heading = escape(title or motion.linkage.name).replace("\n", "<br>")
+    heading = escape(title or motion.linkage.heading).replace("\n", "<br>")
     page = files("sevenbar.drawing").joinpath("film.html").read_text(encoding="utf-8")
     # a closing tag within a name would end the script
     found = found.replace("</", "<\\/")
     return (
-        page.replace("@TITLE@", escape(motion.linkage.name))
+        page.replace("@TITLE@", escape(motion.linkage.heading))
         .replace("@HEADING@", heading)
         .replace("@FILM@", found)
     )

@@ -22,6 +22,10 @@ from sevenbar.text.printing import Drawable
 Form = Literal["rssr", "rows", "drawn"]
 
 
+#: What a linkage is called that was made without a name.
+UNNAMED = "linkage"
+
+
 @dataclass(frozen=True)
 class Joint:
     """A joint: the letter of its kind, and its name.
@@ -150,6 +154,14 @@ class Loop(Drawable):
     def kind(self) -> str:
         """The joints' letters in loop order."""
         return "".join(joint.kind for joint in self.joints)
+
+    @property
+    def heading(self) -> str:
+        """What reports and figures call it: its name, or what it is where it was given none."""
+        if self.name != UNNAMED:
+            return self.name
+        letters = self.kind if len(set(self.kind)) > 1 else f"{len(self.kind)}{self.kind[0]}"
+        return f"{letters} linkage"
 
     @cached_property
     def places(self) -> tuple[slice, ...]:

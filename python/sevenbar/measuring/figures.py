@@ -61,9 +61,8 @@ def comparison_figure(comparison: Comparison) -> Figure:
             _points(top, x, shown(ends, quantity, comparison.measured[quantity]), "measured")
             _points(below, x, shown(ends, quantity, comparison.difference(quantity)), "difference")
             _labels(grid[:, column], ends, quantity, ["measured minus\ncomputed"])
-        title = (
-            f"{short(comparison.linkage.name, 60)}\ncircuit {comparison.chosen.circuit} and measured values"
-        )
+        name = short(comparison.linkage.heading, 60)
+        title = f"{name}\ncircuit {comparison.chosen.circuit} and measured values"
         _finish(figure, grid, title)
     return figure
 
@@ -94,7 +93,7 @@ def calibration_figure(calibration: Calibration) -> Figure:
             _labels(
                 grid[:, column], ends, quantity, ["measured minus\nnominal", "measured minus\ncalibrated"]
             )
-        _finish(figure, grid, f"{short(calibration.linkage.name, 60)}\nbefore and after calibration")
+        _finish(figure, grid, f"{short(calibration.linkage.heading, 60)}\nbefore and after calibration")
     return figure
 
 

@@ -36,7 +36,7 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     """The comparison for people: what explains the data, the paper's Table 1, the differences."""
     ends = comparison.ends
     facts = Facts()
-    parts: list[RenderableType] = [Text(comparison.linkage.name, style="bold underline"), facts.grid]
+    parts: list[RenderableType] = [Text(comparison.linkage.heading, style="bold underline"), facts.grid]
     drive = drive_text(ends.input, comparison.speed, ends.unit("input"), ends.output)
     if isinstance(comparison, ExtremesComparison):
         facts.add("measured", f"{comparison.source}, lowest and highest values")
@@ -111,7 +111,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
         facts.add("held", f"{', '.join(opening)}: a change of one alone would open this overconstrained loop")
     for note in calibration.notes:
         facts.add("note", note)
-    title = Text(calibration.linkage.name, style="bold underline")
+    title = Text(calibration.linkage.heading, style="bold underline")
     return Group(title, facts.grid, Text(), _parameter_table(calibration))
 
 

@@ -29,7 +29,6 @@ from sevenbar.reporting.summary import (
     GAP,
     Sheet,
     closure_error,
-    heading,
     joint_text,
     modes_sheets,
     side_lengths,
@@ -319,7 +318,7 @@ def _modes_dict(linkage: Loop, column: int, modes: Modes) -> dict[str, Any]:
 
 def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
     def parts(width: int) -> Iterator[RenderableType]:
-        yield Text(heading(linkage), style="bold underline")
+        yield Text(linkage.heading, style="bold underline")
         count = len(modes)
         value = joint_text(linkage, column, modes.input)
         yield Text(

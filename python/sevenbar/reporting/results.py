@@ -21,7 +21,6 @@ from sevenbar.reporting.summary import (
     closure_error,
     dimensions_text,
     facts_of,
-    heading,
     joints_text,
     speed_text,
     way_round,
@@ -53,7 +52,7 @@ def _(linkage: Linkage) -> str:
     drive = linkage.drive
     speed = speed_text(linkage, drive.joint, drive.speed)
     return lines(
-        f"Linkage '{heading(linkage)}'",
+        f"Linkage '{linkage.heading}'",
         [
             ("loop", joints_text(linkage)),
             ("dimensions", dimensions_text(linkage) or _rows(linkage)),
@@ -99,7 +98,7 @@ def _(motion: Motion) -> str:
             facts.append((label, text))
         if label == "circuits":
             facts += _circuits(motion)
-    return lines(f"Motion of '{heading(motion.linkage)}'", facts)
+    return lines(f"Motion of '{motion.linkage.heading}'", facts)
 
 
 def _circuits(motion: Motion) -> list[tuple[str, str]]:

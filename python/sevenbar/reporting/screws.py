@@ -117,7 +117,7 @@ def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> Rend
             cells = [_range(ranges[name], ROUNDING * size) for name, size in scale.items()]
             words = ", ".join(f"{n} {word}" for word, n in _statuses(axes).items())
             rows.append((f"{link}", f"{circuit.index}", words, *cells))
-    title = Text(linkage.name, style="bold underline")
+    title = Text(linkage.heading, style="bold underline")
     speed = speed_text(linkage, motion.input, motion.speed)
     facts = Text(f"screw axes against {other}, {motion.input} {speed}; --out writes all rows")
     if not motion.circuits:

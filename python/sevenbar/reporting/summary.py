@@ -28,9 +28,6 @@ MOST_DEAD_CENTRES = 8
 #: Limits of the input that are listed.
 MOST_LIMITS = 8
 
-#: What a linkage is called that was made without a name.
-UNNAMED = "linkage"
-
 #: Characters between two columns in print.
 GAP = 2
 
@@ -87,7 +84,7 @@ def summary(motion: Motion, room: int = 100) -> Summary:
         sheets += _compared(motion, room)
     elif motion.circuits:
         sheets += _side_by_side(motion)
-    return Summary(heading(linkage), tuple(facts_of(motion)), tuple(sheets))
+    return Summary(linkage.heading, tuple(facts_of(motion)), tuple(sheets))
 
 
 def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
@@ -174,14 +171,6 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits:
         facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
     return facts
-
-
-def heading(linkage: Loop) -> str:
-    """The name of a linkage, or what it is where a call in Python gave it none."""
-    if linkage.name != UNNAMED:
-        return linkage.name
-    letters = linkage.kind if len(set(linkage.kind)) > 1 else f"{len(linkage.kind)}{linkage.kind[0]}"
-    return f"{letters} linkage"
 
 
 def _limits_text(motion: Motion) -> str:

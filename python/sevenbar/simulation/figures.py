@@ -170,7 +170,7 @@ def _finish(figure: Figure, run: Simulation) -> None:
     unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
     which = f"circuit {run.course.circuit.index}, {shown_name(motion.input, 24)} at {motion.speed:g} {unit}/s"
     figure.suptitle(
-        f"{short(motion.linkage.name, 60)}: Sevenbar and {run.record.engine} {run.record.version}\n"
+        f"{short(motion.linkage.heading, 60)}: Sevenbar and {run.record.engine} {run.record.version}\n"
         f"{which}, step {run.course.step:.3g} s",
         fontsize=11,
     )

@@ -86,7 +86,7 @@ def text(run: Simulation) -> RenderableType:
         "values up to",
     )
     table = number_table(heads, (_cells(found, slide, unit) for found in run.differences))
-    return Group(Text(linkage.name, style="bold underline"), facts.grid, Text(), table)
+    return Group(Text(linkage.heading, style="bold underline"), facts.grid, Text(), table)
 
 
 def _sized(value: float, unit: str) -> str:

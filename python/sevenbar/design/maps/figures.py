@@ -276,7 +276,7 @@ def _title(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: 
             else f", {heights.take} of all circuits"
         )
     box = axes.get_position()
-    name = short(of.linkage.name, 60)
+    name = short(of.linkage.heading, 60)
     figure.text(box.x0, box.y1 + 0.012, f"{name}: {what}", fontsize=13 * scale, va="bottom", ha="left")
 
 

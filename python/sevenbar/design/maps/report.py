@@ -125,7 +125,12 @@ def text(findings: MapFindings) -> RenderableType:
     shares = number_table(
         ["on the map", "share"], [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
     )
-    parts: list[RenderableType] = [Text(of.linkage.name, style="bold underline"), facts.grid, Text(), shares]
+    parts: list[RenderableType] = [
+        Text(of.linkage.heading, style="bold underline"),
+        facts.grid,
+        Text(),
+        shares,
+    ]
     if design.inside:
         rows = [_row(of, step) for step in design.steps]
         parts += [

@@ -61,7 +61,7 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
         _poles_in_the_link(figure, found, poles, name)
         word = "root mean square" if found.measure == "rms" else "greatest"
         figure.suptitle(
-            f"{short(linkage.name, 60)}\n"
+            f"{short(linkage.heading, 60)}\n"
             f"link {found.link}, circuit {cycle.circuit.index}: least {word} {found.of}",
             fontsize=11,
         )
@@ -144,7 +144,7 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
         below.set_ylabel(f"distance [{linkage.length_unit}]")
         below.set_title("(b) distance of the path from it", fontsize=10)
         figure.suptitle(
-            f"{short(linkage.name, 60)}\nlink {found.link}, circuit {cycle.circuit.index}: "
+            f"{short(linkage.heading, 60)}\nlink {found.link}, circuit {cycle.circuit.index}: "
             f"path nearest the curve, rms {found.rms:.4g} {linkage.length_unit}",
             fontsize=11,
         )
@@ -176,7 +176,7 @@ def inertia_figure(found: Inertia) -> Figure:
         _input_axis(force, cycle, across)
         figure.legend(loc="outside lower center", ncols=3, frameon=False)
         figure.suptitle(
-            f"{short(linkage.name, 60)}\ncircuit {cycle.circuit.index}: what masses require of the input",
+            f"{short(linkage.heading, 60)}\ncircuit {cycle.circuit.index}: what masses require of the input",
             fontsize=11,
         )
     return figure

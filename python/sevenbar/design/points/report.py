@@ -133,7 +133,7 @@ def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
 
 
 def _title(cycle: Cycle) -> Text:
-    return Text(cycle.motion.linkage.name, style="bold underline")
+    return Text(cycle.motion.linkage.heading, style="bold underline")
 
 
 def _whose(cycle: Cycle) -> str:

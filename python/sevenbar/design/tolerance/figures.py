@@ -45,7 +45,9 @@ def shares_figure(linear: Linear) -> Figure:
         axes.grid(axis="x", lw=0.6)
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
-        figure.suptitle(f"{short(linear.found.linkage.name, 60)}\nwhich tolerance matters most", fontsize=11)
+        figure.suptitle(
+            f"{short(linear.found.linkage.heading, 60)}\nwhich tolerance matters most", fontsize=11
+        )
     return figure
 
 
@@ -70,7 +72,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
         handles, labels = grid[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
         circuit = f"circuit {linear.found.circuit.index}"
-        title = f"{short(linear.found.linkage.name, 60)}\nwhat the tolerances do, {circuit}"
+        title = f"{short(linear.found.linkage.heading, 60)}\nwhat the tolerances do, {circuit}"
         figure.suptitle(title, fontsize=11)
     return figure
 

@@ -68,7 +68,7 @@ def text(findings: Findings) -> RenderableType:
         facts.add("", exact.verdict, style="bold")
     for note in linear.left_out():
         facts.add("note", note)
-    title = Text(found.linkage.name, style="bold underline")
+    title = Text(found.linkage.heading, style="bold underline")
     parts: list[RenderableType] = [title, facts.grid, Text(), _effects_table(linear)]
     if found.measures:
         parts += [Text(), _measures_table(linear)]

@@ -103,7 +103,7 @@ def text(found: PathDesigns) -> RenderableType:
         cells += [own[f"size_{unit}"], own["motion_type"], own["circuit"]]
         rows.append([str(i), *map(_cell, cells)])
     parts: list[RenderableType] = [
-        Text(f"Path generation: {linkage.name}", style="bold underline"),
+        Text(f"Path generation: {linkage.heading}", style="bold underline"),
         facts.grid,
         Text(),
         number_table(["design", *heads], rows, words=[heads.index("motion type") + 1]),
