@@ -9,7 +9,8 @@ import typer
 
 import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
-from sevenbar.commands.options import Force, InputJoint, Json, OutputJoint, Samples, Source, Speed
+from sevenbar.commands.given import agreed
+from sevenbar.commands.options import Agree, Force, InputJoint, Json, OutputJoint, Samples, Source, Speed
 from sevenbar.errors import RequestError
 
 
@@ -25,6 +26,7 @@ def axodes(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for axodes.csv, with every row, and axodes.json.")
     ] = None,
@@ -45,5 +47,5 @@ def axodes(
         raise RequestError(f"--relative-to: link {against} is one of --link; give another")
     report = axodes_report(links, relative_to)
     check_out(report, out, force=force)
-    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
+    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, agree=agreed(agree))
     deliver(motion, report, out, json=json, force=force)

@@ -162,7 +162,7 @@ def calibrate(
             f"{table}: lowest and highest values are too few to tell dimensions; give the measured rows"
         )
     begin = _start(loaded, ends.input, start)
-    with progress_bar(f"calibrating {loaded.name}") as progress:
+    with progress_bar(f"calibrating {loaded.heading}") as progress:
         found = calibrated(
             loaded,
             measured,

@@ -74,7 +74,7 @@ def map_(
     loaded = sb.load(linkage)
     report = map_report(names, formats, size=size, side=not no_key)
     check_out(report, out, force=force)
-    with progress_bar(f"mapping {loaded.name}") as progress:
+    with progress_bar(f"mapping {loaded.heading}") as progress:
         found = motion_map(
             loaded, ranges, grid=grid, input=input_joint, follow=words(follow or []), progress=progress
         )

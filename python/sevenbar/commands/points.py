@@ -94,7 +94,7 @@ def point(
         check_out(of_curve, out, force=force)
         motion = _motion(loaded, 360, input_joint, speed, law)
         places, inputs = read_curve(curve, motion.linkage, motion.input)
-        with progress_bar(f"searching a point of link {link} of {loaded.name}") as progress:
+        with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
             nearest = nearest_path_point(
                 motion, link, places, sides, inputs=inputs, circuit=circuit, branch=branch, progress=progress
             )
@@ -104,7 +104,7 @@ def point(
     check_out(report, out, force=force)
     motion = _motion(loaded, 360, input_joint, speed, law)
     of, measure = _least(least or "acceleration")
-    with progress_bar(f"searching a point of link {link} of {loaded.name}") as progress:
+    with progress_bar(f"searching a point of link {link} of {loaded.heading}") as progress:
         found = least_point(
             motion, link, sides, of=of, measure=measure, circuit=circuit, branch=branch, progress=progress
         )

@@ -59,7 +59,7 @@ def simulate(
     check_out(report, out, force=force)
     ahead = Ahead("--steps", f"{steps} steps in {engine}", seconds=steps / STEPS[engine])
     confirm(ahead, yes=yes)
-    with progress_bar(f"{engine}: {loaded.name}") as progress:
+    with progress_bar(f"{engine}: {loaded.heading}") as progress:
         if sys.stderr.isatty():
             # a refusal takes it away
             progress(0, 0)

@@ -100,7 +100,7 @@ def tolerance(
         linear = tolerances_for(found, error, distribution=distribution, output=of, quantity=quantity)
     else:
         linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
-    with progress_bar(f"designs within the tolerances of {loaded.name}") as progress:
+    with progress_bar(f"designs within the tolerances of {loaded.heading}") as progress:
         # one bar for both
         worst = worst_case(found, linear, progress=lambda done, total, _: progress(done, total + count))
         tried, exact = worst.tried, None

@@ -11,6 +11,7 @@ from typing import Any
 
 from sevenbar.description.files import loads
 from sevenbar.description.forms import from_description
+from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.geometry import Loop
@@ -183,7 +184,7 @@ def _settle(table: Any, wanted: Mapping[str, Any]) -> None:
     for key in [key for key in table if key not in wanted]:
         del table[key]
     for key, value in wanted.items():
-        if key not in table and _tables(value):
+        if key not in table and is_tables(value):
             rows = tomlkit.aot()
             _settle_list(rows, value)
             table.append(key, rows)
@@ -218,7 +219,3 @@ def _settle_list(rows: Any, wanted: Sequence[Any]) -> None:
             _settle_list(rows[i], value)
         elif rows[i] != value:
             rows[i] = value
-
-
-def _tables(value: object) -> bool:
-    return isinstance(value, list) and bool(value) and all(isinstance(row, Mapping) for row in value)

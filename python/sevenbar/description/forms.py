@@ -120,7 +120,7 @@ def from_dh(
     names: Sequence[str] | None = None,
     name: str = "linkage",
     length_unit: str = "mm",
-    speed: float | str = 1.0,
+    speed: float | str | None = None,
     points: Sequence[Mapping[str, Any]] = (),
     **others: object,
 ) -> Linkage:
@@ -152,8 +152,11 @@ def from_dh(
     _refuse_others(others)
     columns = {"length": length, "twist": twist, "offset": offset, "angle": angle, "pitch": pitch}
     if hasattr(joints, "columns"):
-        if given := [key for key, values in columns.items() if values is not None]:
-            raise RequestError(f"{given[0]}: is given in addition to a data frame; leave one out")
+        beside = {**columns, "names": names, "length_unit": None if length_unit == "mm" else length_unit}
+        if given := [key for key, values in beside.items() if values is not None]:
+            raise RequestError(
+                f"{given[0]}: is given in addition to a data frame, which has it; leave one out"
+            )
         return _of_frame(joints, name=name, speed=speed, points=points)
     numbers = {key: _in_unit(key, values, length_unit) for key, values in columns.items()}
     rows = _rows(joints, numbers, _plain(names))
@@ -162,7 +165,7 @@ def from_dh(
         "name": name,
         "length_unit": length_unit,
         "angle_unit": "rad",
-        "drive": {"speed": _plain(speed)},
+        "drive": {"speed": 1.0 if speed is None else _plain(speed)},
         "link": rows,
         "point": _plain(points),
     }
@@ -170,9 +173,6 @@ def from_dh(
     warn_of_angles(linkage.description)
     return linkage
 
-
-#: The columns of `from_dh`.
-_COLUMNS = ("length", "twist", "offset", "angle", "pitch")
 
 #: What other books call the arguments of `from_dh`.
 _OTHER_NAMES = {
@@ -207,7 +207,9 @@ def _refuse_others(others: Mapping[str, object]) -> None:
         )
 
 
-def _of_frame(frame: Any, *, name: str, speed: float | str, points: Sequence[Mapping[str, Any]]) -> Linkage:
+def _of_frame(
+    frame: Any, *, name: str, speed: float | str | None, points: Sequence[Mapping[str, Any]]
+) -> Linkage:
     """The linkage of a data frame of Denavit-Hartenberg rows."""
     from sevenbar.description.table_reader import described_frame
 
@@ -215,7 +217,8 @@ def _of_frame(frame: Any, *, name: str, speed: float | str, points: Sequence[Map
     if "link" not in found.raw:
         raise RequestError("joints: the table has no Denavit-Hartenberg rows; give it to sevenbar.from_table")
     found.raw |= {"name": name, "point": [*found.raw.get("point", []), *_plain(points)]}
-    found.raw["drive"] = {"speed": _plain(speed), **found.raw.get("drive", {})}
+    given = {} if speed is None else {"speed": _plain(speed)}
+    found.raw["drive"] = {"speed": 1.0, **found.raw.get("drive", {}), **given}
     return found.linkage(from_description, "table")
 
 

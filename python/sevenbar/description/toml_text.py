@@ -23,7 +23,7 @@ def toml_text(raw: Mapping[str, Any], head: Sequence[str] = ()) -> str:
     for key, value in raw.items():
         if isinstance(value, Mapping):
             tables += ["", f"[{key}]", *_pairs(value)]
-        elif _is_tables(value):
+        elif is_tables(value):
             for table in value:
                 tables += ["", f"[[{key}]]", *_pairs(table)]
         elif value != []:
@@ -35,7 +35,8 @@ def _pairs(table: Mapping[str, Any]) -> list[str]:
     return [f"{key} = {_value(value)}" for key, value in table.items()]
 
 
-def _is_tables(value: object) -> bool:
+def is_tables(value: object) -> bool:
+    """Whether a value is an array of tables, as [[joint]] writes one."""
     return isinstance(value, list) and bool(value) and all(isinstance(row, Mapping) for row in value)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
@@ -12,8 +11,8 @@ from pydantic_core import PydanticCustomError
 
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.text.amounts import Kind, value_of
-from sevenbar.text.units import ANGLES, LENGTHS, TURNING_SPEEDS, sliding_speed, turning_speed, unknown_unit
+from sevenbar.text.amounts import Kind, speed_text, value_of
+from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
 LARGEST_DIMENSION = 1e100
@@ -124,11 +123,6 @@ def _text(value: object) -> str:
     return value.strip()
 
 
-#: A formula before a unit of speed: `2*pi*5 rad/s`.
-_SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])
-_FORMULA_OF_SPEED = re.compile(rf"(.+?)\s*({_SPEED_UNITS})")
-
-
 def one_word(end: str) -> Callable[[object], object]:
     """A check that refuses a list where one joint is the input or the output of the linkage."""
 
@@ -151,10 +145,8 @@ def one_word(end: str) -> Callable[[object], object]:
 def _speed(value: object, info: ValidationInfo) -> float:
     slides = (info.context or {}).get("slides")
     try:
-        match = _FORMULA_OF_SPEED.fullmatch(value) if isinstance(value, str) else None
-        if match is not None and any(sign in match[1] for sign in "*/(^"):
-            value = f"{value_of(match[1], 'number')!r} {match[2]}"
-        return sliding_speed(value, slides) if slides else turning_speed(value)
+        plain = speed_text(value)
+        return sliding_speed(plain, slides) if slides else turning_speed(plain)
     except RequestError as error:
         raise refuse(str(error)) from None
 

@@ -21,7 +21,7 @@ DIRECTIONS, DISTANCES = 24, (8.0, 13.0, 19.0, 27.0, 38.0)
 TOGETHER = 9.0
 #: What it counts where a name lies on another, or off the page; on a link; and for each point of distance.
 FORBIDDEN, ON_A_LINE, AWAY = 1e4, 1.0, 0.02
-#: Places along a line at which it is seen_as for under a name.
+#: Places along a line at which it is looked for under a name.
 ALONG = np.linspace(0.0, 1.0, 24)
 
 

@@ -28,6 +28,9 @@ Words = npt.NDArray[np.str_]
 #: balls' turns, which a row with the pose but no rates may lack, too.
 STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
 
+#: An output that moves less than this beside the input [rad, or relative to the size] rests, up to rounding.
+AT_REST = 1e-12
+
 #: The status of a row of a trace on the coupler where the spin's rule names no direction.
 SPIN_UNDEFINED = "spin-undefined"
 
@@ -287,8 +290,13 @@ class Circuit(Printed):
 
         Source: docs/theory_measures.md, (11).
         """
+        rates = self.dq[:, [self.input_column, self.output_column]]
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = self.dq[:, self.input_column] / self.dq[:, self.output_column]
+            ratio = rates[:, 0] / rates[:, 1]
+        driving, driven = np.abs(
+            rates / [1.0 if turns else self.size for turns in (self.input_turns, self.output_turns)]
+        ).T
+        ratio[driven <= AT_REST * driving] = np.inf
         ratio[self.status == "dead-centre"] = 0.0
         return np.asarray(ratio)
 
@@ -320,12 +328,12 @@ class Circuit(Printed):
 
     @property
     def input(self) -> Floats:
-        """The input angle [rad], (n,)."""
+        """The input [rad, or length], (n,)."""
         return self.q[:, self.input_column]
 
     @property
     def output(self) -> Floats:
-        """The output angle [rad], (n,)."""
+        """The output [rad, or length], (n,)."""
         return self.q[:, self.output_column]
 
     @property

@@ -86,8 +86,11 @@ class Linkage(Solvable):
     def _speed(self, speed: object, column: int) -> float:
         if speed is None:
             return self.speed_of(column)
-        plain = float(speed) if isinstance(speed, np.number) else speed
+        # a number needs no reader of formulas
+        from sevenbar.text.amounts import speed_text
+
         try:
+            plain = float(speed) if isinstance(speed, np.number) else speed_text(speed)
             if self.column_kinds[column] == "slide":
                 return sliding_speed(plain, self.length_unit)
             return turning_speed(plain)

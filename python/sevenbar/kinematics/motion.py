@@ -284,7 +284,7 @@ class Motion(Drawable):
     speed: float
     samples: int
     motion_type: str
-    #: Input dead centres [rad] in [0, 2 pi), rising.
+    #: Input dead centres [rad in [0, 2 pi), or length], rising.
     limits: Floats
     #: Poses at which branches meet, or would by a change of some 1e-12 of a dimension; isolated poses too.
     change_points: tuple[ChangePoint, ...]
@@ -453,7 +453,7 @@ def chosen_circuit(motion: Motion, index: int) -> Circuit:
     if count == 0:
         closing = "at no input" if motion.motion_type == "cannot-assemble" else "along no circuit"
         raise RequestError(
-            f"motion: {motion.motion_type}, the loop closes {closing}, so there is nothing to draw"
+            f"motion: {motion.motion_type}, the loop closes {closing}; 'sevenbar analyze' says why"
         )
     if isinstance(index, bool) or not isinstance(index, (int, np.integer)) or not 0 <= index < count:
         allowed = "0" if count == 1 else f"0 to {count - 1}"

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console, Group, RenderableType
+from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -17,7 +17,7 @@ from sevenbar.measuring.compare import Comparison, alike, name_of, per_cent
 from sevenbar.measuring.extremes import Extent, ExtremesComparison
 from sevenbar.measuring.measured import Ends
 from sevenbar.measuring.passes import PassFit
-from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, json_text, text_file
+from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.folder import write_columns, write_csv
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of
@@ -289,49 +289,6 @@ def _calibrated_rows(calibration: Calibration) -> dict[str, Any]:
         "calibrated": calibration.computed,
     }
     return _rows(calibration.ends, calibration.line, calibration.input, sides)
-
-
-def print_comparison(comparison: Comparison | ExtremesComparison, console: Console | None = None) -> None:
-    """Prints the comparison for people."""
-    (console or Console()).print(comparison_text(comparison))
-
-
-def print_calibration(calibration: Calibration, console: Console | None = None) -> None:
-    """Prints the calibration for people."""
-    (console or Console()).print(calibration_text(calibration))
-
-
-def comparison_json(comparison: Comparison | ExtremesComparison) -> str:
-    """The comparison as one JSON object; angles in radians."""
-    return json_text(comparison_dict(comparison))
-
-
-def calibration_json(calibration: Calibration) -> str:
-    """The calibration as one JSON object; angles in radians, null where there is no interval."""
-    return json_text(calibration_dict(calibration))
-
-
-def write_comparison(
-    comparison: Comparison | ExtremesComparison,
-    folder: Path,
-    figures: Sequence[str] = ("png",),
-    *,
-    force: bool = False,
-) -> list[Path]:
-    """Writes comparison.json, table.csv and, of measured rows, rows.csv and the figure: all or none."""
-    return comparison_report(figures).write(comparison, folder, force=force)
-
-
-def write_calibration(
-    calibration: Calibration,
-    toml: str,
-    folder: Path,
-    figures: Sequence[str] = ("png",),
-    *,
-    force: bool = False,
-) -> list[Path]:
-    """Writes calibrated.toml, calibration.json, parameters.csv, rows.csv and the figure: all or none."""
-    return calibration_report(lambda _: toml, figures).write(calibration, folder, force=force)
 
 
 def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:

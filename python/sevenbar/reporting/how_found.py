@@ -71,6 +71,8 @@ def _counted(search: Search) -> str:
     told = []
     for each in count.open[:MOST_RANGES_TOLD]:
         what = "some" if each.missing is None else f"{each.missing}"
+        if each.missing is not None and each.missing < 0:
+            what = f"{-each.missing} too many"
         start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
         if wide < NARROW_RANGE_DEG:
             told.append(f"{what} within {wide / 2:.1g} deg of {(start + wide / 2) % 360:.6g} deg")
@@ -84,7 +86,7 @@ def left_open(misfits: Floats, agree: float) -> str:
     """How many poses redundant constraints alone keep open, and by how much; of one or more, rising."""
     count = len(misfits)
     return (
-        f"{count} more pose{'s close' if count > 1 else ' closes'} but for redundant constraints, which miss "
-        f"by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad, or parts of the size) and are taken to agree up to "
-        f"{agree:.0e}"
+        f"{count} more pose{'s close' if count > 1 else ' closes'} except for redundant constraints, which "
+        f"miss by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad, or relative to the linkage size) and are taken "
+        f"to agree up to {agree:.0e}"
     )

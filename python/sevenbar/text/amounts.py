@@ -28,7 +28,7 @@ from sevenbar.text.expression import (
     sind,
     tand,
 )
-from sevenbar.text.units import ANGLES, length_sizes
+from sevenbar.text.units import ANGLES, LENGTHS, TURNING_SPEEDS, length_sizes
 
 #: The functions of an angle by what they are in degrees, and those that give one.
 OF_ANGLES = {"sin": sind, "cos": cosd, "tan": tand}
@@ -199,3 +199,19 @@ def _fitting(found: Any, kind: Kind, own: float) -> float:
     # 60, not 59.99999999999999, of pi/3
     short = float(f"{amount.number:.13g}")
     return short if amount.turns and abs(short - amount.number) <= 2e-15 * abs(short) else amount.number
+
+
+_SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])
+_FORMULA_OF_SPEED = re.compile(rf"(.+?)\s*({_SPEED_UNITS})")
+
+
+def speed_text(value: Any) -> Any:
+    """A speed whose number is a formula, with the number; any other value as it is.
+
+    >>> speed_text("2*3 rad/s"), speed_text("60 rpm"), speed_text(5)
+    ('6.0 rad/s', '60 rpm', 5)
+    """
+    match = _FORMULA_OF_SPEED.fullmatch(value) if isinstance(value, str) else None
+    if match is None or not any(sign in match[1] for sign in "*/(^"):
+        return value
+    return f"{value_of(match[1], 'number')!r} {match[2]}"

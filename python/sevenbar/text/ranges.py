@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.units import split_quantity
+from sevenbar.text.units import ANGLES, LENGTHS, split_quantity
 
 #: Three numbers: a place, a direction.
 Place = tuple[float, float, float]
@@ -72,7 +72,7 @@ def with_common_unit(low: str, high: str) -> tuple[str, str]:
     (('0deg', '90 deg'), ('5cm', '1m'), ('1', '2'))
     """
     first, second = split_quantity(low), split_quantity(high)
-    if first and second and second[1] and not first[1]:
+    if first and second and second[1] in (*ANGLES, *LENGTHS) and not first[1]:
         return f"{low}{second[1]}", high
     return low, high
 

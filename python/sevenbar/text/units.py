@@ -135,7 +135,7 @@ def _speed(value: object, sizes: Mapping[str, float], motion: str, example: str)
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         raise RequestError(f"{shown(value)} is not a speed; {hint}")
     if isinstance(value, str):
-        match = _QUANTITY.fullmatch(value)
+        match = _QUANTITY.fullmatch(value.replace("\u00b0", "deg"))
         if match is None:
             raise RequestError(f"{shown(value)} is not a speed; {hint}")
         number, unit = match.groups()
