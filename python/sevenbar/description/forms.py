@@ -152,8 +152,8 @@ def from_dh(
     _refuse_others(others)
     columns = {"length": length, "twist": twist, "offset": offset, "angle": angle, "pitch": pitch}
     if hasattr(joints, "columns"):
-        beside = {**columns, "names": names, "length_unit": None if length_unit == "mm" else length_unit}
-        if given := [key for key, values in beside.items() if values is not None]:
+        also_given = {**columns, "names": names, "length_unit": None if length_unit == "mm" else length_unit}
+        if given := [key for key, values in also_given.items() if values is not None]:
             raise RequestError(
                 f"{given[0]}: is given in addition to a data frame, which has it; leave one out"
             )
