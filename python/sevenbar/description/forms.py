@@ -154,9 +154,7 @@ def from_dh(
     if hasattr(joints, "columns"):
         also_given = {**columns, "names": names, "length_unit": None if length_unit == "mm" else length_unit}
         if given := [key for key, values in also_given.items() if values is not None]:
-            raise RequestError(
-                f"{given[0]}: is given in addition to a data frame, which has it; leave one out"
-            )
+            raise RequestError(f"{given[0]}: is given in addition to a data frame; leave one out")
         return _of_frame(joints, name=name, speed=speed, points=points)
     numbers = {key: _in_unit(key, values, length_unit) for key, values in columns.items()}
     rows = _rows(joints, numbers, _plain(names))

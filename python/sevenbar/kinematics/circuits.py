@@ -28,7 +28,7 @@ Words = npt.NDArray[np.str_]
 #: balls' turns, which a row with the pose but no rates may lack, too.
 STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
 
-#: An output that moves less than this compared with the input [rad, or relative to the size] rests, up to rounding.
+#: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
 
 #: The status of a row of a trace on the coupler where the spin's rule names no direction.

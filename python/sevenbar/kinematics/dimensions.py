@@ -100,7 +100,7 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
     for key in ("M", "N", "L1", "L2", "L3", "D") if linkage.form == "rssr" else ():
         given = description["rssr"].get(key)
         value = linkage.dimensions[key] if given is None else float(given)
-        # L2 left out is that of the pose; it follows where that is asked for
+        # L2 left out is that of the pose; it follows on request
         follows = given is None and key == "L2"
         place = ("rssr", key)
         positive = key[0] == "L"
