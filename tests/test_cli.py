@@ -342,7 +342,7 @@ def test_the_modes_are_drawn(tmp_path):
 def test_each_kind_of_figure_is_written(tmp_path):
     run = sevenbar("plot", "rssp", "--samples", 24, "--out", tmp_path)
     assert run.returncode == 0, run.stderr
-    kinds = {"motion.png", "joints.png", "modes.png", "configuration.png", "path_B.png"}
+    kinds = {"motion.png", "joints.png", "modes.png", "configuration.png", "path_B.png", "transmission.png"}
     assert {p.name for p in tmp_path.iterdir()} == kinds
     more = ("--kind", "point", "--link", 2, "--at", "50,0,1", "--circuit", 1, "--figures", "svg")
     assert sevenbar("plot", "rssp", "--samples", 24, *more, "--out", tmp_path).returncode == 0

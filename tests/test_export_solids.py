@@ -195,6 +195,8 @@ MEET = {
     "bricard_plane": {("link_2", "link_5"), ("link_1", "link_2")},
     "myard_5r": {("link_2", "link_3"), ("link_2", "link_4"), ("link_3", "link_4")},
     "rssp": {("link_1", "link_2")},
+    # a quarter of a per cent, where the rod passes the sleeve
+    "six_bar": {("link_5", "shaft_cylinder")},
 }
 
 

@@ -36,6 +36,9 @@ def test_the_gradient_of_every_measure_is_that_of_differences(linkage):
     smooth = [m for m in MEASURES.values() if m.per == "circuit" and m.quantity not in ("word", "count")]
     values = rows_of(motion, smooth)[0]
     told = measures_named([m.name for m in smooth if values[m.name] is not None])
+    # of the transmission angle the closed form of the RSSR has derivatives
+    no_slopes = set() if linkage.kind == "RSSR" else {"transmission_lowest", "transmission_highest"}
+    told = [m for m in told if m.name not in no_slopes]
     assert {m.name for m in told} <= set(found)
     assert {"jerk_lowest", "jerk_highest", "swing", "time_ratio"} <= set(found)
     sensitivity = motion.circuits[0].sensitivity()

@@ -72,7 +72,10 @@ def test_a_comparison_is_printed_written_and_told_as_json(tmp_path):
 def test_a_calibration_is_printed_written_and_told_as_json(tmp_path):
     options = ("--offset", "input", "--offset", "output", "--hold", "D")
     run = sevenbar("calibrate", "rssr", BENCH, *options, "--out", tmp_path)
-    assert (run.returncode, run.stderr) == (0, "calibrating RSSR of Sun and Zhou ..\n")
+    assert (run.returncode, run.stderr) == (
+        0,
+        f"calibrating RSSR of Sun and Zhou ..\nwriting {tmp_path} ..\n",
+    )
     assert "M, held at 700 mm: changes of L2, L3 would hide a change of it" in run.stdout
     names = {"calibrated.toml", "calibration.json", "parameters.csv", "rows.csv", "calibration.png"}
     assert set(files(tmp_path)) == names

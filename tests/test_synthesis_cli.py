@@ -53,7 +53,10 @@ def test_a_swing_is_printed_and_written(tmp_path):
     run = sevenbar(
         "design", "swing", "--swing", "60deg", "--time-ratio", "1.2", "--designs", "1", "--out", out
     )
-    assert (run.returncode, run.stderr) == (0, "searching crank-rockers with a swing of 60deg ..\n")
+    assert (run.returncode, run.stderr) == (
+        0,
+        f"searching crank-rockers with a swing of 60deg ..\nwriting {out} ..\n",
+    )
     assert {path.name for path in out.iterdir()} == {
         "design_1.toml",
         "design_1.png",

@@ -65,5 +65,5 @@ def widen(axis: Any, natural: float) -> None:
     low, high = axis.get_data_interval()
     if np.isfinite([low, high]).all() and abs(high - low) <= FLAT * natural:
         middle = (low + high) / 2
-        half = 0.1 * max(abs(middle), natural)
+        half = 0.1 * max(abs(middle), natural) or 1.0
         axis.axes.set(**{f"{axis.axis_name}lim": (middle - half, middle + half)})
