@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import warnings
 from collections import Counter
 from functools import cache
 
@@ -14,7 +13,7 @@ from evidence.fuzz.checks import hold, judged
 from evidence.fuzz.messages import family, look_at
 from evidence.fuzz.mutations import mutated, seeds
 from sevenbar.description.files import decoded
-from sevenbar.errors import AngleUnitWarning, SevenbarError
+from sevenbar.errors import SevenbarError
 
 #: Of the files that load, one in so many has its mobility counted, and one in so many is analysed whole.
 COUNTED, ANALYSED = 200, 2000
@@ -33,10 +32,7 @@ def drawn(seed: int, index: int) -> bytes | str:
 def judge(content: bytes | str, index: int, seen: Counter[str]) -> None:
     """Loads a file; counts in `seen` what it came to. Raises `Broken`, or what the loader raises wrongly."""
     try:
-        with warnings.catch_warnings():
-            # a twist of many turns is a number, and the doubt is right
-            warnings.simplefilter("ignore", AngleUnitWarning)
-            linkage = sb.loads(content if isinstance(content, str) else decoded(content, SOURCE), SOURCE)
+        linkage = sb.loads(content if isinstance(content, str) else decoded(content, SOURCE), SOURCE)
     except SevenbarError as error:
         look_at(error, SOURCE)
         seen[f"refused {family(error, SOURCE)}"] += 1

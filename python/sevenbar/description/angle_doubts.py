@@ -11,8 +11,9 @@ from sevenbar.description.written import entries
 from sevenbar.errors import AngleUnitWarning
 from sevenbar.text.units import ANGLES
 
-#: Twists [deg] of a file that all lie below this are more likely radians: pi is 3.14.
-SMALL_DEG = 3.2
+#: The greatest twist [deg] of a file is more likely in radians between these: pi is 3.14, and links whose
+#: axes all lean by less than 0.1 rad are rare.
+LEAST_DEG, MOST_DEG = 0.1, 3.2
 
 
 def angle_doubt(description: Mapping[str, Any]) -> str:
@@ -30,7 +31,7 @@ def angle_doubt(description: Mapping[str, Any]) -> str:
             return f"{doubt}; is it in degrees?" if unit == "rad" else doubt
     turned = [abs(twist) for twist in twists.values() if twist]
     # one alone may be an error of a parallel axis
-    if unit == "deg" and len(turned) > 1 and max(turned) < SMALL_DEG:
+    if unit == "deg" and len(turned) > 1 and LEAST_DEG <= max(turned) < MOST_DEG:
         return f"all twists are at most {max(turned):.6g} deg; are they in radians?"
     return ""
 
