@@ -283,6 +283,7 @@ def test_batches_that_contradict_the_motion_are_found() -> None:
             batches.loop_crossed(linkage, dataclasses.replace(motions, **changes), 0)
 
 
+@pytest.mark.filterwarnings("ignore::sevenbar.errors.AngleUnitWarning")
 def test_mutations_reach_every_stage_of_the_loader() -> None:
     seen: Counter[str] = Counter()
     for index in range(1, 1500):
