@@ -40,12 +40,12 @@ class Joint:
     angle: float = 0.0
     backwards: bool = False
 
-    @property
+    @cached_property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
         return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
 
-    @property
+    @cached_property
     def columns(self) -> tuple[str, ...]:
         """One name for each of its freedoms, in loop order."""
         return self.row.columns(self.name)

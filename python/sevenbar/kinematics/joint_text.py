@@ -52,6 +52,8 @@ def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> 
 
 def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
     """Values of a joint (n,) [rad, or length] that a caller gives: numbers, or texts; finite or not."""
+    if not isinstance(values, (str, list, tuple)):
+        return real_array(key, values)
     return real_array(key, _read(key, values, [_unit(linkage, column)] * len_of(values)))
 
 
