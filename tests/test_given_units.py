@@ -151,3 +151,9 @@ def test_a_planar_five_bar_is_to_be_locked_and_nothing_else():
         in page
     )
     assert "drive" not in page.partition("one input does not")[2].partition("\n")[0]
+
+
+def test_a_speed_is_read_alike_in_files_and_in_calls():
+    rssr = sb.load("rssr")
+    assert rssr.motion(12, speed="2*3 rad/s").speed == 6.0
+    assert rssr.motion(12, speed="90\u00b0/s").speed == math.pi / 2

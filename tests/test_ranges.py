@@ -84,3 +84,7 @@ def test_a_name_given_twice_is_refused() -> None:
 
 def test_sides_of_a_box_are_ranges_or_numbers() -> None:
     assert parsed_box("-200:200,0..5cm,7", "mm") == [(-200, 200), (0, 50), (7, 7)]
+
+
+def test_a_formula_at_the_end_of_a_range_is_no_unit() -> None:
+    assert split_range("100:2*200") == ("100", "2*200")

@@ -408,3 +408,11 @@ def test_measured_values_laws_and_curves_are_read_from_workbooks(tmp_path):
     book = saved(tmp_path / "empty.xlsx", [])
     with pytest.raises(TableError, match="is empty; give a workbook with a table"):
         sb.load_law(book, sb.load("rssr"))
+
+
+def test_what_a_frame_has_is_not_given_beside_it_and_a_speed_that_is_given_counts():
+    frame = pd.DataFrame(ROWS, columns=DH)
+    for more in ({"names": ["a", "b", "c", "d"]}, {"length_unit": "cm"}):
+        with pytest.raises(RequestError, match="is given in addition to a data frame; leave one out"):
+            sb.from_dh(frame, **more)
+    assert sb.from_dh(frame, speed="60 rpm").drive.speed == pytest.approx(math.tau, rel=1e-15)

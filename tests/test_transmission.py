@@ -339,3 +339,11 @@ def test_by_statics_the_torque_follows_from_the_force_of_the_coupler():
         np.abs(circuit.mechanical_advantage - ratio), np.abs(circuit.mechanical_advantage + ratio)
     )
     assert (apart / np.abs(ratio)).max() < 1e-10
+
+
+def test_an_output_at_rest_gives_no_number_of_rounding():
+    # the crossed position of a square, in which the output does not turn
+    resting = sb.four_bar(50, 50, 50, 50).motion(36).circuits[0]
+    moving = np.isfinite(resting.mechanical_advantage)
+    assert np.isinf(resting.mechanical_advantage).any()
+    assert np.abs(resting.mechanical_advantage[moving]).max(initial=0.0) < 1e9
