@@ -350,7 +350,7 @@ def test_without_a_circuit_there_is_nothing_to_draw(tmp_path: Path) -> None:
     motion = sb.rssr(M=700, N=700, L1=10, L3=10, D=0, L2=10).motion()
     for draw in (plot.configuration, plot.curves, lambda m: animate(m, tmp_path / "a.gif")):
         with pytest.raises(
-            RequestError, match="cannot-assemble, the loop closes at no input, so there is nothing"
+            RequestError, match="cannot-assemble, the loop closes at no input; 'sevenbar analyze' says why"
         ):
             draw(motion)
     assert not list(tmp_path.iterdir())
