@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
+from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z
 from sevenbar.kinematics.rigid import about, inverse, pose
 from sevenbar.text.printing import Drawable
@@ -136,6 +137,7 @@ class Loop(Drawable):
     dimensions: Mapping[str, float] = field(default_factory=dict)
     form: Form = "drawn"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    loading: Loading = field(default=Loading(), repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):

@@ -28,8 +28,8 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits import Circuit, Sensitivity
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import about, cross
-from sevenbar.kinematics.word import Carried, Place, Values, holding_axis, points_of, vector, word_of
+from sevenbar.kinematics.rigid import about, adjoint, cross
+from sevenbar.kinematics.word import Carried, Place, Product, Values, holding_axis, points_of, vector, word_of
 
 #: Part of what one of a number moves [rad, or parts of the size, for a radian or the size of it] that no
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
@@ -181,7 +181,7 @@ class NumberedLoop:
         self.numbers, self.input, self.p = numbers, input, p
         word, values = numbers.word, numbers.values(p)
         self.only = range(len(p)) if only is None else only
-        own = {numbers.dimensions[k].place: i for i, k in enumerate(self.only)}
+        own = self._places = {numbers.dimensions[k].place: i for i, k in enumerate(self.only)}
         scale = np.array([1.0, 1.0, 1.0, numbers.size, numbers.size, numbers.size])
         factors = [numbers.dimensions[k].scale for k in self.only]
         moves, twists = [], []
@@ -194,12 +194,13 @@ class NumberedLoop:
             for joint, key in enumerate(step.pitch for step in word.steps)
             if key in own
         ]
-        points = [self._point(point, values, own) for point in numbers.points]
+        points = [self.carried(point) for point in numbers.points]
         if marks is not None:
             count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
             points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
         self._own = fixed, advances = self._design(values)
-        self._core = _core.Numbers(
+        #: What the core knows of it.
+        self.core = _core.Numbers(
             "".join(step.letter for step in word.steps),
             advances,
             fixed,
@@ -221,11 +222,10 @@ class NumberedLoop:
         pitches = [0.0 if step.pitch is None else values.get(step.pitch, 0.0) for step in word.steps]
         return fixed, np.array(pitches) / math.tau / size
 
-    def _point(
-        self, point: Carried, values: Values, own: Mapping[Place, int]
-    ) -> tuple[int, Floats, list[tuple[int, Floats]]]:
+    def carried(self, point: Carried) -> tuple[int, Floats, list[tuple[int, Floats]]]:
         """A point as the core takes it: the steps before it, its place there, what moves it."""
         frame, place = point.frame, point.place
+        values, own = self.numbers.values(self.p), self._places
         size, dimensions = self.numbers.size, self.numbers.dimensions
         matrix = frame.pose(values)
         at = np.array(point.at) if place is None else vector(values, place)
@@ -239,6 +239,16 @@ class NumberedLoop:
         scales = {i: dimensions[k].scale for i, k in enumerate(self.only)}
         ready = [(i, scales[i] * way / size) for i, way in sorted(ways.items())]
         return point.steps, (matrix[:3, :3] @ at + matrix[:3, 3]) / size, ready
+
+    def twists_of(self, frame: Product) -> list[tuple[int, Floats]]:
+        """By number, the twist (6,) of a link's frame against the steps before it, as the core takes it."""
+        values, dimensions = self.numbers.values(self.p), self.numbers.dimensions
+        matrix = adjoint(frame.pose(values))
+        scale = np.repeat([1.0, self.numbers.size], 3)
+        return [
+            (self._places[key], dimensions[self.only[self._places[key]]].scale * (matrix @ twist) / scale)
+            for key, twist in frame.moves(values, self._places).items()
+        ]
 
     def followed(
         self, x: npt.ArrayLike, q: Floats, designs: Floats | None = None, steps: Floats | None = None
@@ -257,7 +267,7 @@ class NumberedLoop:
         scaled = None if steps is None else np.ascontiguousarray(steps / scales)
         start = np.ascontiguousarray(q / scales)
         start[:, self.numbers.held] = 0.0
-        found, sides = self._core.follow(start, inputs, fixed, advances, scaled)
+        found, sides = self.core.follow(start, inputs, fixed, advances, scaled)
         return found * scales, sides
 
     def opening(self, circuit: Circuit) -> npt.NDArray[np.bool_]:
@@ -297,7 +307,7 @@ class NumberedLoop:
         """Rates and derivatives up to an order (0 to 3) at closed poses q (n, columns)."""
         numbers, own = self.numbers, self.numbers.scales[self.input]
         scales, size = numbers.scales, numbers.size
-        rates, by, points, points_by, aside, idle, points_idle = self._core.slopes(
+        rates, by, points, points_by, aside, idle, points_idle = self.core.slopes(
             np.ascontiguousarray(q / scales), order
         )
         by_time = own ** -np.arange(4.0)

@@ -1,0 +1,295 @@
+"""The forces of a circuit by the transpose of its rates: what acts on the links goes to the core, torque and reactions come back.
+
+    A^T W = Q - c                                                                                         (4)
+
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths in parts of the size, so forces in kg size/s^2;
+here they become newtons.
+
+Source: docs/theory_forces.md, (1) to (6).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+import sevenbar._core as _core
+from sevenbar.arrays import Floats
+from sevenbar.errors import RequestError, no_joint, shown
+from sevenbar.forces.bodies import Body
+from sevenbar.forces.loading import Load, Loading, Spring, Three
+from sevenbar.forces.result import OPEN, Forces, Reaction
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.link_bodies import resolved
+from sevenbar.kinematics.motion import Solvable
+from sevenbar.kinematics.rigid import half_turn, inverse
+from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.word import Carried
+from sevenbar.text.units import LENGTHS
+
+#: A body within this part of its size, or inertia, of a line is one that is symmetric about the line.
+SYMMETRIC = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ForceSolver:
+    """A loop with what acts on it, ready for rows of any circuit of it that this column drives."""
+
+    linkage: Solvable
+    loading: Loading
+    input: int
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """The loop by its numbers."""
+        return Numbers(self.linkage)
+
+    @cached_property
+    def loop(self) -> NumberedLoop:
+        """The loop that this input drives."""
+        return self.numbers.loop(self.input, only=())
+
+    @cached_property
+    def size(self) -> float:
+        """The length in which the core counts [m]."""
+        return self.numbers.size * LENGTHS[self.linkage.length_unit]
+
+    @cached_property
+    def bodies(self) -> dict[int, Body]:
+        """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
+        found = resolved(self.linkage, self.loading.bodies)
+        return {link: self._unspun(link, body) for link, body in found.items()}
+
+    def _unspun(self, link: int, body: Body) -> Body:
+        """A body symmetric about the line of the balls between which it spins, without inertia about it.
+
+        Balls without friction never begin to turn it about that line, so it moves as if it had none.
+        """
+        count = len(self.linkage.joints)
+        kinds = [joint.row.is_ball for joint in self.linkage.joints]
+        if link not in self.linkage.idle_links or link == count or not (kinds[link - 1] and kinds[link]):
+            return body
+        ends = [self._ball(joint, link) for joint in (link - 1, link)]
+        along = ends[1] - ends[0]
+        length = float(np.linalg.norm(along))
+        if not length:
+            return body
+        z = along / length
+        arm = np.asarray(body.centre) - ends[0]
+        tensor = body.tensor
+        axial = float(z @ tensor @ z)
+        across = (float(np.trace(tensor)) - axial) / 2
+        round_it = across * (np.eye(3) - np.outer(z, z)) + axial * np.outer(z, z)
+        rest = np.abs(tensor - round_it).max() > SYMMETRIC * max(axial, across)
+        if np.linalg.norm(arm - (arm @ z) * z) > SYMMETRIC * length or rest:
+            return body
+        return Body(body.mass, body.centre, across * (np.eye(3) - np.outer(z, z)))
+
+    def _ball(self, joint: int, link: int) -> Floats:
+        """The place of a ball as points of a link beside it are written."""
+        word, values = self.numbers.word, self.numbers.values(self.numbers.nominal)
+        frame = word.frames[link - 1].pose(values)
+        if joint == link:
+            # before the next joint: over the whole link
+            frame = inverse(word.links[link - 1].pose(values)) @ frame
+        return np.asarray(inverse(frame)[:3, 3])
+
+    def _carried(self, link: int, at: Three) -> Carried:
+        count = len(self.linkage.joints)
+        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
+            raise RequestError(
+                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
+            )
+        steps, frame = self.numbers.word.carrier(int(link))
+        return Carried(steps, frame, at=at)
+
+    def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
+        return self.loop.carried(self._carried(link, at))
+
+    def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
+        assert body.centre is not None
+        carried = self._carried(link, body.centre)
+        values = self.numbers.values(self.loop.p)
+        frame = carried.frame.pose(values)
+        centre = (frame[:3, :3] @ np.asarray(body.centre) + frame[:3, 3]) / self.numbers.size
+        tensor = frame[:3, :3] @ body.tensor @ frame[:3, :3].T / self.size**2
+        return carried.steps, body.mass, centre, tensor, self.loop.twists_of(carried.frame)
+
+    def _load(self, load: Load) -> tuple[tuple[int, Floats, list[tuple[int, Floats]]], Floats, Floats, bool]:
+        assert load.at is not None
+        force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
+        turns = load.axes == "link"
+        if turns:
+            axes = self._carried(load.link, load.at).frame.pose(self.numbers.values(self.loop.p))[:3, :3]
+            force, torque = axes @ force, axes @ torque
+        return self._place(load.link, load.at), force, torque, turns
+
+    def _joint_spring(self, spring: Spring) -> tuple[int, Floats]:
+        assert spring.joint is not None
+        linkage = self.linkage
+        if spring.joint not in linkage.drivable() and spring.joint not in [j.name for j in linkage.joints]:
+            raise RequestError(f"joint: {no_joint(spring.joint, linkage.drivable())}")
+        column = linkage.column(spring.joint, "joint")
+        if linkage.column_kinds[column] == "slide":
+            factors = np.array([1.0, 1 / self.numbers.size, 1.0]) / LENGTHS[linkage.length_unit]
+            factors[1] = 1 / self.numbers.size
+        else:
+            factors = np.array([1 / self.size**2, 1.0, 1 / self.size**2])
+        return column, factors * [spring.stiffness, spring.length, spring.damping]
+
+    @cached_property
+    def acting(self) -> _core.Acting:
+        """What acts, as the core takes it."""
+        metre = LENGTHS[self.linkage.length_unit]
+        springs = []
+        for spring in self.loading.springs:
+            if spring.links is None:
+                continue
+            assert spring.at is not None
+            ends = [self._place(link, at) for link, at in zip(spring.links, spring.at, strict=True)]
+            numbers = [spring.stiffness / metre, spring.length / self.numbers.size, spring.damping / metre]
+            springs.append((ends[0], ends[1], np.array(numbers)))
+        return _core.Acting(
+            np.array(self.loading.gravity) / self.size,
+            [self._body(link, body) for link, body in self.bodies.items()],
+            [self._load(load) for load in self.loading.loads],
+            springs,
+            [self._joint_spring(spring) for spring in self.loading.springs if spring.links is None],
+        )
+
+    @cached_property
+    def seats(self) -> tuple[list[int], Floats]:
+        """Where each joint's reaction is counted: before which step of the word, and its frame there."""
+        word, values = self.numbers.word, self.numbers.values(self.loop.p)
+        linkage = self.linkage
+        steps, frames = [], []
+        step = 0
+        for i, (joint, inside) in enumerate(zip(linkage.joints, word.inner, strict=True)):
+            frame = inverse(inside[0].pose(values)) if inside else np.eye(4)
+            if linkage.form == "drawn" and i + 1 == len(linkage.joints):
+                # its axes are those that are written
+                frame = frame @ half_turn(joint.row.half_turn)
+            frame[:3, 3] /= self.numbers.size
+            frames.append(frame)
+            steps.append(step)
+            step += len(word.freedoms[i])
+        return steps, np.array(frames)
+
+    def solved(
+        self, inputs: Floats, poses: Floats, speeds: Floats, *, by_numbers: bool = False
+    ) -> list[Floats]:
+        """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2)."""
+        scales = self.numbers.scales
+        turns = self.linkage.column_kinds[self.input] == "turn"
+        factors = [load.factors(inputs, turns=turns) for load in self.loading.loads]
+        steps, frames = self.seats
+        return _core.reactions(
+            self.loop.core,
+            self.acting,
+            np.ascontiguousarray(poses / scales),
+            np.ascontiguousarray(speeds / scales[self.input]),
+            np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
+            steps,
+            frames,
+            by_numbers,
+        )
+
+
+def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
+    """The forces on the rows of a circuit; see `Circuit.forces`."""
+    if loading.is_empty:
+        raise RequestError(
+            "forces: nothing has a mass and nothing acts; give bodies, loads or springs, or write [[body]]"
+        )
+    solver = ForceSolver(linkage, loading, circuit.input_column)
+    poses = solver.numbers.poses(circuit.q)
+    closed = solver.loop.closed(circuit.input, poses)
+    speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
+    closed[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
+    torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, closed, speeds)
+    size, metre = solver.size, LENGTHS[linkage.length_unit]
+    slides = linkage.column_kinds[circuit.input_column] == "slide"
+    torque = torque * (size if slides else size**2)
+    speed = speeds[:, 0]
+    energies = energies * size**2
+    return Forces(
+        input=circuit.input,
+        time=circuit.time,
+        speed=speed,
+        status=circuit.status,
+        torque=torque,
+        power=torque * speed * (metre if slides else 1.0),
+        kinetic=energies[:, 0],
+        potential=energies[:, 1],
+        supplied=energies[:, 2],
+        shaking=shaking * np.repeat([size**2, size], 3),
+        reactions=_reactions(solver, wrenches, seats, free),
+        spin=_spins(solver, spin * size**2),
+        indeterminate=linkage.mobility().redundant if free.shape[1] else (),
+        slides=slides,
+        length_unit=linkage.length_unit,
+        periodic=circuit.goes_round and not np.isnan(circuit.speed),
+        loading=loading,
+    )
+
+
+def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Floats) -> dict[str, Reaction]:
+    """Each joint's reaction; components that the free wrenches (n, redundant, 6) leave open are NaN."""
+    size = solver.size
+    found = {}
+    for i, joint in enumerate(solver.linkage.joints):
+        axes = seats[:, i, :9].reshape(-1, 3, 3)
+        place = seats[:, i, 9:]
+        open_ways = np.concatenate(
+            [
+                np.einsum("nij,nki->nkj", axes, free[:, :, :3] - np.cross(place[:, None], free[:, :, 3:])),
+                np.einsum("nij,nki->nkj", axes, free[:, :, 3:]),
+            ],
+            axis=2,
+        )
+        known, determinate = _known(open_ways)
+        wrench = wrenches[:, i] * size
+        values = np.einsum("nkj,nj->nk", known, wrench)
+        wrench = np.where(determinate, wrench, np.nan)
+        found[joint.name] = Reaction(
+            joint=joint.name,
+            force=wrench[:, 3:],
+            moment=wrench[:, :3] * size,
+            at=place * solver.numbers.size,
+            axes=axes,
+            determinate=determinate,
+            known=known,
+            known_values=values,
+        )
+    return found
+
+
+def _known(open_ways: Floats) -> tuple[Floats, np.ndarray]:
+    """What wrenches (n, k, 6) that are open leave: orthonormal combinations (n, 6 - k, 6), and which components (6,)."""
+    rows, count, _ = open_ways.shape
+    if not count:
+        return np.broadcast_to(np.eye(6), (rows, 6, 6)), np.ones(6, dtype=bool)
+    full = np.isfinite(open_ways).all(axis=(1, 2))
+    known = np.full((rows, 6 - count, 6), np.nan)
+    determinate = np.ones(6, dtype=bool)
+    if full.any():
+        _, _, right = np.linalg.svd(open_ways[full], full_matrices=True)
+        known[full] = right[:, count:]
+        determinate = np.linalg.norm(right[:, :count], axis=1).max(axis=0) < OPEN
+    return known, determinate
+
+
+def _spins(solver: ForceSolver, spin: Floats) -> dict[str, Floats]:
+    """The moment that holds each idle spin (n,) [N m], by its link."""
+    linkage = solver.linkage
+    spun, *_ = linkage.held
+    columns = list(solver.numbers.held)
+    found = {}
+    for ball in sorted(spun):
+        column = linkage.places[ball].stop - 1
+        if column in columns:
+            found[f"link {ball + 1}"] = spin[:, columns.index(column)]
+    return found
