@@ -7,8 +7,8 @@ use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use sevenbar_core::loops::{self, Body, JointSpring, Load, Place, PointSpring, Seat};
 
-/// How many joints are before it, its place, and what one of each number adds.
-type PlaceRow = (usize, [f64; 3], Vec<(usize, [f64; 3])>);
+/// How many joints are before it, its place, and the twist by one of each number.
+type PlaceRow = (usize, [f64; 3], Vec<(usize, [f64; 6])>);
 /// How many joints are before it, mass, centre, inertia, and the twist by one of each number.
 type BodyRow = (usize, f64, [f64; 3], [[f64; 3]; 3], Vec<(usize, [f64; 6])>);
 /// Place, force, torque, and whether they turn with the link.

@@ -10,11 +10,11 @@ Source: docs/theory_forces.md, (1) to (6).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 import sevenbar._core as _core
 from sevenbar.arrays import Floats
@@ -27,7 +27,7 @@ from sevenbar.kinematics.link_bodies import resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
-from sevenbar.kinematics.word import Carried
+from sevenbar.kinematics.word import Product
 from sevenbar.text.units import LENGTHS
 
 #: A body within this part of its size, or inertia, of a line is one that is symmetric about the line.
@@ -97,33 +97,33 @@ class ForceSolver:
             frame = inverse(word.links[link - 1].pose(values)) @ frame
         return np.asarray(inverse(frame)[:3, 3])
 
-    def _carried(self, link: int, at: Three) -> Carried:
+    def _carrier(self, link: int) -> tuple[int, Product]:
+        """The steps before a link, and the frame there in which its points are written."""
         count = len(self.linkage.joints)
         if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
             raise RequestError(
                 f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
             )
-        steps, frame = self.numbers.word.carrier(int(link))
-        return Carried(steps, frame, at=at)
+        return self.numbers.word.carrier(int(link))
 
     def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
-        return self.loop.carried(self._carried(link, at))
+        steps, product = self._carrier(link)
+        frame = product.pose(self.numbers.values(self.loop.p))
+        place = (frame[:3, :3] @ np.asarray(at) + frame[:3, 3]) / self.numbers.size
+        return steps, place, self.loop.twists_of(product)
 
     def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
         assert body.centre is not None
-        carried = self._carried(link, body.centre)
-        values = self.numbers.values(self.loop.p)
-        frame = carried.frame.pose(values)
-        centre = (frame[:3, :3] @ np.asarray(body.centre) + frame[:3, 3]) / self.numbers.size
-        tensor = frame[:3, :3] @ body.tensor @ frame[:3, :3].T / self.size**2
-        return carried.steps, body.mass, centre, tensor, self.loop.twists_of(carried.frame)
+        steps, centre, ways = self._place(link, body.centre)
+        axes = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
+        return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
 
     def _load(self, load: Load) -> tuple[tuple[int, Floats, list[tuple[int, Floats]]], Floats, Floats, bool]:
         assert load.at is not None
         force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
         turns = load.axes == "link"
         if turns:
-            axes = self._carried(load.link, load.at).frame.pose(self.numbers.values(self.loop.p))[:3, :3]
+            axes = self._carrier(load.link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
             force, torque = axes @ force, axes @ torque
         return self._place(load.link, load.at), force, torque, turns
 
@@ -206,10 +206,9 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
         )
     solver = ForceSolver(linkage, loading, circuit.input_column)
     poses = solver.numbers.poses(circuit.q)
-    closed = solver.loop.closed(circuit.input, poses)
+    poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
     speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
-    closed[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
-    torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, closed, speeds)
+    torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
     size, metre = solver.size, LENGTHS[linkage.length_unit]
     slides = linkage.column_kinds[circuit.input_column] == "slide"
     torque = torque * (size if slides else size**2)
@@ -238,37 +237,35 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
 
 def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Floats) -> dict[str, Reaction]:
     """Each joint's reaction; components that the free wrenches (n, redundant, 6) leave open are NaN."""
-    size = solver.size
-    found = {}
+    size, found = solver.size, {}
     for i, joint in enumerate(solver.linkage.joints):
-        axes = seats[:, i, :9].reshape(-1, 3, 3)
-        place = seats[:, i, 9:]
-        open_ways = np.concatenate(
-            [
-                np.einsum("nij,nki->nkj", axes, free[:, :, :3] - np.cross(place[:, None], free[:, :, 3:])),
-                np.einsum("nij,nki->nkj", axes, free[:, :, 3:]),
-            ],
-            axis=2,
-        )
-        known, determinate = _known(open_ways)
+        axes, place = seats[:, i, :9].reshape(-1, 3, 3), seats[:, i, 9:]
         wrench = wrenches[:, i] * size
-        values = np.einsum("nkj,nj->nk", known, wrench)
-        wrench = np.where(determinate, wrench, np.nan)
+        known, determinate = _known(_in_seat(axes, place, free))
         found[joint.name] = Reaction(
             joint=joint.name,
-            force=wrench[:, 3:],
-            moment=wrench[:, :3] * size,
+            force=np.where(determinate[3:], wrench[:, 3:], np.nan),
+            moment=np.where(determinate[:3], wrench[:, :3] * size, np.nan),
             at=place * solver.numbers.size,
             axes=axes,
             determinate=determinate,
             known=known,
-            known_values=values,
+            known_values=np.einsum("nkj,nj->nk", known, wrench) if free.shape[1] else wrench,
         )
     return found
 
 
-def _known(open_ways: Floats) -> tuple[Floats, np.ndarray]:
-    """What wrenches (n, k, 6) that are open leave: orthonormal combinations (n, 6 - k, 6), and which components (6,)."""
+def _in_seat(axes: Floats, place: Floats, wrenches: Floats) -> Floats:
+    """Wrenches (n, k, 6) about the origin, about a place (n, 3) and along axes (n, 3, 3) there."""
+    if not wrenches.shape[1]:
+        return wrenches
+    force = wrenches[:, :, 3:]
+    moment = wrenches[:, :, :3] - np.cross(place[:, None], force)
+    return np.concatenate([moment @ axes, force @ axes], axis=2)
+
+
+def _known(open_ways: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    """What open wrenches (n, k, 6) leave: combinations (n, 6 - k, 6), orthonormal, and which components (6,)."""
     rows, count, _ = open_ways.shape
     if not count:
         return np.broadcast_to(np.eye(6), (rows, 6, 6)), np.ones(6, dtype=bool)

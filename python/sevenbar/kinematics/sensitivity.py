@@ -194,7 +194,7 @@ class NumberedLoop:
             for joint, key in enumerate(step.pitch for step in word.steps)
             if key in own
         ]
-        points = [self.carried(point) for point in numbers.points]
+        points = [self._point(point, values, own) for point in numbers.points]
         if marks is not None:
             count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
             points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
@@ -222,10 +222,11 @@ class NumberedLoop:
         pitches = [0.0 if step.pitch is None else values.get(step.pitch, 0.0) for step in word.steps]
         return fixed, np.array(pitches) / math.tau / size
 
-    def carried(self, point: Carried) -> tuple[int, Floats, list[tuple[int, Floats]]]:
+    def _point(
+        self, point: Carried, values: Values, own: Mapping[Place, int]
+    ) -> tuple[int, Floats, list[tuple[int, Floats]]]:
         """A point as the core takes it: the steps before it, its place there, what moves it."""
         frame, place = point.frame, point.place
-        values, own = self.numbers.values(self.p), self._places
         size, dimensions = self.numbers.size, self.numbers.dimensions
         matrix = frame.pose(values)
         at = np.array(point.at) if place is None else vector(values, place)

@@ -19,15 +19,15 @@ pub struct Body {
     pub ways: Vec<(usize, [f64; 6])>,
 }
 
-/// A place on the link behind so many joints, in the frame there, and what one of each number moves it by.
+/// A place on the link behind so many joints, in the frame there; by one of each number it moves in that frame by a twist.
 #[derive(Clone, Debug)]
 pub struct Place {
     /// How many joints are before its link.
     pub joints: usize,
     /// Where it is.
     pub at: Vec3,
-    /// By number, what one of it adds.
-    pub ways: Vec<(usize, Vec3)>,
+    /// By number, the twist.
+    pub ways: Vec<(usize, [f64; 6])>,
 }
 
 /// A force and a torque at a place; in the frame of its link or of the ground. Row by row it is multiplied by a factor.

@@ -68,20 +68,29 @@ fn dual(x: f64, by: f64) -> Dual {
     Taylor([x, by])
 }
 
+impl ByNumber {
+    /// The twist by this number, of all.
+    fn of(&self, ways: &[(usize, Twist)]) -> (Vec3, Vec3) {
+        let way = ways.iter().find(|w| w.0 == self.0).map_or([0.0; 6], |w| w.1);
+        parts(&way)
+    }
+}
+
 impl Moved<Dual> for ByNumber {
     fn place(&self, place: &Place) -> [Dual; 3] {
-        let way = place
-            .ways
-            .iter()
-            .find(|w| w.0 == self.0)
-            .map_or([0.0; 3], |w| w.1);
+        let (spin, slide) = self.of(&place.ways);
+        let way = add(cross(&spin, &place.at), slide);
         std::array::from_fn(|k| dual(place.at[k], way[k]))
     }
 
+    fn direction(&self, place: &Place, v: Vec3) -> [Dual; 3] {
+        let way = cross(&self.of(&place.ways).0, &v);
+        std::array::from_fn(|k| dual(v[k], way[k]))
+    }
+
     fn body(&self, body: &Body) -> ([Dual; 3], Rotation<Dual>) {
-        let way = body.ways.iter().find(|w| w.0 == self.0).map_or([0.0; 6], |w| w.1);
-        let spin = [way[0], way[1], way[2]];
-        let moved = add(cross(&spin, &body.centre), [way[3], way[4], way[5]]);
+        let (spin, slide) = self.of(&body.ways);
+        let moved = add(cross(&spin, &body.centre), slide);
         // [w x] I - I [w x], column by column
         let turned: [Vec3; 3] = std::array::from_fn(|j| {
             let axis: Vec3 = std::array::from_fn(|k| if k == j { 1.0 } else { 0.0 });

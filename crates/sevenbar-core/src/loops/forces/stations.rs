@@ -9,6 +9,7 @@ use super::acting::{Acting, Body, Place};
 use crate::loops::equation::rotations::{Rotation, cross, dot3};
 use crate::loops::equation::screws::Twist;
 use crate::number::Number;
+use crate::rigid::Vec3;
 
 /// Where a station is and how it moves, by time: its twist, and the derivative of that.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +39,7 @@ pub(super) struct Acts<N> {
 /// Closer than this [parts of the size] the ends of a spring have no line between them.
 const NO_LINE: f64 = 1e-12;
 
-fn vector<N: Number>(v: [f64; 3]) -> [N; 3] {
+fn vector<N: Number>(v: Vec3) -> [N; 3] {
     v.map(N::splat)
 }
 
@@ -95,6 +96,8 @@ pub(super) fn power<N: Number>(twist: &Twist<N>, wrench: &Twist<N>) -> N {
 pub(super) trait Moved<N> {
     /// A place in its station's frame.
     fn place(&self, place: &Place) -> [N; 3];
+    /// A direction that is fixed beside a place.
+    fn direction(&self, place: &Place, v: Vec3) -> [N; 3];
     /// A body's centre and inertia in its station's frame.
     fn body(&self, body: &Body) -> ([N; 3], Rotation<N>);
 }
@@ -105,6 +108,10 @@ pub(super) struct Still;
 impl<N: Number> Moved<N> for Still {
     fn place(&self, place: &Place) -> [N; 3] {
         vector(place.at)
+    }
+
+    fn direction(&self, _: &Place, v: Vec3) -> [N; 3] {
+        vector(v)
     }
 
     fn body(&self, body: &Body) -> ([N; 3], Rotation<N>) {
@@ -164,9 +171,13 @@ pub(super) fn acts<N: Number>(
     for (load, &factor) in acting.loads.iter().zip(factors) {
         let station = &stations[load.place.joints];
         let at = station.carry(&moved.place(&load.place));
-        let seen = |v: [f64; 3]| {
-            let own = times(vector(v), N::splat(factor));
-            if load.turns { station.turn(&own) } else { own }
+        let seen = |v: Vec3| {
+            let own = if load.turns {
+                station.turn(&moved.direction(&load.place, v))
+            } else {
+                vector(v)
+            };
+            times(own, N::splat(factor))
         };
         let own = wrench(&at, &seen(load.force), &seen(load.torque));
         out.supplied = out.supplied + power(&station.twist, &own);
