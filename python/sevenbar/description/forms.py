@@ -310,7 +310,14 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         drive=Drive(*form.driven, form.drive.speed),
         description=raw,
-        loading=loading_of(form),
+        loading=loading_of(
+            form.forces,
+            form.body,
+            form.load,
+            form.spring,
+            length_unit=form.length_unit,
+            columns=form.first_columns,
+        ),
     )
 
 

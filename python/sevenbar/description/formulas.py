@@ -21,7 +21,7 @@ KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
     "forces": {"gravity": "acceleration"},
     "body": {"mass": "mass", "centre": "length", "inertia": "inertia"},
     "load": load_kinds({}, {}),
-    "spring": spring_kinds({}, {}),
+    "spring": spring_kinds({}, {}) | {"free": "angle"},
 }
 
 #: Tables in which the kind of a number depends on how a joint moves.
@@ -31,7 +31,7 @@ _KINDS_IN = {"load": load_kinds, "spring": spring_kinds}
 def with_numbers(raw: Mapping[str, Any], source: str = "") -> Mapping[str, Any]:
     """A description with the number of each formula in its place, in the units of the file.
 
-    Tables of loads beside the file `source` are in it with their rows.
+    Tables of loads, in the folder of the file `source`, are in it with their rows.
     A text that is no formula stays, for the schema to refuse it.
 
         >>> with_numbers({"angle_unit": "deg", "link": [{"twist": "pi/3", "length": "2 cm"}]})["link"]

@@ -92,7 +92,7 @@ class LoadForm(TableForm):
     table: Annotated[
         Table | None,
         key(
-            "its factor along the input: a CSV file beside this one, or rows of input (angle_unit, or length) "
+            "its factor along the input: a CSV file in the folder of this one, or rows of input (angle_unit, or length) "
             "and factor"
         ),
     ] = None

@@ -1,4 +1,4 @@
-"""How large a load is along the input, from a table of text beside the file: its rows in a description."""
+"""How large a load is along the input, from a table of text: its rows in a description."""
 
 from __future__ import annotations
 

@@ -111,7 +111,7 @@ def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ..
             value = rows_of(value, info.context or {})
         except RequestError as error:
             raise refuse(str(error)) from None
-    rows = value if isinstance(value, (list, tuple)) else [value]
+    rows: Any = value if isinstance(value, (list, tuple)) else [value]
     if not all(isinstance(row, (list, tuple)) and len(row) == 2 for row in rows):
         raise refuse(
             f"{shown(value)} is not a table; give the name of a CSV file, or rows of input and factor, "
