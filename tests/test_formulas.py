@@ -136,7 +136,19 @@ def test_a_bennett_loop_by_its_formula_moves_and_by_six_digits_does_not():
 
 
 def test_every_number_of_a_file_may_be_a_formula_and_the_kinds_are_the_schema_s():
-    units = {"length": "length", "length per turn": "pitch", "angle_unit": "angle"}
+    units = {
+        "length": "length",
+        "length per turn": "pitch",
+        "angle_unit": "angle",
+        "mass_unit": "mass",
+        "mass_unit length_unit^2": "inertia",
+        "m/s^2": "acceleration",
+        "N": "force",
+        "N m": "torque",
+        "angle_unit, or length": "angle",
+        "N/length_unit; in a joint that turns N m/rad": "stiffness",
+        "N s/length_unit; in a joint that turns N m s/rad": "damping",
+    }
     for head, form in TABLES.items():
         told = {
             name: units[field.json_schema_extra["unit"]]

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
+from sevenbar.description.loads import loading_of
 from sevenbar.description.proportions import disproportions
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
@@ -292,7 +293,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     """
     from sevenbar.description import formulas, schema
 
-    raw = formulas.with_numbers(raw)
+    raw = formulas.with_numbers(raw, source)
     form = schema.check(raw, source=source)
     if problems := disproportions(form):
         raise DescriptionError(problems, source)
@@ -309,6 +310,14 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         drive=Drive(*form.driven, form.drive.speed),
         description=raw,
+        loading=loading_of(
+            form.forces,
+            form.body,
+            form.load,
+            form.spring,
+            length_unit=form.length_unit,
+            columns=form.first_columns,
+        ),
     )
 
 

@@ -136,3 +136,7 @@ class Loading:
     def is_empty(self) -> bool:
         """Whether nothing has a mass, and nothing acts."""
         return not (any(self.bodies.values()) or self.loads or self.springs)
+
+
+#: What acts on a linkage that was given no bodies and no loads.
+UNLOADED = Loading()

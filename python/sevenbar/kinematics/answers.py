@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.circuits import Circuit, Extremes, Law
 from sevenbar.kinematics.geometry import Point
+from sevenbar.kinematics.loaded import loading_with
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.plane_and_sphere import plane_of
 from sevenbar.kinematics.transmission import best_row, transmission_angle, transmission_extremes
@@ -77,7 +78,7 @@ class LinkageAnswers:
         # the engine by numbers is for those who ask
         from sevenbar.kinematics.forces import forces_of
 
-        return forces_of(self.linkage, circuit, replace(self.linkage.loading, **given))
+        return forces_of(self.linkage, circuit, loading_with(self.linkage, **given))
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""

@@ -23,7 +23,7 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.link_bodies import resolved
+from sevenbar.kinematics.link_bodies import joint_places, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
@@ -60,7 +60,7 @@ class ForceSolver:
     @cached_property
     def bodies(self) -> dict[int, Body]:
         """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
-        found = resolved(self.linkage, self.loading.bodies)
+        found = resolved(self.loading, self.linkage)
         return {link: self._unspun(link, body) for link, body in found.items()}
 
     def _unspun(self, link: int, body: Body) -> Body:
@@ -68,11 +68,10 @@ class ForceSolver:
 
         Balls without friction never begin to turn it about that line, so it moves as if it had none.
         """
-        count = len(self.linkage.joints)
-        kinds = [joint.row.is_ball for joint in self.linkage.joints]
-        if link not in self.linkage.idle_links or link == count or not (kinds[link - 1] and kinds[link]):
+        balls = [joint.row.is_ball for joint in self.linkage.joints]
+        if link not in self.linkage.idle_links or not (balls[link - 1] and balls[link]):
             return body
-        ends = [self._ball(joint, link) for joint in (link - 1, link)]
+        ends = joint_places(self.linkage, link)
         along = ends[1] - ends[0]
         length = float(np.linalg.norm(along))
         if not length:
@@ -87,15 +86,6 @@ class ForceSolver:
         if np.linalg.norm(arm - (arm @ z) * z) > SYMMETRIC * length or rest:
             return body
         return Body(body.mass, body.centre, across * (np.eye(3) - np.outer(z, z)))
-
-    def _ball(self, joint: int, link: int) -> Floats:
-        """The place of a ball as points of a link beside it are written."""
-        word, values = self.numbers.word, self.numbers.values(self.numbers.nominal)
-        frame = word.frames[link - 1].pose(values)
-        if joint == link:
-            # before the next joint: over the whole link
-            frame = inverse(word.links[link - 1].pose(values)) @ frame
-        return np.asarray(inverse(frame)[:3, 3])
 
     def _carrier(self, link: int) -> tuple[int, Product]:
         """The steps before a link, and the frame there in which its points are written."""
