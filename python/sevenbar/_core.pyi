@@ -158,6 +158,7 @@ def reactions(
     frames: _Floats,
     with_numbers: bool,
 ) -> list[_Floats]: ...
+
 @final
 class Rows:
     """Rows of a circuit, of which their loop tells the points of any link; pickled as their numbers."""

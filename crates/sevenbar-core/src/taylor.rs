@@ -156,6 +156,7 @@ impl<const N: usize> Mul for Taylor<N> {
 
 impl<const N: usize> Div for Taylor<N> {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl)]
     fn div(self, other: Self) -> Self {
         self * other.recip()
     }

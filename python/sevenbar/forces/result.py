@@ -1,4 +1,4 @@
-"""Forces along a circuit: the input's torque, energies, the reaction in every joint, shaking; arrays over its rows."""
+"""Forces along a circuit: the input's torque, energies, what every joint bears, shaking; arrays over rows."""
 
 from __future__ import annotations
 
@@ -42,26 +42,26 @@ class Reaction(Printed):
     @property
     def force_in_report(self) -> Floats:
         """The force (n, 3) [N] in the report frame; NaN unless all three components are determinate."""
-        return np.einsum("nij,nj->ni", self.axes, self.force)
+        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.force))
 
     @property
     def moment_in_report(self) -> Floats:
         """The moment (n, 3) [N m] in the report frame; NaN unless all three components are determinate."""
-        return np.einsum("nij,nj->ni", self.axes, self.moment)
+        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.moment))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Forces(Printed):
     """What the input has to give, and what the joints bear, on the n rows of a circuit.
 
-    `input` [rad, or length], `time` [s], `speed` [rad/s, or length/s] and `status` are those of the rows (n,).
-    `torque` (n,) is what the input has to give, along its own positive turn [N m], or as it slides the force
-    [N]; `power` [W] is that by the input's speed, `kinetic` and `potential` [J] the energies of bodies, weights
-    and springs, `supplied` [W] the power of loads and dampers, `shaking` (n, 6) the moment about the report's
-    origin [N m] and the force [N] of all inertia on the ground. `reactions` has each joint's by its name.
-    `spin` has for each link that spins idly the moment (n,) [N m] that the rule of its spin needs and no ball
-    gives: 0 for a rod. `indeterminate` names the redundant constraints, whose share of the reactions rigid
-    bodies leave open. Rows without rates, as dead centres of the input, are NaN.
+    `input` [rad, or length], `time` [s], `speed` [rad/s, or length/s] and `status` are those of the rows
+    (n,). `torque` (n,) is what the input has to give, along its own positive turn [N m], or as it slides the
+    force [N]; `power` [W] is that by the input's speed, `kinetic` and `potential` [J] the energies of bodies,
+    weights and springs, `supplied` [W] the power of loads and dampers, `shaking` (n, 6) the moment about the
+    report's origin [N m] and the force [N] of all inertia on the ground. `reactions` has each joint's by its
+    name. `spin` has for each link that spins idly the moment (n,) [N m] that the rule of its spin needs and
+    no ball gives: 0 for a rod. `indeterminate` names the redundant constraints, whose share of the reactions
+    rigid bodies leave open. Rows without rates, as dead centres of the input, are NaN.
 
     Source: docs/theory_forces.md, (1) to (9).
     """

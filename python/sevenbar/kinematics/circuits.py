@@ -426,7 +426,7 @@ class Circuit(Printed):
         `RequestError` where nothing has a mass and nothing acts.
 
             >>> import sevenbar as sb
-            >>> crank = sb.forces.Body(mass=2.0, centre=(125, 0, 0))
+            >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
             >>> found = sb.load("rssr").motion().circuits[0].forces(bodies={1: crank}, gravity=(0, 0, -9.81))
             >>> round(float(found.reactions["crank"].force[0, 2]), 6)  # the ground lifts 2 kg
             19.62

@@ -1,9 +1,9 @@
-"""The forces of a circuit by the transpose of its rates: what acts on the links goes to the core, torque and reactions come back.
+"""The forces of a circuit by the transpose of its rates: what acts goes to the core, reactions come back.
 
     A^T W = Q - c                                                                                         (4)
 
-The core (`crates/sevenbar-core/src/loops/forces`) counts lengths in parts of the size, so forces in kg size/s^2;
-here they become newtons.
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths in parts of the size, so forces in
+kg size/s^2; here they become newtons.
 
 Source: docs/theory_forces.md, (1) to (6).
 """
@@ -220,9 +220,17 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
         indeterminate=linkage.mobility().redundant if free.shape[1] else (),
         slides=slides,
         length_unit=linkage.length_unit,
-        periodic=circuit.goes_round and not np.isnan(circuit.speed),
+        periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
         loading=loading,
     )
+
+
+def _winds_up(circuit: Circuit, loading: Loading) -> bool:
+    """Whether a spring in a joint has more to give with every turn of the joint."""
+    columns = [circuit.columns.index(s.joint) for s in loading.springs if s.joint and s.stiffness]
+    # rows end one step before the first comes again
+    gained = len(circuit.q) / max(len(circuit.q) - 1, 1) * (circuit.q[-1] - circuit.q[0])
+    return bool(np.any(np.abs(gained[columns]) > np.pi))
 
 
 def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Floats) -> dict[str, Reaction]:
@@ -255,7 +263,7 @@ def _in_seat(axes: Floats, place: Floats, wrenches: Floats) -> Floats:
 
 
 def _known(open_ways: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
-    """What open wrenches (n, k, 6) leave: combinations (n, 6 - k, 6), orthonormal, and which components (6,)."""
+    """What open wrenches (n, k, 6) leave: combinations (n, 6 - k, 6), orthonormal; which components (6,)."""
     rows, count, _ = open_ways.shape
     if not count:
         return np.broadcast_to(np.eye(6), (rows, 6, 6)), np.ones(6, dtype=bool)

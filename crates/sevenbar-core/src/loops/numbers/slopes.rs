@@ -31,12 +31,12 @@ pub struct Slopes {
 }
 
 /// A value for each column, and its rates.
-pub(in crate::loops) type Orders = [Vec<f64>; ORDERS + 1];
+pub(crate) type Orders = [Vec<f64>; ORDERS + 1];
 
 /// What changes along the loop by one number: where what lies behind each joint (from 1) moves to, the twists before each joint
 /// and behind the last as series, and the series of the screws.
 #[derive(Clone, Debug, Default)]
-pub(in crate::loops) struct Changes {
+pub(crate) struct Changes {
     pub carriers: [Vec<Twist>; ORDERS + 1],
     /// Where the frame before each joint moves to.
     pub before: Vec<Twist>,
@@ -58,13 +58,13 @@ impl Changes {
 
 /// A number, or a column that is one.
 #[derive(Clone, Copy)]
-pub(in crate::loops) enum By {
+pub(crate) enum By {
     Number(usize),
     Column(usize),
 }
 
 /// A row with the power series of its rates.
-pub(in crate::loops) struct Moving {
+pub(crate) struct Moving {
     /// Of the screws of the kept columns.
     pub inverse: Inverse,
     pub around: Around,
@@ -111,7 +111,7 @@ pub fn slopes(numbered: &NumberedLoop, values: &[f64], order: usize) -> Slopes {
 }
 
 /// A row with its rates; `None` at a dead centre.
-pub(in crate::loops) fn moving(numbered: &NumberedLoop, around: Around, values: &[f64]) -> Option<Moving> {
+pub(crate) fn moving(numbered: &NumberedLoop, around: Around, values: &[f64]) -> Option<Moving> {
     let kept = numbered.kept(&around);
     let inverse = numbered.factored(&around, &kept).inverse();
     let size = inverse.square(6).sqrt();
@@ -228,7 +228,7 @@ fn write_row(numbered: &NumberedLoop, moving: &Moving, row: usize, orders: usize
 }
 
 /// The derivatives of values and rates by one number, and the part of it that no joint can follow.
-pub(in crate::loops) fn derived(
+pub(crate) fn derived(
     numbered: &NumberedLoop,
     moving: &Moving,
     by: By,
