@@ -7,6 +7,7 @@ import sevenbar as sb
 from page_tables import code, table
 from sevenbar.description import gallery
 from sevenbar.reporting import report, summary
+from sevenbar.reporting.facts import facts_of
 
 #: Where the pictures are written, below the pages' folder.
 PICTURES = "_made/gallery"
@@ -50,9 +51,7 @@ def _section(name: str, motion: sb.Motion, pages: Path) -> str:
     text = gallery.text(name)
     remarks = re.match(r"(?:#.*\n)*", text)[0]
     origin = " ".join(line.lstrip("# ") for line in remarks.splitlines())
-    facts = [
-        (fact, value.replace("  ", ", ")) for fact, value in summary.facts_of(motion) if fact not in LEFT_OUT
-    ]
+    facts = [(fact, value.replace("  ", ", ")) for fact, value in facts_of(motion) if fact not in LEFT_OUT]
     rows = [*facts, ("mobility", str(motion.mobility)), ("modes", _modes(motion, drawn))]
     parts = (
         f"({name})=",

@@ -20,20 +20,12 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
+from sevenbar.reporting.facts import COMPLETE, closure_error, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
-from sevenbar.reporting.summary import (
-    COMPLETE,
-    GAP,
-    Sheet,
-    closure_error,
-    joint_text,
-    modes_sheets,
-    side_lengths,
-    summary,
-)
+from sevenbar.reporting.summary import GAP, Sheet, joint_text, modes_sheets, summary
 from sevenbar.text.markdown import plain, table
 
 __all__ = [

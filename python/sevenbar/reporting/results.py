@@ -14,17 +14,16 @@ from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
 from sevenbar.kinematics.screw_axes import ScrewAxes
-from sevenbar.reporting.shown import Shown
-from sevenbar.reporting.summary import (
+from sevenbar.reporting.facts import (
     COMPLETE,
-    circuit_facts,
     closure_error,
     dimensions_text,
     facts_of,
     joints_text,
     speed_text,
-    way_round,
 )
+from sevenbar.reporting.shown import Shown
+from sevenbar.reporting.summary import circuit_facts, way_round
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.columns import joint_column
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.screw_axes import ScrewAxes
+from sevenbar.reporting.facts import speed_text
 from sevenbar.reporting.files import Report, columns_file, json_file
 from sevenbar.reporting.page import number_table
-from sevenbar.reporting.summary import speed_text
 
 #: A pitch or slide rate below this share of the size, or of the fastest turn of the size, is printed as 0.
 ROUNDING = 1e-12

@@ -12,7 +12,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.word import Place
-from sevenbar.reporting.summary import meaning
+from sevenbar.reporting.facts import meaning
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
