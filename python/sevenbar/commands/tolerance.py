@@ -102,7 +102,7 @@ def tolerance(
         linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
     with progress_bar(f"designs within the tolerances of {loaded.heading}") as progress:
         # one bar for both
-        worst = worst_case(found, linear, progress=lambda done, total, _: progress(done, total + count))
+        worst = worst_case(found, linear, progress=lambda done, total, _="": progress(done, total + count))
         tried, exact = worst.tried, None
         if count != 0:
             exact = monte_carlo(
@@ -110,7 +110,7 @@ def tolerance(
                 linear,
                 count,
                 seed=seed,
-                progress=lambda done, total, _: progress(tried + done, tried + total),
+                progress=lambda done, total, _="": progress(tried + done, tried + total),
             )
     deliver(Findings(linear, worst, exact), report, out, json=json, force=force)
 
