@@ -6,8 +6,9 @@ from pathlib import Path
 import sevenbar as sb
 from page_tables import code, table
 from sevenbar.description import gallery
-from sevenbar.reporting import report, summary
+from sevenbar.reporting import report
 from sevenbar.reporting.facts import facts_of
+from sevenbar.reporting.shown import value_text
 
 #: Where the pictures are written, below the pages' folder.
 PICTURES = "_made/gallery"
@@ -71,4 +72,4 @@ def _modes(motion: sb.Motion, drawn: sb.Circuit) -> str:
     column = drawn.input_column
     value = float(drawn.input[len(drawn.input) // 3])
     modes = motion.linkage.assembly_modes(value, input=motion.input)
-    return f"{len(modes)} at {motion.input} = {summary.joint_text(motion.linkage, column, value)}"
+    return f"{len(modes)} at {motion.input} = {value_text(motion.linkage, column, value)}"

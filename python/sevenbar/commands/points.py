@@ -23,9 +23,9 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.description.draft import Draft
-from sevenbar.description.files import text_of
+from sevenbar.description.files import toml_text
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.ranges import finite_number, split_list, split_named, split_range, three_numbers
+from sevenbar.text.ranges import split_list, split_named, split_range, three_numbers
 from sevenbar.text.units import amount, sizes_of
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def point(
     loaded = sb.load(linkage)
     sides = parsed_box(box, loaded.length_unit)
     called = name or ("nearest_path" if curve is not None else f"least_{least or 'acceleration'}")
-    draft = Draft.of(text_of(linkage), linkage)
+    draft = Draft.of(toml_text(linkage), linkage)
     if out is not None and called in [point.name for point in draft.linkage.points]:
         raise RequestError(f"--name: {linkage} has a point {shown(called)} already; give another name")
 
@@ -173,7 +173,7 @@ def parsed_masses(given: list[str]) -> dict[str, float]:
     what, hint = "a mass", "give a point and kilograms, as in P=2.5"
     found = {}
     for name, text in split_named("--mass", given, what, hint).items():
-        kilograms = finite_number(text.removesuffix("kg"))
+        kilograms = amount(text, {"kg": 1.0}, "kg")
         if kilograms is None:
             raise RequestError(f"--mass: {shown(f'{name}={text}')} is not {what}; {hint}")
         found[name] = kilograms

@@ -80,10 +80,10 @@ def tolerance(
     from sevenbar.design.tolerance.report import Findings, tolerance_report
     from sevenbar.design.tolerance.samples import monte_carlo
     from sevenbar.design.tolerance.sensitivities import sensitivities
-    from sevenbar.design.tolerance.tolerances import parsed
+    from sevenbar.design.tolerance.tolerances import parsed_tolerances
     from sevenbar.design.tolerance.worst import worst_case
 
-    tolerances = parsed(given or [])
+    tolerances = parsed_tolerances(given or [])
     report = tolerance_report(formats)
     check_out(report, out, force=force)
     found = sensitivities(

@@ -55,7 +55,7 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if doubt := angle_doubt(linkage.description):
         facts.append(("angles", doubt))
     speed = motion.speed if motion.law is None else None
-    unit, written = units_of(motion)[0], motion.speed_written
+    unit, written = linkage.unit_of(motion.input), motion.speed_written
     facts.append(("drive", drive_text(motion.input, speed, unit, motion.output, written=written)))
     if motion.law is not None:
         t = motion.law.t
@@ -86,7 +86,7 @@ def _limits_text(motion: Motion) -> str:
     """The input's limits; of many no more than their number, since the tables have them by circuit."""
     if motion.limits.size > MOST_LIMITS:
         return f"{motion.limits.size}, by circuit in the table below"
-    show = Shown(units_of(motion)[0])
+    show = Shown(motion.linkage.unit_of(motion.input))
     return "  ".join(show(x) for x in motion.limits) or _no_limits(motion)
 
 
@@ -102,15 +102,9 @@ def dimensions_text(linkage: Solvable) -> str:
     return f"{told}  [{linkage.length_unit}]" if told else ""
 
 
-def speed_text(linkage: Loop, input: str, speed: float) -> str:
-    """The speed at which a joint drives."""
-    turns = linkage.column_kinds[linkage.columns.index(input)] == "turn"
-    return f"at {speed:.6g} {'rad' if turns else linkage.length_unit}/s"
-
-
 def _change_points(motion: Motion) -> list[tuple[str, str]]:
     """Lines for the poses at which branches meet, and for those that stand alone."""
-    show = Shown(units_of(motion)[0])
+    show = Shown(motion.linkage.unit_of(motion.input))
     lines = []
     meeting = [point for point in motion.change_points if not point.isolated]
     if meeting:
@@ -124,16 +118,6 @@ def _change_points(motion: Motion) -> list[tuple[str, str]]:
     if alone:
         lines.append(("isolated pose", f"input {'  '.join(alone)}: no motion leads out of it"))
     return lines
-
-
-def units_of(motion: Motion) -> tuple[str, str]:
-    """The units of the input and of the output as their rates are given: rad or a length."""
-    linkage = motion.linkage
-    kinds = dict(zip(linkage.columns, linkage.column_kinds, strict=True))
-    first, second = (
-        "rad" if kinds[c] == "turn" else linkage.length_unit for c in (motion.input, motion.output)
-    )
-    return first, second
 
 
 def nearly_moves(motion: Motion) -> str:

@@ -11,8 +11,8 @@ import numpy as np
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Modes, Motion
-from sevenbar.reporting.facts import facts_of, turns_text, units_of
-from sevenbar.reporting.shown import Shown, degrees, plain
+from sevenbar.reporting.facts import facts_of, turns_text
+from sevenbar.reporting.shown import Shown, degrees, six_digits
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
@@ -97,11 +97,6 @@ def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
     return sheets
 
 
-def joint_text(linkage: Loop, column: int, value: float) -> str:
-    """A joint's value with its unit."""
-    return Shown("rad" if linkage.column_kinds[column] == "turn" else linkage.length_unit)(value)
-
-
 def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     """The rows as written, one a link, to the last digit if `exact`; a joint's own value is no dimension."""
     digits = _every_digit if exact else "{:.6g}".format
@@ -160,7 +155,7 @@ class _Quantity:
 def _quantities(motion: Motion) -> list[_Quantity]:
     """All that is told of circuits, in order."""
     first, second = motion.input, motion.output
-    in_unit, out_unit = units_of(motion)
+    in_unit, out_unit = (motion.linkage.unit_of(end) for end in (first, second))
     place, result = (Shown("rad" if unit == "rad" else "") for unit in (in_unit, out_unit))
     # of a slide the unit is in the label: a line is not broken between a number and its unit
     in_label, out_label = ("" if unit == "rad" else f"[{unit}]" for unit in (in_unit, out_unit))
@@ -174,8 +169,8 @@ def _quantities(motion: Motion) -> list[_Quantity]:
 
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
-            return ends(extremes, plain, "no row within the range")
-        return ends(extremes, plain, "change point" if circuit.goes_round else "no bound at limits")
+            return ends(extremes, six_digits, "no row within the range")
+        return ends(extremes, six_digits, "change point" if circuit.goes_round else "no bound at limits")
 
     def range_of(circuit: Circuit, end: int, show: Shown) -> Texts:
         extent = circuit.output_range if end else circuit.input_range
@@ -196,7 +191,9 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     def time_ratio(circuit: Circuit) -> Texts:
         # a ratio of angles, and of times at a constant speed
         return (
-            ("-",) if circuit.time_ratio is None or motion.law is not None else (plain(circuit.time_ratio),)
+            ("-",)
+            if circuit.time_ratio is None or motion.law is not None
+            else (six_digits(circuit.time_ratio),)
         )
 
     def reach(circuit: Circuit) -> Texts:
@@ -251,7 +248,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         _Quantity(
             f"{second} {position}",
             "",
-            lambda c: ends(c.angle, plain, "-"),
+            lambda c: ends(c.angle, six_digits, "-"),
             f"[{out_unit}]",
             ends=True,
             only="list",
@@ -370,7 +367,7 @@ def width_of(sheet: Sheet) -> int:
 
 
 def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts]], width: int = 0) -> Sheet:
-    unit = units_of(motion)[0]
+    unit = motion.linkage.unit_of(motion.input)
     where = f"value @ angle of {motion.input}"
     if unit != "rad":
         where = f"value @ position of {motion.input} [{unit}]"

@@ -103,7 +103,7 @@ class Plane(ABC):
 
     def values_at(self, points: Floats, measures: Sequence[Measure], take: Take) -> Floats:
         """Measures at each point (n, measures), NaN where there is none."""
-        rows = [[value_of(motion, m, take) for m in measures] for motion in self.motions(points)]
+        rows = [[measure_of(motion, m, take) for m in measures] for motion in self.motions(points)]
         return np.array(rows, dtype=np.float64).reshape(len(points), len(measures))
 
     def number(self, kind: Kind) -> int:
@@ -127,7 +127,7 @@ class Plane(ABC):
         return found
 
 
-def value_of(motion: Motion | None, measure: Measure, take: Take) -> float:
+def measure_of(motion: Motion | None, measure: Measure, take: Take) -> float:
     """The measure of a motion, of the circuits that `take` chooses; NaN where it has none."""
     if motion is None:
         return math.nan
