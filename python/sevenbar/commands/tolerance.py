@@ -23,7 +23,7 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.units import amount, sizes_of
+from sevenbar.text.amounts import amount_in
 
 
 def tolerance(
@@ -118,7 +118,7 @@ def tolerance(
 def _wanted(text: str, unit: str) -> float:
     """An error [the output's unit] as a person wrote it; an angle alone is in degrees."""
     plain = "deg" if unit == "rad" else unit
-    value = amount(text, sizes_of(unit), plain)
+    value = amount_in(text, unit, plain)
     if value is None or value <= 0:
         raise RequestError(
             f"--wanted: {shown(text)} is not an error; give one greater than 0, as in "
