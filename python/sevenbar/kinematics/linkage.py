@@ -214,13 +214,13 @@ class Linkage(Solvable):
         return LinkageAnswers(self)
 
     @ends_here
-    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+    def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule, driven and read as the drive has it or as given.
 
         `None` for a loop that is no planar or spherical four-bar and no slider-crank.
 
             >>> import sevenbar as sb
-            >>> bar = sb.load("planar_4r").four_bar()
+            >>> bar = sb.load("planar_4r").as_four_bar()
             >>> bar.excess, bar.grashof
             (-30.0, 'crank-rocker')
 

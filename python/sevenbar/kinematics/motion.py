@@ -226,7 +226,7 @@ class Solvable(Loop, ABC):
         """Whether it can only move in a plane."""
 
     @abstractmethod
-    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+    def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
 
     @abstractmethod
@@ -356,7 +356,7 @@ class Motion(Drawable):
         >>> sb.load("planar_4r").motion().four_bar.grashof
         'crank-rocker'
         """
-        return self.linkage.four_bar(self.input, self.output)
+        return self.linkage.as_four_bar(self.input, self.output)
 
     def __iter__(self) -> Iterator[Circuit]:
         return iter(self.circuits)

@@ -81,8 +81,9 @@ def with_common_unit(low: str, high: str) -> tuple[str, str]:
     if at_end is None:
         return low, high
     unit = at_end[1]
-    if (first := split_quantity(low)) is not None:
-        return (low if first[1] else f"{low}{unit}"), high
+    first = split_quantity(low)
+    if first is not None and not first[1]:
+        return f"{low}{unit}", high
     return (f"({low}){unit}" if lacks_unit(low, "angle" if unit in ANGLES else "length") else low), high
 
 
