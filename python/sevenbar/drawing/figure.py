@@ -55,10 +55,15 @@ def column_label(motion: Motion, column: str) -> str:
     return quantity_label(column, "angle", "deg")
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """An empty white figure [inch] with a canvas of its own, outside pyplot's register."""
+def new_figure(width: float, height: float, *, pads: tuple[float, float] | None = None) -> Figure:
+    """An empty white figure [inch] with a canvas of its own, outside pyplot's register.
+
+    With `pads` its panels are laid out by matplotlib, with this room [inch] above and beside each.
+    """
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
+    if pads is not None:
+        figure.set_layout_engine("constrained", h_pad=pads[0], w_pad=pads[1])
     return figure
 
 

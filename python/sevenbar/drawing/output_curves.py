@@ -167,8 +167,9 @@ def curves(
         if ax is None:
             tall = 0.6 + 2.4 * len(quantities)
             wide = 6.4 if len(columns) == 1 else 9.8
-            figure = new_figure(*page_size(style, figsize, (wide, tall), wide=len(columns) > 1))
-            figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+            figure = new_figure(
+                *page_size(style, figsize, (wide, tall), wide=len(columns) > 1), pads=(0.05, 0.06)
+            )
             grid = figure.subplots(len(quantities), len(columns), sharex="col", sharey="row", squeeze=False)
         else:
             found = given_axes(ax, len(quantities), "one for each of the quantities")

@@ -155,8 +155,7 @@ def inertia_figure(found: Inertia) -> Figure:
     """The torque of the input over the cycle, and the sizes of the inertia forces."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
     with styled():
-        figure = new_figure(7.0, 6.6)
-        figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+        figure = new_figure(7.0, 6.6, pads=(0.05, 0.06))
         torque, force = figure.subplots(2, 1, sharex=True)
         across = shown_inputs(cycle, found.input)
         torque.axhline(0, color=BOUND, lw=0.8)
