@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from sevenbar import _core
+import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits import (
     STATUSES,
