@@ -86,7 +86,7 @@ def point(
 
     def toml(found: LeastPoint | NearestPath) -> str:
         longer = draft.with_point(called, link, found.at.tolist())
-        # a name that no file may have is told here
+        # a name that no file may have is refused here
         _ = longer.linkage
         return longer.toml()
 

@@ -39,7 +39,7 @@ def tolerance(
     wanted: Annotated[
         str | None,
         typer.Option(
-            help="In place of --tolerance: the error allowed of what is told, as in 0.5deg; finds tolerances."
+            help="In place of --tolerance: the error allowed of the output, as in 0.5deg; finds tolerances."
         ),
     ] = None,
     circuit: Annotated[int, typer.Option(help="The circuit.")] = 0,
@@ -52,11 +52,12 @@ def tolerance(
     of: Annotated[
         str | None,
         typer.Option(
-            "--of", help="What is told: a joint or a point's coordinate, as in P.x; the output by default."
+            "--of",
+            help="The joint or point's coordinate that deviates, as in P.x; the output by default.",
         ),
     ] = None,
     quantity: Annotated[
-        str, typer.Option(help="What is told of it: position, velocity or acceleration.")
+        str, typer.Option(help="What of it: position, velocity or acceleration.")
     ] = "position",
     input_joint: InputJoint = None,
     output: OutputJoint = None,

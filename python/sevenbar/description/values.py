@@ -24,7 +24,7 @@ PARALLEL = 1e-9
 
 
 def refuse(message: str) -> PydanticCustomError:
-    """The error that tells a person this of a value."""
+    """The error that says this of a value."""
     # pydantic reads braces in a message as a template
     return PydanticCustomError("sevenbar", "{message}", {"message": message})
 

@@ -124,7 +124,7 @@ def tidy(figure: Figure) -> None:
     figure.align_ylabels()
 
 
-def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
+def range_drawn(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
     """The ends of drawn values (n,), of rates that grow without bound those of `CUT`; `None` without any."""
     finite = values[np.isfinite(values)]
     if not finite.size:

@@ -41,7 +41,7 @@ def closure_error(circuits: Iterable[Circuit]) -> float:
 
 
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
-    """What the report tells of the motion as a whole: names and words."""
+    """What the report says of the motion as a whole: names and words."""
     linkage = motion.linkage
     facts = [("loop", joints_text(linkage))]
     if linkage.form == "rows":
@@ -62,8 +62,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
         facts.append(("law", f"{rows}; extremes of velocity and acceleration are those of its rows"))
     facts.append(("motion type", motion.motion_type))
-    if told := meaning(motion):
-        facts.append(("", told))
+    if sentence := meaning(motion):
+        facts.append(("", sentence))
     if near := nearly_moves(motion):
         facts.append(("nearly moves", near))
     facts.append(("circuits", _circuit_count(motion)))
@@ -98,8 +98,8 @@ def joints_text(linkage: Loop) -> str:
 def dimensions_text(linkage: Solvable) -> str:
     """The dimensions by name; nothing of Denavit-Hartenberg rows, which want a table."""
     numbers = {} if linkage.form == "rows" else dict(linkage.dimensions) or side_lengths(linkage)
-    told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
-    return f"{told}  [{linkage.length_unit}]" if told else ""
+    listed = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
+    return f"{listed}  [{linkage.length_unit}]" if listed else ""
 
 
 def _change_points(motion: Motion) -> list[tuple[str, str]]:
@@ -185,15 +185,15 @@ def _circuit_count(motion: Motion) -> str:
     found = {way: count for way, count in ways.items() if count}
     total = len(motion.circuits)
 
-    def told(way: str, who: str, many: bool) -> str:
+    def phrase(way: str, who: str, many: bool) -> str:
         verb = ("go" if many else "goes") if "fro" in way else ("are" if many else "is")
         if "after" in way:
             verb = "close" if many else "closes"
         return f"{who} {way.format(verb)}"
 
     if len(found) == 1:
-        return f"{total}, {told(next(iter(found)), 'each' if total > 1 else 'it', False)}"
-    return f"{total}: " + ", ".join(told(way, str(count), count > 1) for way, count in found.items())
+        return f"{total}, {phrase(next(iter(found)), 'each' if total > 1 else 'it', False)}"
+    return f"{total}: " + ", ".join(phrase(way, str(count), count > 1) for way, count in found.items())
 
 
 def turns_text(count: int) -> str:

@@ -17,7 +17,7 @@ from sevenbar.reporting.shown import Shown, degrees, six_digits
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
 
-#: Dead centres told in one cell; an output that rests has no end of them.
+#: Dead centres listed in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
 
 #: Characters between two columns in print.
@@ -56,7 +56,7 @@ class Summary:
 
 
 def summary(motion: Motion, room: int = 100) -> Summary:
-    """All that the report tells people of a motion, in lines of `room` characters if that can be.
+    """All that the report says of a motion, in lines of `room` characters if that can be.
 
     Angles are in degrees, rates in radians.
     """
@@ -132,7 +132,7 @@ def _every_digit(number: float) -> str:
 
 @dataclass(frozen=True)
 class _Quantity:
-    """What is told of each circuit: one text or more.
+    """What is reported of each circuit: one text or more.
 
     `name` and `unit` are its label in a list, `head` stands above its column. Two texts that are the `ends`
     of something are two lines of a list, min and max; others are one line, joined by `between`. `only`
@@ -153,7 +153,7 @@ class _Quantity:
 
 
 def _quantities(motion: Motion) -> list[_Quantity]:
-    """All that is told of circuits, in order."""
+    """All that is reported of circuits, in order."""
     first, second = motion.input, motion.output
     in_unit, out_unit = (motion.linkage.unit_of(end) for end in (first, second))
     place, result = (Shown("rad" if unit == "rad" else "") for unit in (in_unit, out_unit))
@@ -204,13 +204,13 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         return _Quantity(f"{second} {name}", head, lambda c: rate(pick(c), c), f"[{unit}]", ends=True)
 
     def stands_still(end: str) -> list[_Quantity]:
-        # a table tells the ends of a range as that
+        # in a table the ends of a range are its own column
         ranged = end == "output" or any(c.input_range is not None for c in motion)
         other = "other " if ranged else ""
-        told, others = f"dead centres of the {end}", f"{other}dead centres of the {end}"
+        every, others = f"dead centres of the {end}", f"{other}dead centres of the {end}"
         head = f"{other}dead\ncentres of\nthe {end}"
         return [
-            _Quantity(told, "", lambda c: _dead_centres(c, end, place), in_label, only="list"),
+            _Quantity(every, "", lambda c: _dead_centres(c, end, place), in_label, only="list"),
             _Quantity(others, head, lambda c: _dead_centres(c, end, place, within=True), only="table"),
         ]
 
@@ -265,7 +265,7 @@ def way_round(circuit: Circuit) -> str:
     return turns_text(circuit.turns) if circuit.turns else "to and fro"
 
 
-def _telling(
+def _reported(
     motion: Motion, form: Literal["list", "table"], labels: tuple[str, ...] = ("",)
 ) -> list[tuple[_Quantity, list[Texts]]]:
     """Each quantity with its cells, without those that say nothing, or that the facts hold already.
@@ -278,12 +278,12 @@ def _telling(
         if quantity.only in ("", form) and quantity.name.startswith(labels)
     ]
     found = [(quantity, [quantity.cells(circuit) for circuit in motion]) for quantity in quantities]
-    told = f"range of {motion.input}"
+    full = f"range of {motion.input}"
     return [
         (quantity, cells)
         for quantity, cells in found
         if any(cell[0] not in NOTHING for cell in cells)
-        and not (quantity.name == told and set(cells) == {("full turns",)})
+        and not (quantity.name == full and set(cells) == {("full turns",)})
     ]
 
 
@@ -292,14 +292,14 @@ def circuit_facts(motion: Motion, circuit: Circuit, labels: tuple[str, ...] = ("
 
     Of all, those whose names begin with one of the `labels`.
     """
-    told = [(quantity, [cells[circuit.index]]) for quantity, cells in _telling(motion, "list", labels)]
-    return [(label, cells[0]) for label, cells in _lines(told) if cells[0] not in NOTHING]
+    reported = [(quantity, [cells[circuit.index]]) for quantity, cells in _reported(motion, "list", labels)]
+    return [(label, cells[0]) for label, cells in _lines(reported) if cells[0] not in NOTHING]
 
 
-def _lines(told: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Texts]]:
+def _lines(reported: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Texts]]:
     """Quantities as lines of a list, those with two ends as two lines."""
     lines: list[tuple[str, Texts]] = []
-    for quantity, cells in told:
+    for quantity, cells in reported:
         if quantity.ends and any(len(cell) == 2 for cell in cells):
             lines.append((quantity.label("min"), tuple(cell[0] for cell in cells)))
             lines.append((quantity.label("max"), tuple(cell[-1] for cell in cells)))
@@ -310,7 +310,7 @@ def _lines(told: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Tex
 
 def _side_by_side(motion: Motion) -> list[Sheet]:
     """A line for each quantity: first those that circuits share, then with a column for each circuit."""
-    lines = _lines(_telling(motion, "list"))
+    lines = _lines(_reported(motion, "list"))
     if len(motion.circuits) == 1:
         return [_list(motion, ["circuit 0"], lines)]
     shared = [(label, cells[:1]) for label, cells in lines if len(set(cells)) == 1]
@@ -323,11 +323,11 @@ def _side_by_side(motion: Motion) -> list[Sheet]:
 
 def _compared(motion: Motion, room: int) -> list[Sheet]:
     """What all circuits share, then one table: a row for each circuit, those that agree in one row."""
-    told = _telling(motion, "table")
+    reported = _reported(motion, "table")
     shared = [
-        (quantity.label(), (quantity.between.join(cells[0]),)) for quantity, cells in told if _same(cells)
+        (quantity.label(), (quantity.between.join(cells[0]),)) for quantity, cells in reported if _same(cells)
     ]
-    own = [(quantity, cells) for quantity, cells in told if not _same(cells)]
+    own = [(quantity, cells) for quantity, cells in reported if not _same(cells)]
     sheets = [_list(motion, ["every circuit"], shared)] if shared else []
     if own:
         table = _comparison(motion, own)
@@ -340,13 +340,13 @@ def _compared(motion: Motion, room: int) -> list[Sheet]:
     return sheets
 
 
-def _comparison(motion: Motion, told: Sequence[tuple[_Quantity, list[Texts]]]) -> Sheet:
+def _comparison(motion: Motion, reported: Sequence[tuple[_Quantity, list[Texts]]]) -> Sheet:
     alike: dict[Texts, list[str]] = {}
     for circuit in motion:
-        row = tuple("\n".join(cells[circuit.index]) for _, cells in told)
+        row = tuple("\n".join(cells[circuit.index]) for _, cells in reported)
         alike.setdefault(row, []).append(str(circuit.index))
     rows = tuple((", ".join(indices), *row) for row, indices in alike.items())
-    heads = ("circuit", *(quantity.head for quantity, _ in told))
+    heads = ("circuit", *(quantity.head for quantity, _ in reported))
     notes = []
     if any(head.startswith("range of") for head in heads):
         notes.append("the ends of a range are dead centres")
@@ -375,7 +375,7 @@ def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts
 
 
 def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = False) -> Texts:
-    """Where the input or the output stands still; `within`: but for the ends of its range."""
+    """Where the input or the output stands still; `within`: the ends of its range left out."""
     found: Sequence[DeadCentre] = [d for d in circuit.dead_centres if d.kind == kind]
     if within:
         angle = circuit.angle

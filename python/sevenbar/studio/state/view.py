@@ -38,7 +38,7 @@ class Stretch:
     """A stretch of a path: its first row, the input on its rows, and whether it stands still at either end.
 
     Near a dead centre the joints move as the root of what is left of the input. So a place between two rows
-    is told by a phase, an angle of which the input is the cosine: by that the joints run evenly.
+    is given by a phase, an angle of which the input is the cosine: by that the joints run evenly.
     """
 
     start: int
