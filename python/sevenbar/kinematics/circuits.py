@@ -85,7 +85,7 @@ class Sensitivity(Printed):
     `names` and `units` (k,) are those of the numbers, as in the file. `position` (n, columns, k) [rad, or
     length, by the number's unit], `velocity` and `acceleration` by time at the circuit's own input, which
     stays as it is; of a ball's turns there is the position only. `points` has each named point's derivative
-    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` tells why), for
+    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` says why), for
     numbers that open the loop if they change alone (`opening`), and for what spins idly.
     """
 
