@@ -9,7 +9,8 @@ import pytest
 import sevenbar as sb
 from sevenbar.design.points.cycle import cycle_of
 from sevenbar.errors import RequestError
-from sevenbar.forces.counterweights import Mount, counterweights, lower_bound
+from sevenbar.forces.counterweights import counterweights, lower_bound
+from sevenbar.forces.mounts import Mount
 from sevenbar.forces.shaking import shaking_of
 
 ROWS = 180

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sevenbar.curves.curve import greatest, highest, lowest, mean
+from sevenbar.curves.curve import greatest, mean
 from sevenbar.curves.cycle_series import ENOUGH, CycleSeries, cycle_series
 from sevenbar.curves.pieces import pieces
 from sevenbar.curves.stationary import highest_between, zeros_between
@@ -86,6 +86,8 @@ def test_extremes_of_a_trigonometric_polynomial_are_the_roots_of_its_derivative(
     assert values.max() >= dense.max() - 1e-12 * size
     assert values.min() <= dense.min() + 1e-12 * size
     assert values == pytest.approx(value(inputs), abs=1e-12 * size)
+    assert series.highest().value == pytest.approx(values.max(), abs=1e-14 * size)
+    assert series.lowest().value == pytest.approx(values.min(), abs=1e-14 * size)
     # highest and lowest take turns
     if len(inputs) > 1:
         assert len(inputs) % 2 == 0
@@ -94,13 +96,13 @@ def test_extremes_of_a_trigonometric_polynomial_are_the_roots_of_its_derivative(
 def test_a_constant_has_its_first_row_for_highest_and_lowest():
     for rows in (np.full(12, 4.0), np.zeros(12), 4 + 1e-15 * np.arange(12)):
         series = CycleSeries(rows, 0.5, math.tau)
-        assert highest(series).value == lowest(series).value == rows[0]
-        assert highest(series).input == 0.5
+        assert series.highest().value == series.lowest().value == rows[0]
+        assert series.highest().input == 0.5
 
 
 def test_the_peak_of_a_sine_of_three_rows_is_right_and_of_two_is_not_claimed():
     series = CycleSeries(np.sin(grid(3) + 0.2), 0.0, math.tau)
-    assert highest(series).value == pytest.approx(1.0, abs=1e-15)
+    assert series.highest().value == pytest.approx(1.0, abs=1e-15)
     assert series.tail > ENOUGH
 
 
@@ -109,7 +111,7 @@ def test_the_running_integral_is_the_integral_less_the_mean():
     running = series.running()
     x = np.linspace(0, 6, 20)
     assert running.at(x) == pytest.approx(-2 / 3 * np.cos(3 * x), abs=1e-13)
-    assert highest(running).value == pytest.approx(2 / 3, abs=1e-14)
+    assert running.highest().value == pytest.approx(2 / 3, abs=1e-14)
     assert running.at(x, 1) == pytest.approx(series.at(x) - 5, abs=1e-12)
 
 
@@ -122,8 +124,8 @@ def test_rows_are_doubled_until_they_are_enough():
     series = cycle_series(sharp, few.rows, 0.0, math.tau)
     assert len(series.rows) == 36 * 8
     assert series.tail < 1e-12
-    assert highest(series).value == pytest.approx(20.0, rel=1e-12)
-    assert highest(series).input == pytest.approx(1.0, abs=1e-12)
+    assert series.highest().value == pytest.approx(20.0, rel=1e-12)
+    assert series.highest().input == pytest.approx(1.0, abs=1e-12)
     # a jump is not resolved by any number of rows, and said so
     assert (
         cycle_series(lambda x: np.sign(np.sin(x)), np.sign(np.sin(grid(36, 0.1))), 0.1, math.tau).tail > 1e-5
@@ -145,8 +147,8 @@ def test_a_jump_has_its_limits_from_both_sides(period, breaks):
         here = np.abs((inputs - place + 1) % math.tau - 1) < 1e-12
         assert np.sort(values[here]) == pytest.approx(smooth(place) + np.array([0.0, 30.0]), abs=1e-11)
     dense = np.linspace(1.0 + 1e-9, 2.5, 200001)
-    assert highest(curve).value == pytest.approx(stepped(dense).max(), abs=1e-8)
-    assert highest(curve).value >= stepped(dense).max() - 1e-12
+    assert curve.highest().value == pytest.approx(stepped(dense).max(), abs=1e-8)
+    assert curve.highest().value >= stepped(dense).max() - 1e-12
     assert mean(curve) == pytest.approx(
         CycleSeries(smooth(x), 0.2, period).rows.mean() + 45 / math.tau, abs=1e-11
     )
@@ -158,9 +160,9 @@ def test_the_running_integral_of_a_step_is_a_saw():
     running = curve.running()
     share = 1 / math.tau
     assert mean(curve) == pytest.approx(share, abs=1e-15)
-    assert highest(running).value - lowest(running).value == pytest.approx(1 - share, abs=1e-14)
-    assert highest(running).input % math.tau == pytest.approx(1.0, abs=1e-12)
-    assert lowest(running).input % math.tau == pytest.approx(0.0, abs=1e-12)
+    assert running.highest().value - running.lowest().value == pytest.approx(1 - share, abs=1e-14)
+    assert running.highest().input % math.tau == pytest.approx(1.0, abs=1e-12)
+    assert running.lowest().input % math.tau == pytest.approx(0.0, abs=1e-12)
 
 
 def test_pieces_and_series_agree_where_nothing_jumps():
@@ -197,10 +199,10 @@ def test_the_squared_length_of_a_turning_vector_is_constant():
         TimedRows(turning, x, x),
     ):
         squared = curve.squared()
-        assert highest(squared).value == pytest.approx(25.0, rel=1e-13)
-        assert lowest(squared).value == pytest.approx(25.0, rel=1e-13)
+        assert squared.highest().value == pytest.approx(25.0, rel=1e-13)
+        assert squared.lowest().value == pytest.approx(25.0, rel=1e-13)
         assert mean(squared) == pytest.approx(25.0, rel=1e-13)
-        assert highest(curve.part(2)).value == pytest.approx(4.0, rel=1e-13)
+        assert curve.part(2).highest().value == pytest.approx(4.0, rel=1e-13)
 
 
 def test_the_mean_of_a_cubed_sine_is_that_of_its_closed_form():
@@ -213,7 +215,7 @@ def test_rows_in_time_have_trapezoids_and_nothing_between():
     time = np.array([0.0, 1.0, 3.0])
     curve = TimedRows(np.array([0.0, 2.0, 4.0]), np.array([5.0, 6.0, 7.0]), time)
     assert shares_of(time) @ curve.rows == mean(curve) == pytest.approx((1 + 6) / 3)
-    assert highest(curve).input == 7.0
+    assert curve.highest().input == 7.0
     assert math.isnan(curve.tail)
     assert curve.running().rows[-1] == pytest.approx(0.0, abs=1e-15)
     assert shares_of(np.array([2.0])).tolist() == [1.0]

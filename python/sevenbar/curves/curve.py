@@ -44,6 +44,14 @@ class Curve(Protocol):
         """Inputs and values (m,) of all local extremes of a number, in order; at jumps of both sides."""
         ...
 
+    def highest(self) -> Peak:
+        """The highest value of a number."""
+        ...
+
+    def lowest(self) -> Peak:
+        """The lowest value of a number."""
+        ...
+
     def mean_of(self, function: Callable[[Floats], Floats]) -> float:
         """The mean over the cycle of a function of the values, which takes and gives (m,)."""
         ...
@@ -58,21 +66,13 @@ def mean(curve: Curve) -> float:
     return curve.mean_of(lambda values: values)
 
 
-def highest(curve: Curve) -> Peak:
-    """The highest value of a number."""
-    inputs, values = curve.extremes()
-    top = int(np.argmax(values))
-    return Peak(float(values[top]), float(inputs[top]))
-
-
-def lowest(curve: Curve) -> Peak:
-    """The lowest value of a number."""
-    inputs, values = curve.extremes()
-    bottom = int(np.argmin(values))
-    return Peak(float(values[bottom]), float(inputs[bottom]))
-
-
 def greatest(curve: Curve) -> Peak:
     """The value of a number that is farthest from zero, with its sign."""
-    top, bottom = highest(curve), lowest(curve)
+    top, bottom = curve.highest(), curve.lowest()
     return top if top.value >= -bottom.value else bottom
+
+
+def highest_of(inputs: Floats, values: Floats) -> Peak:
+    """The highest of values (m,) at inputs (m,)."""
+    top = int(np.argmax(values))
+    return Peak(float(values[top]), float(inputs[top]))

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.curve import Peak, highest_of
 from sevenbar.curves.stationary import zeros_between
 
 #: Places to each row where signs are compared.
@@ -132,6 +133,29 @@ class CycleSeries:
             shares = (places - self.first) / self.period
             places = np.asarray(places - self.period * np.floor(shares))[np.argsort(shares % 1.0)]
         return places, self.at(places)
+
+    def highest(self) -> Peak:
+        """The highest value: from each finer row that may be next to it to the place between the rows."""
+        grid = self.finer(FINE)
+        step = self.period / len(grid)
+        turns = math.tau / self.period * np.arange(len(self.waves))
+        # nowhere between the finer rows it is higher by more than this
+        more = float(np.abs(self.waves) @ turns**2) * (step / 2) ** 2 / 2
+        tops = (grid >= np.roll(grid, 1)) & (grid > np.roll(grid, -1)) & (grid >= grid.max() - more)
+        if float(np.abs(self.waves[1:]).max(initial=0.0)) <= CONSTANT * self.scale or not tops.any():
+            return Peak(float(self.rows[0]), self.first)
+        centres = np.asarray(self.first + step * np.flatnonzero(tops), dtype=np.float64)
+        places = zeros_between(
+            lambda x: (self.at(x, 1), self.at(x, 2)), np.asarray(centres - step), np.asarray(centres + step)
+        )
+        places = np.concatenate([places, centres])
+        places = places - self.period * np.floor((places - self.first) / self.period)
+        return highest_of(places, self.at(places))
+
+    def lowest(self) -> Peak:
+        """The lowest value."""
+        top = CycleSeries(-self.rows, self.first, self.period).highest()
+        return Peak(-top.value, top.input)
 
     def _zeros(self, edges: Floats, values: Floats, order: int) -> Floats:
         """Zeros of a derivative between edges (m,) round the cycle where its values (m,) change sign."""

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev, chebyshev, legendre
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.curve import Peak, highest_of
 from sevenbar.curves.stationary import AT_END, coefficients, nodes, real_roots
 
 #: Pieces of a cycle before any is halved.
@@ -89,6 +90,20 @@ class Pieces:
             # a constant
             return self.starts[:1], chebyshev.chebval(-1.0, self.series[0])[None]
         return places, heights
+
+    def highest(self) -> Peak:
+        """The highest value."""
+        # no piece reaches higher than the sum of the sizes of its terms
+        ends = chebyshev.chebval(np.array([-1.0, 0.0, 1.0]), self.series.T)
+        reach = self.series[:, 0] + np.abs(self.series[:, 1:]).sum(axis=1)
+        kept = reach >= ends.max()
+        some = Pieces(self.rows, self.starts[kept], self.ends[kept], self.series[kept], self.starts)
+        return highest_of(*some.extremes())
+
+    def lowest(self) -> Peak:
+        """The lowest value."""
+        top = Pieces(self.rows, self.starts, self.ends, -self.series, self.breaks).highest()
+        return Peak(-top.value, top.input)
 
     def _breaks(self, end: float) -> bool:
         """Whether a piece ends where the next may begin with a jump; that after the last is the first."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.curve import Peak, highest_of
 
 
 def shares_of(time: Floats) -> Floats:
@@ -46,6 +47,15 @@ class TimedRows:
         kept = np.ones(len(self.rows), dtype=bool)
         kept[1:-1] = steps[:-1] * steps[1:] <= 0
         return self.input[kept], self.rows[kept]
+
+    def highest(self) -> Peak:
+        """The greatest row."""
+        return highest_of(self.input, self.rows)
+
+    def lowest(self) -> Peak:
+        """The least row."""
+        top = highest_of(self.input, -self.rows)
+        return Peak(-top.value, top.input)
 
     def mean_of(self, function: Callable[[Floats], Floats]) -> float:
         """The mean by time of a function of the rows."""

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.curves.curve import Curve, Peak, highest, mean
+from sevenbar.curves.curve import Curve, Peak, mean
 from sevenbar.curves.cycle_series import CycleSeries
 from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.text.printing import Printed
@@ -59,7 +59,7 @@ def shaking_of(wrench: Floats, input: Floats, *, period: float | None, time: Flo
     found = []
     for part in (FORCE, MOMENT):
         squares = both.part(part).squared()
-        top = highest(squares)
+        top = squares.highest()
         found.append((Peak(_root(top.value), top.input), _root(mean(squares))))
     (force, rms_force), (moment, rms_moment) = found
     return Shaking(force, moment, rms_force, rms_moment, orders)

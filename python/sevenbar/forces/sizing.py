@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_number
-from sevenbar.curves.curve import Curve, Peak, greatest, highest, lowest, mean
+from sevenbar.curves.curve import Curve, Peak, greatest, mean
 from sevenbar.curves.cycle_series import cycle_series
 from sevenbar.curves.pieces import pieces
 from sevenbar.curves.timed_rows import TimedRows
@@ -193,13 +193,13 @@ def sizing(
     unit = float(units[0])
     if period is None:
         power: Curve = TimedRows(rows.power, rows.input, rows.time)
-        peak_power, braking, energy, work = highest(power), lowest(power), power.running(), 1.0
+        peak_power, braking, energy, work = power.highest(), power.lowest(), power.running(), 1.0
     else:
         rate, work = speed or 0.0, unit
-        ends = [Peak(rate * unit * one.value, one.input) for one in (highest(torque), lowest(torque))]
+        ends = [Peak(rate * unit * one.value, one.input) for one in (torque.highest(), torque.lowest())]
         peak_power, braking = max(ends, key=_value), min(ends, key=_value)
         energy = torque.running()
-    top, bottom = highest(energy), lowest(energy)
+    top, bottom = energy.highest(), energy.lowest()
     fluctuation = work * (top.value - bottom.value)
     peak = greatest(torque)
     return Sizing(
@@ -243,7 +243,7 @@ def _bearing(
             continue
         unit = float(units[columns[0]])
         squares = every.part(columns).squared()
-        top = highest(squares)
+        top = squares.highest()
         cubes = squares.mean_of(lambda values: np.maximum(values, 0.0) ** 1.5)
         burdens[name] = Burden(
             Peak(unit * math.sqrt(max(0.0, top.value)), top.input), unit * max(0.0, cubes) ** (1 / 3)
