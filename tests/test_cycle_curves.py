@@ -236,6 +236,10 @@ def test_a_highest_place_in_a_bracket_is_found_by_sixteen_values():
 
 def test_zeros_are_found_from_either_sign():
     found = zeros_between(
-        lambda x: (np.sin(x), np.cos(x)), np.array([2.0, 6.0, -1.0]), np.array([4.0, 7.0, 1.5])
+        lambda x: (np.sin(x), np.cos(x)),
+        np.array([2.0, 6.0, -1.0, 1e-9]),
+        np.array([4.0, 7.0, 1.5, 1.0]),
+        np.array([True, False, False, False]),
     )
-    assert found == pytest.approx([math.pi, math.tau, 0.0], abs=1e-14)
+    # the last lies just outside, where rounding would have the caller see it inside: then it is the end
+    assert found == pytest.approx([math.pi, math.tau, 0.0, 1e-9], abs=1e-14)

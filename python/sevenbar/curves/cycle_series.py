@@ -146,7 +146,10 @@ class CycleSeries:
             return Peak(float(self.rows[0]), self.first)
         centres = np.asarray(self.first + step * np.flatnonzero(tops), dtype=np.float64)
         places = zeros_between(
-            lambda x: (self.at(x, 1), self.at(x, 2)), np.asarray(centres - step), np.asarray(centres + step)
+            lambda x: (self.at(x, 1), self.at(x, 2)),
+            np.asarray(centres - step),
+            np.asarray(centres + step),
+            np.full(len(centres), self.period > 0),
         )
         places = np.concatenate([places, centres])
         places = places - self.period * np.floor((places - self.first) / self.period)
@@ -167,7 +170,11 @@ class CycleSeries:
         def function(x: Floats) -> tuple[Floats, Floats]:
             return self.at(x, order), self.at(x, order + 1)
 
-        return zeros_between(function, edges[starts], ends[starts]) if starts.size else np.empty(0)
+        return (
+            zeros_between(function, edges[starts], ends[starts], signs[starts])
+            if starts.size
+            else np.empty(0)
+        )
 
     def mean_of(self, function: Callable[[Floats], Floats]) -> float:
         """The mean of a function of the values, from `DENSE` times as many rows."""

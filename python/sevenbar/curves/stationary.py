@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial import Chebyshev, chebyshev
 
 from sevenbar.arrays import Floats
@@ -78,14 +79,19 @@ def highest_between(evaluate: Callable[[Floats], Floats], low: Floats, high: Flo
     return places, evaluate(places)
 
 
-def zeros_between(function: Callable[[Floats], tuple[Floats, Floats]], low: Floats, high: Floats) -> Floats:
-    """One zero (k,) in each bracket at whose ends a function has unlike signs.
+def zeros_between(
+    function: Callable[[Floats], tuple[Floats, Floats]],
+    low: Floats,
+    high: Floats,
+    falls: npt.NDArray[np.bool_],
+) -> Floats:
+    """One zero (k,) in each bracket, at which a function falls from above zero to below, or rises.
 
     `function` takes places (k,) and gives values and slopes there. Newton's method, and half the bracket
-    where a step leaves it.
+    where a step leaves it. Of which sign the ends are is the caller's word: rounding may see a zero that
+    lies at an end on either side of it.
     """
     low, high = low.copy(), high.copy()
-    falls = function(low)[0] > 0
     at = (low + high) / 2
     for _ in range(HALVINGS):
         value, slope = function(at)
