@@ -106,7 +106,7 @@ class Along:
         """The greatest size (k,) at the middles and ends of the pieces."""
         waves = self.series
         return np.asarray(
-            np.max([np.abs(chebyshev.chebval(x, np.moveaxis(waves, 1, 0))).max(axis=-1) for x in (-1, 0, 1)],
+            np.max([np.abs(chebyshev.chebval(x, np.moveaxis(waves, 1, 0))).max(axis=0) for x in (-1, 0, 1)],
                    axis=0)
         )  # fmt: skip
 

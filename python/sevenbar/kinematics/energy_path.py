@@ -49,6 +49,8 @@ class EnergyBuilder:
         #: Columns of balls that turn freely: their turns may be no polynomials.
         self.turned = [c for c in np.flatnonzero(self.numbers.is_ball) if c not in spun]
         self.solvers: dict[int, ForceSolver] = {}
+        #: The derivatives of all columns but those of balls by arc length, once the course is built.
+        self.tangents: Along | None = None
         linkage = solver.linkage
         turns = [s for s in solver.loading.springs if s.joint is not None and s.stiffness]
         #: Springs that wind up: their column, and the torque [N m] that a lap adds.
@@ -88,7 +90,8 @@ class EnergyBuilder:
         edges[-1] = length
         todo = np.column_stack([edges[:-1], edges[1:]])
         done: list[tuple[float, float, Floats]] = []
-        scale = np.zeros(5)
+        width = 5 + len(self.smooth)
+        scale = np.zeros(width)
         potentials: list[tuple[Floats, Floats]] = []
         tail = 0.0
         floor = NOTHING * self._acting()
@@ -101,7 +104,7 @@ class EnergyBuilder:
             scale = np.maximum(scale, np.abs(values).max(axis=0))
             if scale[1] < floor:
                 values[:, 1] = 0.0
-            values = values.reshape(len(todo), TERMS, 5)
+            values = values.reshape(len(todo), TERMS, width)
             series = np.moveaxis(coefficients(np.moveaxis(values, 1, 0)), 0, 1)
             size = np.where(scale > 0, scale, 1.0)
             size[1] = max(size[1], 1e3 * floor)
@@ -115,7 +118,9 @@ class EnergyBuilder:
             if not len(todo):
                 break
         done.sort(key=lambda piece: piece[0])
-        quantities = Along(np.array([piece[0] for piece in done] + [length]), np.stack([p[2] for p in done]))
+        found = Along(np.array([piece[0] for piece in done] + [length]), np.stack([p[2] for p in done]))
+        quantities = found.part(*range(5))
+        self.tangents = found.part(*range(5, width))
         course = EnergyCourse(quantities, path.closed, breaks, 0.0, max(tail, path.tail))
         return replace(course, start=self._start(course, potentials))
 
@@ -166,9 +171,9 @@ class EnergyBuilder:
     def _values(
         self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats
     ) -> tuple[Floats, Floats]:
-        """m, U', D, dx/ds, winding (j, 5), and the potential energy (j,), at places (j,)."""
+        """m, U', D, dx/ds, winding and the columns' slopes (j, 5 + k), and the potential (j,), at places."""
         poses = self.poses(pieces, s)
-        out, potential = np.empty((len(s), 5)), np.empty(len(s))
+        out, potential = np.empty((len(s), 5 + len(self.smooth))), np.empty(len(s))
         inputs = poses[:, self.path.input]
         joule = self.solver.size**2
         for driver in np.unique(self.path.drivers[pieces]):
@@ -191,6 +196,7 @@ class EnergyBuilder:
             by_s = rates * self.scales * factor[:, None]
             out[mine, 3] = by_s[:, self.path.input]
             out[mine, 4] = sum((torque * by_s[:, c] for c, torque in self.wound), np.zeros(len(mine)))
+            out[mine, 5:] = by_s[:, self.smooth]
             potential[mine] = energies[0][:, 1]
         if self.solver.linkage.column_kinds[self.path.input] == "slide":
             out[:, 3] *= LENGTHS[self.solver.linkage.length_unit]

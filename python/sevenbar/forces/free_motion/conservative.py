@@ -32,6 +32,12 @@ BALANCED = 1e-13
 #: Most laps of a motion that does not repeat itself.
 MOST_LAPS = 20_000
 
+#: Parts of the way in which a turning point is looked for first.
+PARTS = 32
+
+#: Most laps that are taken together.
+MOST_AT_ONCE = 128
+
 #: How a motion goes on.
 Course = Literal["rotation", "oscillation", "rest", "asymptotic", "passing", "ends"]
 
@@ -192,8 +198,11 @@ def _passing(
     legs: list[Leg] = []
     here, time, turned = place, 0.0, rests
     first_turn = place if rests else None
-    for _ in range(MOST_LAPS):
-        aim = here + way * course.length if course.closed else (course.length if way > 0 else 0.0)
+    ahead, laps = 1, 0
+    while laps < MOST_LAPS:
+        # a motion that goes faster and faster is taken by more and more laps
+        aim = here + way * ahead * course.length if course.closed else (course.length if way > 0 else 0.0)
+        laps, ahead = laps + ahead, min(2 * ahead, MOST_AT_ONCE)
         end = seeker.end(here, way, aim)
         if end is not None and end[1] == "turn" and turned and first_turn is not None:
             low, high = sorted((first_turn, end[0]))
@@ -225,7 +234,7 @@ def _passing(
             turning = () if first_turn is None else (first_turn,)
             return Conservative("passing", tuple(legs), None, turning)
         if end is not None:
-            turned, first_turn, way = True, here, -way
+            turned, first_turn, way, ahead = True, here, -way, 1
             if rests:
                 first_turn = place
         elif not course.closed:
@@ -248,10 +257,9 @@ class _Seeker:
     def end(self, place: float, way: int, aim: float) -> tuple[float, str] | None:
         """The first place from here on, up to `aim`, where it turns ("turn") or that it never reaches ("top")."""
         course = self.course
-        laps = sorted({float(lap) for lap in course.laps(np.array([place, aim]))})
-        if course.closed:
-            laps = [laps[0] - 1, *laps, laps[-1] + 1]
-        marks = np.unique(np.concatenate([course.marks(lap) for lap in laps]))
+        first, last = np.sort(course.laps(np.array([place, aim])))
+        laps = np.arange(first - 1, last + 2) if course.closed else np.zeros(1)
+        marks = np.unique(np.concatenate([course.marks(float(lap)) for lap in laps]))
         inside = marks[(way * (marks - place) > 1e-13 * course.length) & (way * (aim - marks) > 0)]
         ordered = np.append(inside[::way], aim)
         if not course.closed and abs(ordered[-1] - aim) == 0:
@@ -272,6 +280,10 @@ class _Seeker:
 
     def _zero(self, inside: float, outside: float) -> float:
         """Where T is zero between a place that is reached and one that is not."""
+        fine = inside + (outside - inside) * np.arange(PARTS + 1) / PARTS
+        beyond = np.flatnonzero(self.kinetic(fine[1:-1]) < 0)
+        first = int(beyond[0]) + 1 if beyond.size else PARTS
+        inside, outside = float(fine[first - 1]), float(fine[first])
         at = (inside + outside) / 2
         for _ in range(200):
             here = np.array([at])

@@ -104,9 +104,15 @@ class EnergyCourse:
         energy = self.start + own[:, 5] + lap * own[:, 6] + lap * gain + more * lap * (lap - 1) / 2
         return own[:, MASS], own[:, SLOPE] + lap * own[:, WINDING], energy, own[:, DAMPING]
 
+    @cached_property
+    def _slopes(self) -> Along:
+        return self.quantities.part(*((SLOPE, WINDING) if self.winds else (SLOPE,)))
+
     def slope(self, s: Floats) -> Floats:
         """U' (j,) at places (j,)."""
-        return self.at(s)[1]
+        lap = self.laps(s)
+        own = self._slopes.at(s - lap * self.length)
+        return np.asarray(own[:, 0] + lap * own[:, 1]) if self.winds else own[:, 0]
 
     def rise(self, a: Floats, b: Floats) -> Floats:
         """U(b) - U(a), (j,): over short ways the integral of U', which loses no digits."""

@@ -28,6 +28,9 @@ TERMS = 20
 #: A panel is fine enough where its last terms are below this part of the first.
 RESOLVED = 1e-14
 
+#: What rounding of a place leaves, in parts of it by the length of a piece.
+ROUNDING = 4e-15
+
 #: Most halvings of a panel: past an equilibrium that is just not reached the integrand is as sharp as rounding.
 HALVINGS = 50
 
@@ -140,12 +143,14 @@ def run_between(
     first, last = np.zeros(len(kind)), np.ones(len(kind))
     done = []
     tail = 0.0
+    # far laps have fewer digits left for the place on them
+    resolved = max(RESOLVED, ROUNDING * max(abs(low), abs(high)) / course.shortest)
     for halving in range(HALVINGS + 1):
         w = (first + last)[:, None] / 2 + (last - first)[:, None] / 2 * nodes(TERMS)
         rates = _rates(course, kind, starts, ends, w, reference)
         series = coefficients(rates.T).T
         worst = np.abs(series[:, -2:]).max(axis=1) / np.abs(series[:, 0])
-        rough = worst > RESOLVED if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
+        rough = worst > resolved if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
         # no finer than places are known
         rough &= (last - first) * (ends - starts) > 1e-14 * course.length
         tail = max(tail, float(worst[~rough].max(initial=0.0)))
