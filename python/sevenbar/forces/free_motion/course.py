@@ -72,14 +72,10 @@ class EnergyCourse:
         last = self._all.series[-1].sum(axis=0)
         return float(last[-2]), float(last[-1])
 
-    @cached_property
-    def _force(self) -> float:
-        return float(self.quantities.reach[SLOPE])
-
     @property
     def gain(self) -> float:
         """What U gains on a lap; 0 where that is rounding."""
-        return self._gains[0] if abs(self._gains[0]) > 1e-12 * self._force * self.length else 0.0
+        return self._gains[0] if abs(self._gains[0]) > 1e-12 * self.steepest * self.length else 0.0
 
     @property
     def repeats(self) -> bool:
@@ -128,6 +124,16 @@ class EnergyCourse:
         points, weights = _GAUSS
         where = a[:, None] + (b - a)[:, None] * (points + 1) / 2
         return np.asarray(self.slope(where.ravel()).reshape(where.shape) @ weights / 2)
+
+    @cached_property
+    def steepest(self) -> float:
+        """The greatest size of U'."""
+        return float(self.quantities.reach[SLOPE])
+
+    @cached_property
+    def highest(self) -> float:
+        """The greatest size of U on the first lap, from its own integral."""
+        return float(self._all.reach[5])
 
     @cached_property
     def shortest(self) -> float:
