@@ -52,8 +52,6 @@ def test_a_pendulum_that_goes_round_does_so_by_jacobi() -> None:
     assert fall.kind == "rotation"
     assert fall.period is not None
     assert abs(fall.period - float(2 * mpmath.ellipk(modulus) / rate)) < 1e-13
-    ends = [float(2 * mpmath.ellipf(0, modulus)), *fall.time]
-    del ends
     for t, angle in zip(fall.time, fall.input + math.pi / 2, strict=True):
         back = mpmath.ellipf(mpmath.mpf(float(angle)) / 2, modulus) / rate
         assert abs(float(back) - t) < 2e-12
@@ -144,9 +142,7 @@ def test_the_chain_of_two_four_bars_is_where_the_benchmark_has_it() -> None:
 
 def bricard() -> tuple[sb.Circuit, HingedChain]:
     """The library's Bricard mechanism: five rods of 1 m and 1 kg between six hinges."""
-    places = np.array(
-        [(0, 0, 0), (1, 0, 0), (1, -1, 0), (1, -1, 1), (0, -1, 1), (0, 0, 1)], dtype=np.float64
-    )
+    places = np.array([(0, 0, 0), (1, 0, 0), (1, -1, 0), (1, -1, 1), (0, -1, 1), (0, 0, 1)], dtype=np.float64)
     axes = np.eye(3)[[1, 2, 0, 1, 2, 0]]
     linkage = sb.from_axes(
         [{"kind": "R", "at": at, "axis": axis} for at, axis in zip(places, axes, strict=True)],
@@ -206,7 +202,7 @@ def spatial_slider_crank() -> sb.Circuit:
 def angle_of_slider_crank(t: float) -> float:
     """The crank's angle by energy alone, in 25 digits: no joint, no matrix of the program."""
     with mpmath.workdps(25):
-        half, fifth = mpmath.mpf(1) / 2, mpmath.mpf(1) / 5
+        half = mpmath.mpf(1) / 2
 
         def crank(angle: Any) -> Any:
             return mpmath.matrix(
@@ -220,11 +216,15 @@ def angle_of_slider_crank(t: float) -> float:
 
         def axes(angle: Any, cosine: Any) -> tuple[list[Any], list[Any]]:
             b = crank(angle)
-            x = [(slide(angle) - b[0]) / mpmath.mpf("0.3"), -b[1] / mpmath.mpf("0.3"), -b[2] / mpmath.mpf("0.3")]
+            x = [
+                (slide(angle) - b[0]) / mpmath.mpf("0.3"),
+                -b[1] / mpmath.mpf("0.3"),
+                -b[2] / mpmath.mpf("0.3"),
+            ]
             # y is square to the rod and keeps its angle with the slide: y = p e + q (x cross e)
             square = 1 - x[0] ** 2
             p = cosine / square
-            q = mpmath.sqrt((1 - p**2 * square) / square)
+            q = -mpmath.sqrt((1 - p**2 * square) / square)
             e = [1 - x[0] * x[0], -x[0] * x[1], -x[0] * x[2]]
             cross = [0, x[2], -x[1]]
             return x, [p * e[k] + q * cross[k] for k in range(3)]
@@ -251,13 +251,12 @@ def angle_of_slider_crank(t: float) -> float:
             ds = (slide(angle + step) - slide(angle - step)) / (2 * step)
             centre = [ds / 2, db[1] / 2, db[2] / 2]
             turning = (4 * spin[0] ** 2 + 40 * spin[1] ** 2 + 40 * spin[2] ** 2) / 10000
-            return (mpmath.mpf(1) / 10000 + turning + half * sum(v * v for v in centre) + 2 * ds**2)
+            return mpmath.mpf(1) / 10000 + turning + half * sum(v * v for v in centre) + 2 * ds**2
 
         def potential(angle: Any) -> Any:
             return half * mpmath.mpf("9.81") * crank(angle)[2] / 2
 
         energy = 18 * inertia(mpmath.mpf(0)) + potential(mpmath.mpf(0))
-        del fifth
 
         def slowness(angle: Any) -> Any:
             return mpmath.sqrt(inertia(angle) / (2 * (energy - potential(angle))))
@@ -270,7 +269,7 @@ def angle_of_slider_crank(t: float) -> float:
 
 def test_the_spatial_slider_crank_is_where_energy_has_it() -> None:
     fall = spatial_slider_crank().free_motion(0.2, start=0.0, speed=6.0, samples=3)
-    assert abs(fall.input[-1] - angle_of_slider_crank(0.2)) < 1e-12
+    assert abs(fall.input[-1] - angle_of_slider_crank(0.2)) < 2e-12
 
 
 def test_the_spatial_slider_crank_meets_the_published_number() -> None:
@@ -382,9 +381,13 @@ def test_a_load_over_a_range_brakes_where_it_acts() -> None:
     load = sb.Load(1, torque=(0.0, 0.0, -1.0), between=(1.0, 2.0))
     fall = circuit.free_motion(3.0, start=0.0, speed=10.0, loads=[load], samples=301, **given)
     energy = inertia * 50.0 - np.clip(fall.input - 1.0, 0.0, 1.0)
-    first = (fall.input < 2.0) & (energy > 0)
+    first = (fall.input >= 0.0) & (fall.input < 2.0)
     assert np.abs(fall.kinetic - energy)[first].max() < 1e-12
-    assert fall.kind == "oscillation" if inertia * 50.0 < 1.0 else fall.kind == "passing"
+    # it is through once, and turns back in the second lap
+    assert first.sum() > 10
+    assert fall.kind == "passing"
+    (turn,) = fall.turning
+    assert abs(turn.input - (math.tau + inertia * 50.0)) < 1e-11
 
 
 def test_equilibria_are_all_zeros_of_the_slope() -> None:

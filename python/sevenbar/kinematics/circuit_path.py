@@ -119,6 +119,9 @@ class PathBuilder:
         rows = rows[np.isfinite(rows).all(axis=1)]
         if len(rows) < 4:
             raise RequestError("circuit: it has no rows to follow; ask a motion with more samples")
+        # turns of a ball that holds a spin come from arctangents
+        spun = [c for joint in numbers.spun for c in numbers.word.freedoms[joint][0].columns]
+        rows[:, spun] = np.unwrap(rows[:, spun], axis=0)
         gain = np.zeros(rows.shape[1])
         if circuit.closed:
             turns = np.round((rows[-1] - rows[0]) / math.tau)
@@ -352,7 +355,9 @@ class PathBuilder:
         # a piece that is too rough by its driver's values is so by its length
         rough = np.array([self._tail(own) > RESOLVED for own in series])
         by_length[rough] = series[rough]
-        return lengths, np.array([own if r else self._heard(own) for own, r in zip(by_length, rough, strict=True)])
+        return lengths, np.array(
+            [own if r else self._heard(own) for own, r in zip(by_length, rough, strict=True)]
+        )
 
     def _heard(self, series: Floats) -> Floats:
         """A series without its end where that is rounding, which slopes would magnify."""

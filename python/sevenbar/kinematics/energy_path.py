@@ -168,9 +168,7 @@ class EnergyBuilder:
             poses[mine[whole]] = closed[whole]
         return poses
 
-    def _values(
-        self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats
-    ) -> tuple[Floats, Floats]:
+    def _values(self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> tuple[Floats, Floats]:
         """m, U', D, dx/ds, winding and the columns' slopes (j, 5 + k), and the potential (j,), at places."""
         poses = self.poses(pieces, s)
         out, potential = np.empty((len(s), 5 + len(self.smooth))), np.empty(len(s))
@@ -211,5 +209,3 @@ def _columns(solver: ForceSolver, joint: int) -> range:
 def energy_course(solver: ForceSolver, path: CircuitPath) -> EnergyCourse:
     """The course of a path with what acts on it; see `EnergyCourse`."""
     return EnergyBuilder(solver, path).built()
-
-

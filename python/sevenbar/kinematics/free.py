@@ -98,7 +98,11 @@ class FreeCourse:
         ordered = places[np.argsort((places - row + 1e-9 * self.path.length) % self.path.length)]
         if branch is None:
             return self._on_lap(float(ordered[0]), number)
-        if isinstance(branch, bool) or not isinstance(branch, (int, np.integer)) or not 0 <= branch < len(ordered):
+        if (
+            isinstance(branch, bool)
+            or not isinstance(branch, (int, np.integer))
+            or not 0 <= branch < len(ordered)
+        ):
             raise RequestError(
                 f"branch: {shown(branch)} is not offered; the circuit has {len(ordered)} poses at this start, "
                 f"give 0 to {len(ordered) - 1}"
@@ -195,7 +199,9 @@ def _covering(linkage: Solvable, circuit: Circuit) -> Circuit:
     return best
 
 
-def equilibria_of(linkage: Solvable, circuit: Circuit, loading: Loading, torque: float) -> tuple[Equilibrium, ...]:
+def equilibria_of(
+    linkage: Solvable, circuit: Circuit, loading: Loading, torque: float
+) -> tuple[Equilibrium, ...]:
     """All equilibria of a circuit; see `Circuit.equilibria`."""
     course = course_of(linkage, circuit, loading)
     energy = course.energy.driven_by(finite_number("torque", torque))
@@ -374,11 +380,7 @@ def _as_motion(
         return course.rows.trace(place, rates, status, link, at)
 
     rows = Circuit(
-        **{
-            name: getattr(circuit, name)
-            for name in Circuit.__dataclass_fields__
-            if name not in _OWN
-        },
+        **{name: getattr(circuit, name) for name in Circuit.__dataclass_fields__ if name not in _OWN},
         q=found.q,
         dq=found.dq,
         ddq=found.ddq,

@@ -7,6 +7,7 @@ Source: docs/theory_free_motion.md, (52).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -73,19 +74,30 @@ class CourseRows:
         return Along(path.poses.edges, series)
 
     @cached_property
+    def gain(self) -> Floats:
+        """What a closed circuit adds to the columns (columns,)."""
+        gain = self.builder.path.gain.copy()
+        balls = np.flatnonzero(self.builder.numbers.is_ball)
+        ends = self.columns.series[-1].sum(axis=0) - self.columns.at(np.zeros(1))[0]
+        gain[balls] = math.tau * np.round(ends[balls] / math.tau)
+        return gain
+
+    @cached_property
     def _undefined(self) -> Floats:
         """Whether a ball's turns are undefined on a piece (m, columns)."""
         last = np.abs(self.columns.series[:, -2:]).max(axis=1)
         return np.asarray((last > UNDEFINED) & self.builder.numbers.is_ball)
 
-    def at(self, place: Floats, rates: tuple[Floats, Floats, Floats]) -> tuple[Floats, Floats, Floats, Floats]:
+    def at(
+        self, place: Floats, rates: tuple[Floats, Floats, Floats]
+    ) -> tuple[Floats, Floats, Floats, Floats]:
         """Columns and three derivatives by time (n, columns) at places (n,) with s', s'' and s'''."""
         path = self.builder.path
         laps = np.floor(place / path.length) if path.closed else np.zeros_like(place)
         inside = place - laps * path.length
         known = np.isfinite(inside)
         inside = np.where(known, inside, 0.0)
-        q = self.columns.at(inside) + laps[:, None] * path.gain
+        q = self.columns.at(inside) + laps[:, None] * self.gain
         found = _by_time([q, *self._slopes(inside)], rates)
         piece = np.clip(np.searchsorted(path.poses.edges, inside, "right") - 1, 0, len(self._undefined) - 1)
         for values in found:
@@ -148,4 +160,3 @@ def _turned(axis: Floats, angles: Floats) -> Floats:
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     sines, versines = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
     return np.asarray(np.eye(3) + sines * cross + versines * (cross @ cross))
-

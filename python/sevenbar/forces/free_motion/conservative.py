@@ -225,8 +225,12 @@ def _passing(
         low, high = sorted((here, stop))
         starts_still = rests and not legs
         turns = (
-            (starts_still and way > 0) or (end is not None and way < 0) or (turned and not rests and here == first_turn and way > 0),
-            (starts_still and way < 0) or (end is not None and way > 0) or (turned and not rests and here == first_turn and way < 0),
+            (starts_still and way > 0)
+            or (end is not None and way < 0)
+            or (turned and not rests and here == first_turn and way > 0),
+            (starts_still and way < 0)
+            or (end is not None and way > 0)
+            or (turned and not rests and here == first_turn and way < 0),
         )
         run = run_between(course, low, high, turns, reference)
         legs.append(Leg(time, run, way, 0.0 if way > 0 else run.time))

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from sevenbar.arrays import Floats
@@ -61,9 +62,7 @@ class EnergyCourse:
     def _all(self) -> Along:
         """m, U', D, dx/ds, winding, and the integrals of U' and of winding."""
         integrals = self.quantities.part(SLOPE, WINDING).integral.series
-        series = np.concatenate(
-            [np.pad(self.quantities.series, ((0, 0), (0, 1), (0, 0))), integrals], axis=2
-        )
+        series = np.concatenate([np.pad(self.quantities.series, ((0, 0), (0, 1), (0, 0))), integrals], axis=2)
         return Along(self.quantities.edges, series)
 
     @cached_property
@@ -114,10 +113,21 @@ class EnergyCourse:
         """U(b) - U(a), (j,): over short ways the integral of U', which loses no digits."""
         a, b = np.broadcast_arrays(np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64))
         out = self.at(b)[2] - self.at(a)[2]
-        near = np.flatnonzero(np.abs(b - a) < SHORT * self.shortest)
+        near = np.flatnonzero((np.abs(b - a) < SHORT * self.shortest) & ~self._parted(a, b))
         if near.size:
             out[near] = (b - a)[near] * self.mean_slope(a[near], b[near])
         return np.asarray(out)
+
+    def _parted(self, a: Floats, b: Floats) -> npt.NDArray[np.bool_]:
+        """Whether a break lies between places (j,), where no polynomial leads across."""
+        if not self.breaks.size:
+            return np.zeros(a.shape, dtype=bool)
+        sides = [
+            np.searchsorted(self.breaks, s - lap * self.length) + len(self.breaks) * lap
+            for s in (a, b)
+            for lap in (self.laps(s),)
+        ]
+        return np.asarray(sides[0] != sides[1])
 
     def mean_slope(self, a: Floats, b: Floats) -> Floats:
         """The mean of U' (j,) over short ways from a to b, (j,) each."""

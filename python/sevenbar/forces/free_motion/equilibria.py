@@ -77,7 +77,9 @@ def resting_places(course: EnergyCourse) -> list[tuple[float, Kind, float, float
     out: list[tuple[float, Kind, float, float]] = []
     for s in sorted({*found, *jumps}):
         near = abs(s - out[-1][0]) if out else math.inf
-        if near < SAME * course.length or (out and course.closed and s - out[0][0] > course.length * (1 - SAME)):
+        if near < SAME * course.length or (
+            out and course.closed and s - out[0][0] > course.length * (1 - SAME)
+        ):
             continue
         here = np.array([s])
         curvature = float(own.slope.at(here)[0, 0])

@@ -117,7 +117,9 @@ class Run:
 def _place(kind: npt.NDArray[np.int64], start: Floats, end: Floats, w: Floats) -> tuple[Floats, Floats]:
     """The place s of w, and ds/dw."""
     way = end - start
-    place = np.where(kind == LOW, start + way * w**2, np.where(kind == HIGH, end - way * (1 - w) ** 2, start + way * w))
+    place = np.where(
+        kind == LOW, start + way * w**2, np.where(kind == HIGH, end - way * (1 - w) ** 2, start + way * w)
+    )
     slope = np.where(kind == LOW, 2 * way * w, np.where(kind == HIGH, 2 * way * (1 - w), way))
     return place, slope
 
