@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from sevenbar.description.step_axes import PartAxis, axes_of_step
     from sevenbar.description.tables import from_table
     from sevenbar.forces.bodies import Body
+    from sevenbar.forces.free_motion.equilibria import Equilibrium
+    from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Load, Loading, Spring
     from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
     from sevenbar.kinematics.screw_axes import ScrewAxes
@@ -56,8 +58,10 @@ __all__ = [
     "Count",
     "DeadCentre",
     "Drive",
+    "Equilibrium",
     "Extremes",
     "FourBar",
+    "FreeMotion",
     "InstantCentre",
     "InstantCentres",
     "Joint",
@@ -116,6 +120,8 @@ _ON_DEMAND = {
 #: Names that many programs do without, and the modules that have them.
 _NAMES_ON_DEMAND = {
     "Body": "sevenbar.forces.bodies",
+    "Equilibrium": "sevenbar.forces.free_motion.equilibria",
+    "FreeMotion": "sevenbar.forces.free_motion.result",
     "InstantCentre": "sevenbar.kinematics.instant_centres",
     "InstantCentres": "sevenbar.kinematics.instant_centres",
     "Load": "sevenbar.forces.loading",
@@ -146,6 +152,7 @@ _NAMES_ON_DEMAND = {
 
 # what results print is written where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
+SAID_IN["sevenbar.forces.free_motion"] = "sevenbar.reporting.free_motion"
 for _folder in ("design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"
 # bodies that are given as drawn are those of exports, which stand above the kinematics

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -67,8 +68,8 @@ class CircuitPath:
     """A circuit by its arc length s, from 0 to `length`; closed ones go on by whole lengths.
 
     `poses` has all columns of the word by s, `drivers` (m,) the column that drives each piece; `gain`
-    (columns,) is what a closed circuit adds to them. `tail` [rad, or parts of the size] is the greatest of the
-    last terms of a joint's series.
+    (columns,) is what a closed circuit adds to them. `tail` [rad, or parts of the size] is the greatest of
+    the last terms of a joint's series.
     """
 
     poses: Along
@@ -198,11 +199,11 @@ class PathBuilder:
             half = np.minimum(ROUND_CHANGE_POINT, TO_THE_NEXT * np.minimum(near[:-1], near[1:]))
             edges = sorted([*ends, *(centres - half), *(centres + half)])
         cut = [first]
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
+        for a, b in pairwise(edges):
             whole = centres.size and bool(np.any((centres > a) & (centres < b)))
             parts = 1 if whole else max(1, math.ceil((b - a) / PIECE))
             cut += [a + (b - a) * k / parts for k in range(1, parts + 1)]
-        todo = [(a, b) for a, b in zip(cut[:-1], cut[1:], strict=True)]
+        todo = list(pairwise(cut))
         done: list[tuple[float, int, float, Floats]] = []
         for division in range(DIVISIONS + 1):
             charts = [self._driver(a, b) for a, b in todo]

@@ -21,7 +21,7 @@ from sevenbar.kinematics.circuits import Trace, Words
 from sevenbar.kinematics.energy_path import EnergyBuilder
 from sevenbar.kinematics.poses import frames_of
 
-#: A ball's turns whose series ends above this [rad] are no polynomials there: the ball is near a singular pose.
+#: A ball whose turns' series end above this [rad] is near a singular pose, where they have no rates.
 UNDEFINED = 1e-8
 
 

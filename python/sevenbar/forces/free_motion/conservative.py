@@ -65,7 +65,7 @@ class Leg:
 
 @dataclass(frozen=True, eq=False)
 class Conservative:
-    """The motion from a place with a speed: legs, and from `repeats_from` on by `period` [s] again and again."""
+    """The motion from a place with a speed: legs, and by `period` [s] again and again."""
 
     kind: Course
     legs: tuple[Leg, ...]
@@ -75,7 +75,7 @@ class Conservative:
     #: What a period adds to the place.
     advance: float = 0.0
     rests_at: float = math.nan
-    #: Towards a hill's top: its place, when it is so near that only this counts, from where, and the rate [1/s].
+    #: Towards a hill's top: its place, from when on only that counts, from where, and the rate [1/s].
     top: tuple[float, float, float, float] | None = field(default=None)
 
     def at(self, t: Floats) -> tuple[Floats, Floats]:
@@ -195,7 +195,7 @@ def _passing(
     *,
     rests: bool,
 ) -> Conservative:
-    """A motion on an open circuit, or one that no lap repeats: lap by lap until it turns twice, or time is up."""
+    """A motion that no lap repeats: lap by lap until it turns twice, time is up, or the circuit ends."""
     legs: list[Leg] = []
     here, time, turned = place, 0.0, rests
     first_turn = place if rests else None
@@ -219,8 +219,7 @@ def _passing(
             again = Leg(back.end, swing, way_at_start, 0.0 if way_at_start > 0 else swing.time)
             return Conservative("oscillation", (first, back, again), 2 * swing.time, (low, high))
         if end is not None and end[1] == "top":
-            found = _to_the_top(course, reference, here, way, end[0], tuple(legs), first_turn)
-            return found
+            return _to_the_top(course, reference, here, way, end[0], tuple(legs), first_turn)
         stop = aim if end is None else end[0]
         low, high = sorted((here, stop))
         starts_still = rests and not legs
@@ -245,7 +244,7 @@ def _passing(
         elif not course.closed:
             return Conservative("ends", tuple(legs), None, () if first_turn is None else (first_turn,))
     raise RequestError(
-        f"duration: the motion goes round more than {MOST_LAPS} times without repeating itself; give a shorter one"
+        f"duration: the motion goes round more than {MOST_LAPS} times and repeats nothing; give a shorter one"
     )
 
 
@@ -257,10 +256,10 @@ class _Seeker:
 
     def kinetic(self, s: Floats) -> Floats:
         """T (j,) [J] at places (j,); below zero where the motion does not come."""
-        return np.asarray(self.reference[1] - self.course.rise(np.float64(self.reference[0]), s))
+        return np.asarray(self.reference[1] - self.course.rise(self.reference[0], s))
 
     def end(self, place: float, way: int, aim: float) -> tuple[float, str] | None:
-        """The first place from here on, up to `aim`, where it turns ("turn") or that it never reaches ("top")."""
+        """The first place from here to `aim` where it turns ("turn"), or that it never reaches ("top")."""
         course = self.course
         first, last = np.sort(course.laps(np.array([place, aim])))
         laps = np.arange(first - 1, last + 2) if course.closed else np.zeros(1)

@@ -109,7 +109,7 @@ class EnergyCourse:
         own = self._slopes.at(s - lap * self.length)
         return np.asarray(own[:, 0] + lap * own[:, 1]) if self.winds else own[:, 0]
 
-    def rise(self, a: Floats, b: Floats) -> Floats:
+    def rise(self, a: Floats | float, b: Floats) -> Floats:
         """U(b) - U(a), (j,): over short ways the integral of U', which loses no digits."""
         a, b = np.broadcast_arrays(np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64))
         out = self.at(b)[2] - self.at(a)[2]

@@ -35,9 +35,9 @@ Kind = Literal["stable", "unstable", "flat", "edge"]
 class Equilibrium(Printed):
     """A place where the linkage can rest.
 
-    `input` [rad, or length]; `q` (columns,) all joint values; `kind`: "stable", "unstable", "flat" where the
-    curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it.
-    `frequency` [rad/s] is that of small vibrations about a stable one, `rate` [1/s] that at which it leaves an
+    `input` [rad, or length]; `q` (columns,) all joint values; `kind` is "stable", "unstable", "flat"
+    where the curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it.
+    `frequency` [rad/s] is that of small vibrations about a stable one, `rate` [1/s] that of leaving an
     unstable one; NaN where there is none. `potential` [J] is that of weights, springs and loads.
     """
 
@@ -98,7 +98,7 @@ def resting_places(course: EnergyCourse) -> list[tuple[float, Kind, float, float
 
 
 def _zeros(own: Along, piece: int, marks: Floats, heights: Floats) -> list[float]:
-    """Zeros of a piece's polynomial between its marks; a touching one that rounding hides is found as well."""
+    """Zeros of a piece's polynomial between its marks, those that only touch zero among them."""
     touch = 1e-13 * float(own.reach[0])
     found = [float(s) for s, h in zip(marks, heights, strict=True) if abs(h) <= touch]
     whole: npt.NDArray[np.int64] = np.array([piece])
