@@ -20,6 +20,7 @@ PAGES = {
     "compare": "measured.md",
     "calibrate": "measured.md",
     "axodes": "theory_measures.md",
+    "free": "theory_free_motion.md",
     "simulate": "simulation.md",
     "export": "export.md",
     "axes": "tables.md#axes-picked-from-a-cad-model",

@@ -1,12 +1,12 @@
 """A circuit by its own arc length: all joint values as polynomials, through dead centres and change points.
 
-    ds^2 = sum (dq_c)^2,   lengths in parts of the size, balls left out                                   (40)
+    ds^2 = sum (dq_c)^2,   lengths as shares of the size, balls left out                                (1)
 
 On a piece one joint drives that moves all along it, so a dead centre of the input is a place like any other.
 A change point lies in the middle of its piece, with no node on it: values on both sides carry the motion
 straight across.
 
-Source: docs/theory_free_motion.md, (40) to (42).
+Source: docs/theory_free_motion.md, (1) to (3).
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 #: Nodes on a piece: even, so that none lies in its middle.
 TERMS = 24
 
-#: Length of a piece before any is divided [rad, or parts of the size].
+#: Length of a piece before any is divided [rad, or shares of the size].
 PIECE = 0.5
 
 #: Half the length of the piece round a change point, at most, and as a part of the way to the next one.
 ROUND_CHANGE_POINT = 0.25
 TO_THE_NEXT = 0.35
 
-#: A piece is fine enough where the last terms of its series are below this [rad, or parts of the size].
+#: A piece is fine enough where the last terms of its series are below this [rad, or shares of the size].
 RESOLVED = 2e-13
 
 #: Last terms below this part of the greatest value, or of a radian or the size, are rounding.
@@ -68,7 +68,7 @@ class CircuitPath:
     """A circuit by its arc length s, from 0 to `length`; closed ones go on by whole lengths.
 
     `poses` has all columns of the word by s, `drivers` (m,) the column that drives each piece; `gain`
-    (columns,) is what a closed circuit adds to them. `tail` [rad, or parts of the size] is the greatest of
+    (columns,) is what a closed circuit adds to them. `tail` [rad, or shares of the size] is the greatest of
     the last terms of a joint's series.
     """
 

@@ -487,7 +487,7 @@ class Circuit(Printed):
             >>> fall.kind
             'oscillation'
 
-        Source: docs/theory_free_motion.md, (40) to (52).
+        Source: docs/theory_free_motion.md, (1) to (13).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
         options = {
@@ -526,7 +526,7 @@ class Circuit(Printed):
             >>> [(place.kind, round(place.input % 6.283185307, 9)) for place in found]
             [('unstable', 1.570796327), ('stable', 4.71238898)]
 
-        Source: docs/theory_free_motion.md, (50).
+        Source: docs/theory_free_motion.md, (11).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
         return self._answers.equilibria(

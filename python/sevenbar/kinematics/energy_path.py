@@ -2,11 +2,11 @@
 
 At the scaled rates u by the joint that drives a piece, ds = |u| dx, so
 
-    m = 2 T(x' = 1) / |u|^2,    U' = torque(at rest) / |u|,    D = loss(x' = 1) / |u|^2                   (44)
+    m = 2 T(x' = 1) / |u|^2,    U' = torque(at rest) / |u|,    D = loss(x' = 1) / |u|^2                   (5)
 
 The torque at rest is that of statics: weights, springs and loads are in it.
 
-Source: docs/theory_free_motion.md, (44).
+Source: docs/theory_free_motion.md, (5).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Free motion and equilibria of a circuit: the path, what acts along it, and the state at any time.
 
-Source: docs/theory_free_motion.md, (40) to (52).
+Source: docs/theory_free_motion.md, (1) to (13).
 """
 
 from __future__ import annotations
@@ -89,14 +89,14 @@ class FreeCourse:
         """The place of a start: an input [rad, or length], on a pass between dead centres of the input."""
         if value is None and branch is None:
             row = int(np.flatnonzero(np.isfinite(self.circuit.q).all(axis=1))[0])
-            return self._on_lap(self._place_of_row(), float(self.circuit.q[row, self.path.input]))
+            return self._on_lap(self._first, float(self.circuit.q[row, self.path.input]))
         if value is None:
             raise RequestError("start: is missing; give the input at which the pass `branch` is entered")
         number = joint_number("start", value, self.linkage, self.path.input)
         places = self.path.places(number, turns=self.turns)
         if not places.size:
             raise RequestError(f"start: the circuit has no pose at {shown(value)}; see its input_range")
-        first = self._place_of_row()
+        first = self._first
         ordered = places[np.argsort((places - first + 1e-9 * self.path.length) % self.path.length)]
         if branch is None:
             return self._on_lap(float(ordered[0]), number)
@@ -119,7 +119,8 @@ class FreeCourse:
         own = float(self.path.poses.part(self.path.input).at(np.array([place]))[0, 0])
         return place + round((value - own) / gain) * self.path.length
 
-    def _place_of_row(self) -> float:
+    @cached_property
+    def _first(self) -> float:
         """The place of the circuit's first row that has a pose."""
         circuit, path = self.circuit, self.path
         row = int(np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0])

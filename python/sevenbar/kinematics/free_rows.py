@@ -1,8 +1,8 @@
 """Rows of a linkage that moves along a circuit as it likes: columns, points and links by arc length.
 
-    dq/dt = q' s',   d2q/dt2 = q'' s'^2 + q' s''                                                          (52)
+    dq/dt = q' s',   d2q/dt2 = q'' s'^2 + q' s''                                                          (13)
 
-Source: docs/theory_free_motion.md, (52).
+Source: docs/theory_free_motion.md, (13).
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ Between neighbouring marks of the course U rises or falls all the way, so the fi
 energy has the turning point before it: none is missed. Between two turning points, or once round, the motion
 repeats itself for ever.
 
-Source: docs/theory_free_motion.md, (45) to (49).
+Source: docs/theory_free_motion.md, (6) to (10).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ BALANCED = 1e-13
 #: Most laps of a motion that does not repeat itself.
 MOST_LAPS = 20_000
 
-#: Parts of the way in which a turning point is looked for first.
+#: The way is cut into so many for the first search of a turning point.
 PARTS = 32
 
 #: Most laps that are taken together.
@@ -288,7 +288,8 @@ class _Seeker:
         beyond = np.flatnonzero(self.kinetic(fine[1:-1]) < 0)
         first = int(beyond[0]) + 1 if beyond.size else PARTS
         inside, outside = float(fine[first - 1]), float(fine[first])
-        at = (inside + outside) / 2
+        ends = self.kinetic(np.array([inside, outside]))
+        at = inside + (outside - inside) * float(np.clip(ends[0] / (ends[0] - ends[1]), 0.0, 1.0))
         for _ in range(200):
             here = np.array([at])
             height, slope = float(self.kinetic(here)[0]), -float(self.course.slope(here)[0])
@@ -298,7 +299,7 @@ class _Seeker:
                 outside = at
             step = at - height / slope if slope else math.inf
             after = step if min(inside, outside) < step < max(inside, outside) else (inside + outside) / 2
-            if abs(after - at) <= 2 * np.spacing(abs(at)):
+            if abs(after - at) <= 4 * np.spacing(abs(at)):
                 return after
             at = after
         return at

@@ -1,11 +1,11 @@
 """A linkage as one body on its circuit: the mass that arc length sees, potential energy, damping.
 
-    T = m(s) s'^2 / 2,    m s'' + m' s'^2 / 2 = -U' - D s' + torque dx/ds                                 (43)
+    T = m(s) s'^2 / 2,    m s'' + m' s'^2 / 2 = -U' - D s' + torque dx/ds                                 (4)
 
 U is the potential energy of weights and springs less the work of loads, which depends on the place only, so
 on a closed circuit it may rise or fall with every lap.
 
-Source: docs/theory_free_motion.md, (43) and (44).
+Source: docs/theory_free_motion.md, (4) and (5).
 """
 
 from __future__ import annotations

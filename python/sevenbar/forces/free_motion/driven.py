@@ -1,11 +1,11 @@
 """Free motion with dampers, or with a motor by its speed or by time: an ordinary equation in s and s'.
 
-    m s'' = -U' - D s' - m' s'^2 / 2 + torque(t, dx/dt) dx/ds                                             (51)
+    m s'' = -U' - D s' - m' s'^2 / 2 + torque(t, dx/dt) dx/ds                                             (12)
 
 Solved by an explicit method of order eight with tight tolerances (scipy's DOP853), from break to break of the
-loads, twice: the difference at two tolerances is what is said of the accuracy.
+loads, twice: the difference of the two is the accuracy reported.
 
-Source: docs/theory_free_motion.md, (51).
+Source: docs/theory_free_motion.md, (12).
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """Where a linkage can rest: every zero of the slope of its potential on the circuit, found, not sampled.
 
-    U'(s) = 0,    stable where U'' > 0,    omega^2 = U'' / m                                              (50)
+    U'(s) = 0,    stable where U'' > 0,    omega^2 = U'' / m                                              (11)
 
 A load that sets in at a place makes U' jump; where it jumps over zero upwards the linkage rests as well, held
 from both sides.
 
-Source: docs/theory_free_motion.md, (50).
+Source: docs/theory_free_motion.md, (11).
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ class FreeStates:
     dddq: Floats
     kinetic: Floats
     potential: Floats
-    #: Arc length [rad, or parts of the size] and its rate.
+    #: Arc length [rad, or shares of the size] and its rate.
     place: Floats
     rate: Floats
 
@@ -47,10 +47,10 @@ class FreeMotion(Drawable):
     circuit, rows after that are NaN; "driven" has dampers or a motor. `turning` are the points where it turns
     back, found, not sampled. `energy_error` is the greatest change of energy over the rows that nothing
     explains, as a part of the greatest kinetic energy: NaN for "driven", which has `difference`, the greatest
-    in arc length [rad, or parts of the size] from a solution at a hundred times the tolerance. `tail` is
+    in arc length [rad, or shares of the size] from a solution at a hundred times the tolerance. `tail` is
     what the polynomials along the circuit leave out, as a part of the greatest value.
 
-    Source: docs/theory_free_motion.md, (40) to (51).
+    Source: docs/theory_free_motion.md, (1) to (12).
     """
 
     time: Floats
@@ -110,7 +110,7 @@ class FreeMotion(Drawable):
         if not knows_all and asked.size and asked.max() > self.duration:
             raise RequestError(
                 f"times: {asked.max():g} s is after the duration of {self.duration:g} s; "
-                "ask for a longer motion"
+                "give a longer duration"
             )
         states = self._states(asked)
         kept = {name: getattr(states, name) for name in ("q", "dq", "ddq", "dddq", "kinetic", "potential")}

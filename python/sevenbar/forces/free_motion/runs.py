@@ -1,12 +1,12 @@
 """A motion one way along a circuit without losses: time as an integral of place, and place by time.
 
-    t = integral ds / s',    s' = sqrt(2 (E - U) / m)                                                     (45)
+    t = integral ds / s',    s' = sqrt(2 (E - U) / m)                                                     (6)
 
 At a turning point c, where E = U, s = c - l (1 - w)^2 makes the integrand smooth:
 
-    dt/dw = 2 sqrt(l m / (2 M)),    M the mean of U' from s to c                                          (46)
+    dt/dw = 2 sqrt(l m / (2 M)),    M the mean of U' from s to c                                          (7)
 
-Source: docs/theory_free_motion.md, (45) to (47).
+Source: docs/theory_free_motion.md, (6) to (8).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TERMS = 20
 #: A panel is fine enough where its last terms are below this part of the first.
 RESOLVED = 1e-14
 
-#: What rounding of a place leaves, in parts of it by the length of a piece.
+#: What rounding of a place leaves, as a share of it by the length of a piece.
 ROUNDING = 4e-15
 
 #: What rounding leaves of energies and slopes, as a part of their greatest.
