@@ -74,7 +74,7 @@ class CycleSeries:
         """The complex coefficients c_k, (n // 2 + 1,) or (n // 2 + 1, k)."""
         count = len(self.rows)
         waves = np.asarray(np.fft.rfft(self.rows, axis=0) / count, dtype=np.complex128)
-        # every wave stands for two, but the constant one and that of every other row
+        # every wave is two, except the constant one and that of every other row
         waves[1 : (count + 1) // 2] *= 2
         return waves
 

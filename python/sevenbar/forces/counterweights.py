@@ -40,7 +40,7 @@ NONE = 1e-9
 class Counterweight:
     """What to add to a link: mass times radius `product` [kg length] in `direction` (3,) from `pivot`.
 
-    `mass` [kg] is that at the radius asked for; `None` where the shaking is the same for any and no radius is
+    `mass` [kg] is that at the wanted radius; `None` where the shaking is the same for any and no radius is
     given. `body` is a point of this mass; `None` without one, and where least squares take mass away, which
     `mass` < 0 says.
     """
