@@ -36,8 +36,8 @@ from sevenbar.text.printing import Printed
 NONE = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Counterweight:
+@dataclass(frozen=True, eq=False, repr=False)
+class Counterweight(Printed):
     """What to add to a link: mass times radius `product` [kg length] in `direction` (3,) from `pivot`.
 
     `mass` [kg] is that at the wanted radius; `None` where the shaking is the same for any and no radius is
