@@ -74,12 +74,12 @@ class LinkageAnswers:
             low_at, high_at = low_at % math.tau, high_at % math.tau
         return Extremes(low, low_at, high, high_at)
 
-    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on a circuit's rows, with what is given in place of what the linkage has."""
         # the engine by numbers is for those who ask
         from sevenbar.kinematics.forces import forces_of
 
-        return forces_of(self.linkage, circuit, loading_with(self.linkage, **given))
+        return forces_of(self.linkage, circuit, loading_with(self.linkage, **given), at_rest=at_rest)
 
     def counterweights(
         self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
