@@ -123,7 +123,7 @@ def _unit_at_rest(speed: str | None) -> str | None:
 
 
 def _pass(circuit: Circuit, branch: int | None, *, one: bool) -> int | None:
-    """The pass of a circuit that is asked for; `None` for all rows."""
+    """The chosen pass of a circuit; `None` for all rows."""
     count = int(circuit.branch.max(initial=0)) + 1
     if branch is None:
         return 0 if one and count > 1 else None

@@ -88,7 +88,7 @@ def curve(
         finite = along[np.isfinite(along)]
         if finite.size:
             low, high = np.percentile(finite, [CUT, 100 - CUT])
-            # nearly constant but for the ends
+            # nearly constant, except near the ends
             room = max(0.15 * (high - low), 0.1 * abs(high + low) / 2) or 1.0
             axes.set_ylim(low - room, high + room)
     axes.ticklabel_format(axis="y", useOffset=False)

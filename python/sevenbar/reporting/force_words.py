@@ -247,7 +247,7 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
 
 
 def known_alone(forces: Forces) -> list[str]:
-    """Forces square to a joint's axis that are determined while the one beside them is not."""
+    """Forces square to a joint's axis that are determined while the other one is not."""
     found = []
     for name, reaction in forces.reactions.items():
         x, y = reaction.determinate[3:5]
@@ -296,8 +296,8 @@ def check_text(forces: Forces) -> str:
         "ground": "the ground bears weights, loads and shaking",
         "work": "work of a cycle",
     }
-    told = [f"{words[key]} to {value:.1e}" for key, value in values.items() if value is not None]
-    return ", ".join(told) + " of the peak" if told else ""
+    made = [f"{words[key]} to {value:.1e}" for key, value in values.items() if value is not None]
+    return ", ".join(made) + " of the peak" if made else ""
 
 
 def found_text(found: Sizing | None, *, law: bool = False) -> str:

@@ -118,7 +118,7 @@ def drive_fact(found: CircuitForces) -> str:
 
 
 def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
-    """All that a report says of forces beside the table of joints."""
+    """All that a report says of forces above the table of joints."""
     forces, linkage = found.forces, found.motion.linkage
     sliding = [c for c, kind in zip(linkage.columns, linkage.column_kinds, strict=True) if kind == "slide"]
     facts = [("circuit", drive_fact(found)), *acting_facts(forces, sliding)]
