@@ -144,7 +144,7 @@ _NAMES_ON_DEMAND = {
     "sevenbar.description.families",
 )
 
-# what results print is said where the reports' words are, which a program that prints none does without
+# what results print is written where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
 for _folder in ("design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"

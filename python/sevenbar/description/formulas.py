@@ -9,7 +9,7 @@ from typing import Any
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.load_values import load_kinds, spring_kinds
 from sevenbar.description.schema import context_of
-from sevenbar.description.values import NumberKind, number_of
+from sevenbar.description.values import NumberKind, value_in_file
 from sevenbar.errors import RequestError
 
 #: What the numbers of each table are; a test compares this with the schema.
@@ -55,7 +55,7 @@ def _table(table: Any, head: str, context: Mapping[str, Any]) -> Any:
     if not isinstance(table, Mapping):
         return table
     kinds = _KINDS_IN[head](table, context) if head in _KINDS_IN else KINDS_OF_NUMBERS[head]
-    reads = {key: partial(number_of, kind=kind, context=context) for key, kind in kinds.items()}
+    reads = {key: partial(value_in_file, kind=kind, context=context) for key, kind in kinds.items()}
     found = {key: _numbers(value, reads[key]) if key in reads else value for key, value in table.items()}
     if head == "load" and isinstance(found.get("table"), list):
         found["table"] = [_row(row, reads["between"]) for row in found["table"]]

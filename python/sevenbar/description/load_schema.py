@@ -92,8 +92,8 @@ class LoadForm(TableForm):
     table: Annotated[
         Table | None,
         key(
-            "its factor along the input: a CSV file in the folder of this one, or rows of input "
-            "(angle_unit, or length) and factor"
+            "its factor along the input: a CSV file in the folder of this one, "
+            "or rows of input (angle_unit, or length) and factor"
         ),
     ] = None
     name: Annotated[Text | None, key("for people; optional")] = None

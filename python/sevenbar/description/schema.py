@@ -237,7 +237,7 @@ class _TomlSchema(GenerateJsonSchema):
 def json_schema() -> dict[str, Any]:
     """The JSON schema (draft 2020-12) of a file of format 1, for editors that complete and check TOML.
 
-    It tells keys, kinds of values and allowed words. What belongs together is told by `load` alone.
+    It has keys, kinds of values and allowed words. What belongs together is checked by `load` alone.
 
         >>> json_schema()["properties"]["length_unit"]["enum"]
         ['um', 'mm', 'cm', 'm', 'in', 'ft']
@@ -259,7 +259,7 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
         problems = [
             Problem(_path(place), ground_places[place]) if place in ground_places else _problem(detail)
             for place, detail in details
-            # an entry that is nothing but a second ground is told of once
+            # an entry that is nothing but a second ground is reported once
             if place in ground_places or place[:2] not in ground_places
         ]
     if isinstance(raw, Mapping) and context is not None:

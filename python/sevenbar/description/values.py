@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.text.amounts import Kind, speed_text, value_of
+from sevenbar.text.amounts import Kind, plain_speed, value_of
 from sevenbar.text.quantities import QUANTITY_KINDS, QuantityKind, quantity_of
 from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
 
@@ -29,12 +29,12 @@ NumberKind = Kind | QuantityKind
 
 
 def refuse(message: str) -> PydanticCustomError:
-    """The error that tells a person this of a value."""
+    """The error that says this of a value."""
     # pydantic reads braces in a message as a template
     return PydanticCustomError("sevenbar", "{message}", {"message": message})
 
 
-def number_of(text: str, kind: NumberKind, context: Mapping[str, Any]) -> float:
+def value_in_file(text: str, kind: NumberKind, context: Mapping[str, Any]) -> float:
     """The number of a formula in the units of its file, which the context has by their keys."""
     own = ("length_unit", "mass_unit" if kind in QUANTITY_KINDS else "angle_unit")
     units = {key: str(context[key]) for key in own if key in context}
@@ -47,7 +47,7 @@ def number_for(value: object, info: ValidationInfo, kind: NumberKind = "number")
     """A finite number that is not beyond all sense, or the number of a text; in the file's own unit."""
     if isinstance(value, str):
         try:
-            value = number_of(value, kind, info.context or {})
+            value = value_in_file(value, kind, info.context or {})
         except RequestError as error:
             raise refuse(str(error)) from None
     if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -155,7 +155,7 @@ def one_word(end: str) -> Callable[[object], object]:
 def _speed(value: object, info: ValidationInfo) -> float:
     slides = (info.context or {}).get("slides")
     try:
-        plain = speed_text(value)
+        plain = plain_speed(value)
         return sliding_speed(plain, slides) if slides else turning_speed(plain)
     except RequestError as error:
         raise refuse(str(error)) from None

@@ -85,7 +85,7 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         message = f"a loop {loop} has {count} outside its balls; an input and an output need two"
         known_kinds = all(joint.kind for joint in joints)
         return "", "", [Problem("joint", message)] if known_kinds else []
-    # two joints of one name are told of elsewhere; to choose from they are one
+    # two joints of one name are reported elsewhere; to choose from they are one
     choices = list(dict.fromkeys(free))
     problems = []
     chosen: dict[str, str] = {}
@@ -100,7 +100,7 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
             chosen[key] = column
     first = chosen.get("joint", firsts[0])
     others = [column for column in choices if column != first]
-    # `first` where one name stands for every joint, which is told of elsewhere
+    # `first` where one name stands for every joint, which is reported elsewhere
     last = chosen.get(
         "output", next((c for c in [*reversed(firsts), *reversed(others)] if c != first), first)
     )

@@ -82,7 +82,7 @@ class Linkage(Solvable):
         """The general solver with redundant constraints that agree up to a closure error."""
         if agree is None or agree == AGREE:
             return self._general
-        value = agreement("agree", agree)
+        value = closure_tolerance("agree", agree)
         if value not in self._agreeing:
             self._agreeing[value] = GeneralLoop(self, value)
         return self._agreeing[value]
@@ -112,10 +112,10 @@ class Linkage(Solvable):
         if speed is None:
             return self.speed_of(column)
         # a number needs no reader of formulas
-        from sevenbar.text.amounts import speed_text
+        from sevenbar.text.amounts import plain_speed
 
         try:
-            plain = float(speed) if isinstance(speed, np.number) else speed_text(speed)
+            plain = float(speed) if isinstance(speed, np.number) else plain_speed(speed)
             if self.column_kinds[column] == "slide":
                 return sliding_speed(plain, self.length_unit)
             return turning_speed(plain)
@@ -239,13 +239,13 @@ class Linkage(Solvable):
         return LinkageAnswers(self)
 
     @ends_here
-    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+    def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule, driven and read as the drive has it or as given.
 
         `None` for a loop that is no planar or spherical four-bar and no slider-crank.
 
             >>> import sevenbar as sb
-            >>> bar = sb.load("planar_4r").four_bar()
+            >>> bar = sb.load("planar_4r").as_four_bar()
             >>> bar.excess, bar.grashof
             (-30.0, 'crank-rocker')
 
@@ -388,7 +388,7 @@ class Linkage(Solvable):
         return method == "auto" and self.kind == "RSSR"
 
 
-def agreement(name: str, value: object) -> float:
+def closure_tolerance(name: str, value: object) -> float:
     """A closure error up to which redundant constraints agree, or `RequestError` that names it."""
     if (
         isinstance(value, bool)

@@ -81,18 +81,6 @@ def amount(text: str, sizes: Mapping[str, float], plain: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def number_in(unit: str, value: object) -> float | None:
-    """The number in a unit that a text with a unit of its own gives: "12 mm", "80deg".
-
-    `None` for anything else, also for a text without a unit, as in Python a number alone is in radians.
-
-    >>> number_in("mm", "1 in"), number_in("rad", "180deg"), number_in("rad", "180")
-    (25.4, 3.141592653589793, None)
-    """
-    parts = split_quantity(value) if isinstance(value, str) else None
-    return None if parts is None or not parts[1] else amount(str(value), sizes_of(unit), unit)
-
-
 def sizes_of(unit: str) -> dict[str, float]:
     """The units that measure what "mm", "deg", "mm/turn", "rad/s" or "" does, and their sizes in it.
 
