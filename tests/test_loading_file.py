@@ -1,15 +1,23 @@
 """What acts on a linkage, in a file: its units, what is refused with which words, and that written files keep it."""
 
+import copy
+import json
 import math
+import pickle
+import tomllib
 from dataclasses import replace
 
+import jsonschema
 import numpy as np
 import pytest
 
 import sevenbar as sb
+from commands import sevenbar
 from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
+from sevenbar.description.forms import from_description
 from sevenbar.description.load_values import entries_of, tensor_of
+from sevenbar.description.schema import json_schema
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.text.quantities import QUANTITY_KINDS, quantity_of, unit_of
 
@@ -571,3 +579,56 @@ def test_a_text_that_is_no_amount_has_one_message(kind, text):
     with pytest.raises(RequestError, match=r"; give an? [a-z ]+, as in 12, '12 ") as caught:
         quantity_of(text, kind)
     assert "\n" not in str(caught.value)
+
+
+def test_the_json_schema_takes_what_the_program_takes():
+    takes = jsonschema.Draft202012Validator(json_schema()).is_valid
+    right = tomllib.loads(rssr(EVERYTHING))
+    assert takes(right)
+    assert takes(json.loads(json.dumps(sb.loads(rssr(EVERYTHING)).description)))
+    for head, mistake in (
+        ("forces", {"mass_unit": "stone"}),
+        ("forces", {"gravity": 9.81}),
+        ("body", [{"mass": 1}]),
+        ("body", [{"link": 1, "mass": -1, "solid": "rod"}]),
+        ("body", [{"link": 1, "mass": 1, "solid": "bar"}]),
+        ("body", [{"link": 1, "mass": 1, "centre": [0, 0, 0], "inertia": [1, 1, 1]}]),
+        ("load", [{"link": 1, "torque": [0, 0, 1], "axes": "body"}]),
+        ("load", [{"link": 1, "torque": [0, 0, 1], "table": 3}]),
+        ("spring", [{"links": [1], "at": [[0, 0, 0], [1, 0, 0]], "stiffness": 1}]),
+        ("spring", [{"joint": "crank", "stiffness": "stiff"}]),
+    ):
+        assert not takes(right | {head: mistake}), mistake
+        with pytest.raises(DescriptionError):
+            from_description(right | {head: mistake})
+
+
+@pytest.mark.parametrize("again", [copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))])
+def test_what_acts_is_copied_and_pickled_with_its_linkage(again):
+    linkage = sb.loads(rssr(EVERYTHING))
+    assert same(again(linkage).loading, linkage.loading)
+    assert same(replace(linkage, name="other").loading, linkage.loading)
+
+
+def test_what_acts_changes_no_motion():
+    plain, loaded = (sb.loads(rssr(tables)).motion(24).circuits[0] for tables in ("", EVERYTHING))
+    np.testing.assert_array_equal(plain.q, loaded.q)
+    np.testing.assert_array_equal(plain.ddq, loaded.ddq)
+
+
+def test_calibrated_and_swept_files_keep_what_acts(tmp_path):
+    """The commands write files to other folders, which open there."""
+    (tmp_path / "press.csv").write_text("crank [deg],factor\n0,0\n30,1\n", encoding="utf-8")
+    (tmp_path / "a.toml").write_text(rssr(EVERYTHING + PRESS.format("press.csv")), encoding="utf-8")
+    linkage = sb.load(tmp_path / "a.toml")
+    circuit = linkage.motion(36).circuits[0]
+    rows = zip(np.degrees(circuit.input).tolist(), np.degrees(circuit.output).tolist(), strict=True)
+    lines = "\n".join(f"{x!r},{y!r}" for x, y in rows)
+    (tmp_path / "bench.csv").write_text(f"crank [deg],rocker [deg]\n{lines}\n", encoding="utf-8")
+    run = sevenbar("calibrate", "a.toml", "bench.csv", "--free", "L3", "-o", "out", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert same(sb.load(tmp_path / "out" / "calibrated.toml").loading, linkage.loading)
+    run = sevenbar("sweep", "a.toml", "--over", "L1=240:250:2", "-o", "swept", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    plan = json.loads((tmp_path / "swept" / "sweep.json").read_text(encoding="utf-8"))
+    assert same(sb.loads(plan["toml"]).loading, linkage.loading)
