@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.description.load_values import entries_of, tensor_of
+from sevenbar.forces.bodies import entries_of, tensor_of
 
 
 def moved_loads(

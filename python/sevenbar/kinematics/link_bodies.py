@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError
+from sevenbar.errors import RequestError, shown
 from sevenbar.forces.bodies import Body, as_one, triple
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.geometry import Loop
@@ -50,12 +50,15 @@ def resolved(loading: Loading, linkage: Loop, *, circuit: int = 0) -> dict[int, 
     return found
 
 
-def refuse_no_link(key: str, link: int, linkage: Loop) -> None:
-    """`RequestError` for a link that does not exist or is the ground."""
+def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = False) -> None:
+    """`RequestError` for a link that does not exist, or is the ground where that is none."""
     moving = len(linkage.links)
-    if not 1 <= link <= moving:
+    last = moving + or_ground
+    whole = isinstance(link, (int, np.integer)) and not isinstance(link, bool)
+    if not whole or not 1 <= link <= last:  # type: ignore[operator]
         what = "is the ground, which does not move" if link == moving + 1 else "is not a link"
-        raise RequestError(f"{key}: link {link} {what}; give 1 to {moving}")
+        more = ", the last is the ground" if or_ground else ""
+        raise RequestError(f"{key}: link {shown(link)} {what}; give 1 to {last}{more}")
 
 
 def _worked_out(body: Body, link: int, linkage: Loop, solids: Callable[[], Mapping[int, Body]]) -> Body:
