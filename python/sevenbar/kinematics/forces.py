@@ -11,7 +11,7 @@ Source: docs/theory_forces.md, (1) to (6).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,7 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.driven import driven
 from sevenbar.kinematics.link_bodies import joint_places, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
@@ -222,7 +223,13 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
         length_unit=linkage.length_unit,
         periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
         loading=loading,
+        between=partial(_between, linkage, circuit, loading),
     )
+
+
+def _between(linkage: Solvable, circuit: Circuit, loading: Loading, inputs: Floats) -> Forces:
+    """The forces of a circuit that goes round, at any inputs (n,)."""
+    return forces_of(linkage, driven(linkage, circuit, inputs, speed=circuit.speed), loading)
 
 
 def _winds_up(circuit: Circuit, loading: Loading) -> bool:
