@@ -33,7 +33,8 @@ class Forces:
 
     `moment` and `force` (joints, 3) are what the link before a joint puts on the link after it, along the
     axes of the joint's frame on the side of the link before, the moment about its origin there, `places` (joints, 3) in the
-    report frame. `determinate` (joints, 6): moment, then force. `spin` is the moment of each rule of an idle spin,
+    report frame. `determinate` (joints, 6): moment, then force; `open` dimensions
+    are those of the null space. `spin` is the moment of each rule of an idle spin,
     `held` that of each other idle freedom. `condition` is that of the whole system, its null space left out.
     """
 
@@ -43,6 +44,7 @@ class Forces:
     places: Numbers
     frames: Numbers
     determinate: np.ndarray
+    open: int
     spin: Numbers
     held: Numbers
     shaking: Numbers
@@ -116,7 +118,7 @@ class NewtonEuler:
                         matrix[row, 6 * n + 1 + number] = -(z @ np.cross(rule.across, rule.axis))
                 if k in self.motion.held:
                     matrix[row, 6 * n + 1 + len(rules) + self.motion.held.index(k)] = zero - 1
-        x, null, condition = self._whole(matrix, right)
+        x, null, left, condition = self._whole(matrix, right)
         joints = x[: 6 * n].reshape(n, 6)
         inner = self.length if self.motion.loop.turns[self.column] else 1.0
         others = slice(6 * n + 1 + len(rules), None)
@@ -127,6 +129,7 @@ class NewtonEuler:
             places=np.array([place for _, place in frames]),
             frames=np.array([frame for frame, _ in frames]),
             determinate=(null[: 6 * n] < OPEN).reshape(n, 6),
+            open=left,
             spin=x[6 * n + 1 : 6 * n + 1 + len(rules)] * self.length,
             held=x[others],
             shaking=shaking,
@@ -139,18 +142,23 @@ class NewtonEuler:
             ddq=ddq,
         )
 
-    def _whole(self, matrix: Numbers, right: Numbers) -> tuple[Numbers, np.ndarray, float]:
-        """Solution of least norm, the length of each unknown's row of the null space, and the condition."""
+    def _whole(self, matrix: Numbers, right: Numbers) -> tuple[Numbers, np.ndarray, int, float]:
+        """Solution of least norm, the length of each unknown's row of the null space, its dimension, and the condition."""
         doubles = matrix.astype(np.float64)
         u, values, rows = np.linalg.svd(doubles, full_matrices=True)
         rank = int((values > RANK * values[0]).sum())
         null = np.linalg.norm(rows[rank:], axis=0)
         condition = float(values[0] / values[rank - 1])
         if not self.motion.precise:
-            return rows[:rank].T @ ((u.T @ right)[:rank] / values[:rank]), null, condition
+            return rows[:rank].T @ ((u.T @ right)[:rank] / values[:rank]), null, len(rows) - rank, condition
         # the rows are independent wherever the input moves the loop
         gram = mp.matrix((matrix @ matrix.T).tolist())
-        return matrix.T @ from_mp(mp.lu_solve(gram, mp.matrix(right.tolist()))), null, condition
+        return (
+            matrix.T @ from_mp(mp.lu_solve(gram, mp.matrix(right.tolist()))),
+            null,
+            len(rows) - rank,
+            condition,
+        )
 
     def _momentum(self, i: int, link: State) -> tuple[Numbers, Numbers, Any, Any]:
         """A link's centre, the rate of its momentum about it (moment, force), kinetic and potential energy."""
