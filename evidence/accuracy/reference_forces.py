@@ -19,7 +19,7 @@ import mpmath as mp
 import numpy as np
 
 import sevenbar as sb
-from evidence.accuracy.reference_motion import RANK, Carried, Numbers, State, from_mp, length
+from evidence.accuracy.reference_motion import RANK, Carried, Numbers, State, crossed, from_mp, length
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring
 
@@ -87,7 +87,7 @@ class NewtonEuler:
             about, rate, energy, weight = self._momentum(i, links[i])
             kinetic, potential = kinetic + energy, potential + weight
             arm = about - np.zeros(3)
-            shaking = shaking - np.concatenate([rate[:3] + np.cross(arm, rate[3:]), rate[3:]])
+            shaking = shaking - np.concatenate([rate[:3] + crossed(arm, rate[3:]), rate[3:]])
             at = slice(6 * (i - 1), 6 * i)
             for joint, sign in ((i - 1, 1), (i, -1)):
                 frame, place = frames[joint]
@@ -105,7 +105,7 @@ class NewtonEuler:
                 freedom, row = freedoms[k], 6 * (n - 1) + k
                 z = freedom.axis
                 # M about the axis' own place is M + (place - axis' place) x F
-                lever = np.cross(z, place - freedom.place) * freedom.turns + z * freedom.slides
+                lever = crossed(z, place - freedom.place) * freedom.turns + z * freedom.slides
                 # for one radian, or one metre, in newton
                 per = self.length if freedom.turns else self.metre
                 matrix[row, 6 * joint : 6 * joint + 3] = freedom.turns * (frame.T @ z) * (self.length / per)
@@ -115,7 +115,7 @@ class NewtonEuler:
                     matrix[row, 6 * n] = zero - 1
                 for number, rule in enumerate(rules):
                     if rule.joint == joint:
-                        matrix[row, 6 * n + 1 + number] = -(z @ np.cross(rule.across, rule.axis))
+                        matrix[row, 6 * n + 1 + number] = -(z @ crossed(rule.across, rule.axis))
                 if k in self.motion.held:
                     matrix[row, 6 * n + 1 + len(rules) + self.motion.held.index(k)] = zero - 1
         x, null, left, condition = self._whole(matrix, right)
@@ -175,9 +175,9 @@ class NewtonEuler:
             seen = link.shifted(arm)
             turn = link.rotation @ frame[:3, :3]
             tensor = turn @ body.tensor @ turn.T
-            spun = tensor @ link.spin_rate + np.cross(w, tensor @ w)
+            spun = tensor @ link.spin_rate + crossed(w, tensor @ w)
             force = body.mass * seen.acceleration
-            rate = rate + np.concatenate([spun + np.cross(seen.place - about, force), force])
+            rate = rate + np.concatenate([spun + crossed(seen.place - about, force), force])
             energy = energy + (body.mass * (seen.velocity @ seen.velocity) + w @ tensor @ w) / 2
             weight = weight - body.mass * (np.array(self.loading.gravity) @ seen.place)
         return about, rate, energy, weight
@@ -262,10 +262,10 @@ class Acting:
         total = np.concatenate([about, about]) * 0
         for i, place, force, torque in self.pulls:
             if i == link:
-                total = total + np.concatenate([torque + np.cross(place - about, force), force])
+                total = total + np.concatenate([torque + crossed(place - about, force), force])
         return total
 
 
 def _levered(arm: Numbers, frame: Numbers) -> Numbers:
     """The moments of a joint's three unit forces that act `arm` away."""
-    return np.stack([np.cross(arm, frame[:, k]) for k in range(3)], axis=1)
+    return np.stack([crossed(arm, frame[:, k]) for k in range(3)], axis=1)

@@ -41,9 +41,9 @@ class State:
 
     def moved(self, arm: Numbers) -> tuple[Numbers, Numbers]:
         """Velocity and acceleration (k, 3) of a point fixed to it, `arm` (3,) from its place."""
-        swept = np.cross(self.spin, arm)
+        swept = crossed(self.spin, arm)
         return self.velocity + swept, (
-            self.acceleration + np.cross(self.spin_rate, arm) + np.cross(self.spin, swept)
+            self.acceleration + crossed(self.spin_rate, arm) + crossed(self.spin, swept)
         )
 
     def shifted(self, arm: Numbers) -> State:
@@ -53,8 +53,8 @@ class State:
 
     def turned_axis(self, axis: Numbers) -> tuple[Numbers, Numbers]:
         """First and second derivative (k, 3) of a direction fixed to it."""
-        rate = np.cross(self.spin, axis)
-        return rate, np.cross(self.spin_rate, axis) + np.cross(self.spin, rate)
+        rate = crossed(self.spin, axis)
+        return rate, crossed(self.spin_rate, axis) + crossed(self.spin, rate)
 
     def only(self, k: int) -> State:
         """With one set of rates, arrays (3,)."""
@@ -142,7 +142,7 @@ class Carried:
                     state.spin,
                     state.spin_rate,
                     along.velocity + slides * rate,
-                    along.acceleration + 2 * slides * np.cross(state.spin, rate) + slides * second,
+                    along.acceleration + 2 * slides * crossed(state.spin, rate) + slides * second,
                 )
             if turns:
                 c, s = cos_sin(turns * q[k])
@@ -151,7 +151,7 @@ class Carried:
                     np.stack([c * x + s * y, c * y - s * x, z], axis=1),
                     state.place,
                     state.spin + turns * rate,
-                    state.spin_rate + turns * second + turns * np.cross(state.spin, rate),
+                    state.spin_rate + turns * second + turns * crossed(state.spin, rate),
                     state.velocity,
                     state.acceleration,
                 )
@@ -193,7 +193,7 @@ class Carried:
             frame, place = self.joint_frame(links, ball)
             axis = frame @ self.linkage.spin_axes[self.linkage.joints[ball].name]
             _, other = self.joint_frame(links, (ball + 1) % self.count)
-            across = np.cross(axis, other - place)
+            across = crossed(axis, other - place)
             rules.append(Rule(ball, axis, across / length(across)))
         return rules
 
@@ -272,6 +272,13 @@ class Carried:
         body = links[link % self.count]
         place = frame[:3, :3] @ np.array(at) + frame[:3, 3]
         return body.shifted(body.rotation @ (place * self.metre))
+
+
+def crossed(one: Numbers, other: Numbers) -> Numbers:
+    """Their vector products (..., 3); NumPy's own is five times as slow on few."""
+    a, b, c = one[..., 0], one[..., 1], one[..., 2]
+    x, y, z = other[..., 0], other[..., 1], other[..., 2]
+    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
 
 
 def cos_sin(angle: Any) -> tuple[Any, Any]:
