@@ -67,8 +67,8 @@ class NewtonEuler:
         self.motion = Carried(linkage, column, metre, precise=precise)
         self.length = self.motion.length
 
-    def at(self, q: Numbers, speed: Any, acceleration: Any) -> Forces:
-        """All forces at a closed pose (m,), the input moving so."""
+    def at(self, q: Numbers, speed: Any, acceleration: Any, axes: np.ndarray | None = None) -> Forces:
+        """All forces at a closed pose (m,), the input moving so; components along `axes` (joints, 3, 3), if given."""
         q = np.asarray(q)
         dq, ddq = self.motion.rates(q, speed, acceleration)
         links, freedoms, _ = self.motion.carried(q, dq[None], ddq[None])
@@ -81,6 +81,8 @@ class NewtonEuler:
         matrix = np.full((rows, size), zero)
         right = np.full(rows, zero)
         frames = [self.motion.joint_frame(links, joint) for joint in range(n)]
+        if axes is not None:
+            frames = [(turn, place) for turn, (_, place) in zip(axes, frames, strict=True)]
         wrenches = self._acting(links, q, dq)
         kinetic, potential, shaking = zero, wrenches.potential, np.full(6, zero)
         for i in range(1, n):
