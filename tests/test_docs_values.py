@@ -82,8 +82,8 @@ READERS: dict[str, Callable[[str], str]] = {
     "values of L1": swept,
     "place": placed,
     "box": boxed,
-    "length in a file": lambda text: f"{value_of(text, 'length'):g} mm",
-    "twist in a file": lambda text: f"{value_of(text, 'angle'):g} deg",
+    "formula of a length": lambda text: f"{value_of(text, 'length'):g} mm",
+    "formula of an angle": lambda text: f"{value_of(text, 'angle'):g} deg",
     "count": lambda text: f"{count_of('--samples')(text)}",
 }
 

@@ -23,10 +23,11 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.description.draft import Draft
-from sevenbar.description.files import text_of
+from sevenbar.description.files import toml_text
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.ranges import finite_number, split_list, split_named, split_range, three_numbers
-from sevenbar.text.units import amount, sizes_of
+from sevenbar.text.amounts import amount_in
+from sevenbar.text.ranges import split_list, split_named, split_range, three_numbers
+from sevenbar.text.units import amount
 
 if TYPE_CHECKING:
     from sevenbar.design.points.least import LeastPoint, Rate
@@ -79,13 +80,13 @@ def point(
     loaded = sb.load(linkage)
     sides = parsed_box(box, loaded.length_unit)
     called = name or ("nearest_path" if curve is not None else f"least_{least or 'acceleration'}")
-    draft = Draft.of(text_of(linkage), linkage)
+    draft = Draft.of(toml_text(linkage), linkage)
     if out is not None and called in [point.name for point in draft.linkage.points]:
         raise RequestError(f"--name: {linkage} has a point {shown(called)} already; give another name")
 
     def toml(found: LeastPoint | NearestPath) -> str:
         longer = draft.with_point(called, link, found.at.tolist())
-        # a name that no file may have is told here
+        # a name that no file may have is refused here
         _ = longer.linkage
         return longer.toml()
 
@@ -150,10 +151,7 @@ def inertia(
 
 def parsed_box(text: str, unit: str) -> list[tuple[float, float]]:
     """The sides [unit] of a box like '-200:200,0:5cm,7'; a length alone is given. Raises `RequestError`."""
-    sizes = sizes_of(unit)
-    ends = [
-        amount(end, sizes, unit) for side in split_list(text) for end in split_range(side) or (side, side)
-    ]
+    ends = [amount_in(end, unit) for side in split_list(text) for end in split_range(side) or (side, side)]
     if len(ends) != 6 or None in ends:
         raise RequestError(
             f"--box: {shown(text)} is no box; give three sides low:high, as in '-200:200,-200:200,0:50'"
@@ -173,7 +171,7 @@ def parsed_masses(given: list[str]) -> dict[str, float]:
     what, hint = "a mass", "give a point and kilograms, as in P=2.5"
     found = {}
     for name, text in split_named("--mass", given, what, hint).items():
-        kilograms = finite_number(text.removesuffix("kg"))
+        kilograms = amount(text, {"kg": 1.0}, "kg")
         if kilograms is None:
             raise RequestError(f"--mass: {shown(f'{name}={text}')} is not {what}; {hint}")
         found[name] = kilograms

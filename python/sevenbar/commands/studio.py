@@ -9,10 +9,10 @@ from typing import Annotated
 
 import typer
 
-from sevenbar.description.files import text_of
+from sevenbar.description.files import toml_text
 from sevenbar.errors import MissingExtraError, RequestError
 
-#: Where the studio is served unless told otherwise.
+#: Where the studio is served by default.
 HOST, PORT = "127.0.0.1", 8077
 
 
@@ -31,7 +31,7 @@ def studio(
     ] = True,
 ) -> None:
     """Shape a linkage in the browser and see it move (extra 'studio'); Ctrl+C ends it."""
-    text = text_of(linkage)
+    text = toml_text(linkage)
     for name in ("viser", "tomlkit"):
         if importlib.util.find_spec(name) is None:
             raise MissingExtraError(f"studio needs {name}; install it with: pip install 'sevenbar[studio]'")

@@ -68,7 +68,7 @@ def sweep(
 ) -> None:
     """Measure many linkages: dimensions over grids, lists and samples, into Parquet (extra 'sweep')."""
     from sevenbar.description.draft import Draft
-    from sevenbar.description.files import text_of
+    from sevenbar.description.files import toml_text
     from sevenbar.sweep.axes import axis_from_text
     from sevenbar.sweep.parts import is_finished
     from sevenbar.sweep.plan import SweepPlan
@@ -82,7 +82,7 @@ def sweep(
     for option, given in (("--resume", resume), ("--mixed", mixed)):
         if given and out is None:
             raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")
-    draft = Draft.of(text_of(linkage), linkage)
+    draft = Draft.of(toml_text(linkage), linkage)
     plan = SweepPlan.of(
         draft, axes, words(measure or list(USUAL)), method=method, count=count, seed=seed,
         samples=samples, input=input_joint, output=output, part_size=part_size, follow=words(follow or []),

@@ -23,7 +23,7 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.units import amount, sizes_of
+from sevenbar.text.amounts import amount_in
 
 
 def tolerance(
@@ -39,7 +39,7 @@ def tolerance(
     wanted: Annotated[
         str | None,
         typer.Option(
-            help="In place of --tolerance: the error allowed of what is told, as in 0.5deg; finds tolerances."
+            help="In place of --tolerance: the error allowed of the output, as in 0.5deg; finds tolerances."
         ),
     ] = None,
     circuit: Annotated[int, typer.Option(help="The circuit.")] = 0,
@@ -52,11 +52,12 @@ def tolerance(
     of: Annotated[
         str | None,
         typer.Option(
-            "--of", help="What is told: a joint or a point's coordinate, as in P.x; the output by default."
+            "--of",
+            help="The joint or point's coordinate that deviates, as in P.x; the output by default.",
         ),
     ] = None,
     quantity: Annotated[
-        str, typer.Option(help="What is told of it: position, velocity or acceleration.")
+        str, typer.Option(help="What of it: position, velocity or acceleration.")
     ] = "position",
     input_joint: InputJoint = None,
     output: OutputJoint = None,
@@ -80,10 +81,10 @@ def tolerance(
     from sevenbar.design.tolerance.report import Findings, tolerance_report
     from sevenbar.design.tolerance.samples import monte_carlo
     from sevenbar.design.tolerance.sensitivities import sensitivities
-    from sevenbar.design.tolerance.tolerances import parsed
+    from sevenbar.design.tolerance.tolerances import parsed_tolerances
     from sevenbar.design.tolerance.worst import worst_case
 
-    tolerances = parsed(given or [])
+    tolerances = parsed_tolerances(given or [])
     report = tolerance_report(formats)
     check_out(report, out, force=force)
     found = sensitivities(
@@ -102,7 +103,7 @@ def tolerance(
         linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
     with progress_bar(f"designs within the tolerances of {loaded.heading}") as progress:
         # one bar for both
-        worst = worst_case(found, linear, progress=lambda done, total, _: progress(done, total + count))
+        worst = worst_case(found, linear, progress=lambda done, total, _="": progress(done, total + count))
         tried, exact = worst.tried, None
         if count != 0:
             exact = monte_carlo(
@@ -110,7 +111,7 @@ def tolerance(
                 linear,
                 count,
                 seed=seed,
-                progress=lambda done, total, _: progress(tried + done, tried + total),
+                progress=lambda done, total, _="": progress(tried + done, tried + total),
             )
     deliver(Findings(linear, worst, exact), report, out, json=json, force=force)
 
@@ -118,7 +119,7 @@ def tolerance(
 def _wanted(text: str, unit: str) -> float:
     """An error [the output's unit] as a person wrote it; an angle alone is in degrees."""
     plain = "deg" if unit == "rad" else unit
-    value = amount(text, sizes_of(unit), plain)
+    value = amount_in(text, unit, plain)
     if value is None or value <= 0:
         raise RequestError(
             f"--wanted: {shown(text)} is not an error; give one greater than 0, as in "

@@ -50,7 +50,7 @@ def load(source: str | os.PathLike[str]) -> Linkage:
     return loads(decoded(content, str(path)), str(source))
 
 
-def text_of(source: str | os.PathLike[str]) -> str:
+def toml_text(source: str | os.PathLike[str]) -> str:
     """The TOML text of a file, or of a linkage of the gallery by its name; raises as `load` does.
 
     Of a table it is the description that the table has become.
@@ -94,7 +94,7 @@ def loads(content: str, source: str = "text") -> Linkage:
     try:
         raw = tomllib.loads(content)
     except ValueError as error:  # not TOML, or an integer of thousands of digits
-        raise _unreadable(source, _told(error, content.split("\n"))) from None
+        raise _unreadable(source, _syntax_problem(error, content.split("\n"))) from None
     except RecursionError:
         raise _unreadable(source, "nested too deep; a linkage file has tables of plain keys only") from None
     linkage = from_description(raw, source)
@@ -133,7 +133,7 @@ _SLIPS = (
 )
 
 
-def _told(error: ValueError, lines: list[str]) -> str:
+def _syntax_problem(error: ValueError, lines: list[str]) -> str:
     """What is wrong with a text that is not TOML: the line, the reader's words, and what to do."""
     match = _PLACE.fullmatch(str(error))
     example = "'sevenbar gallery rssr' prints a file that is right"
@@ -145,7 +145,7 @@ def _told(error: ValueError, lines: list[str]) -> str:
     line = lines[int(match[2]) - 1]
     if reason.startswith(("cannot overwrite", "cannot declare")):
         return f"line {match[2]}: {shown(line.strip())} stands twice; leave one of them out"
-    remedy = next((told for slip, told in _SLIPS if slip.fullmatch(line)), example)
+    remedy = next((hint for slip, hint in _SLIPS if slip.fullmatch(line)), example)
     return f"line {match[2]}: {shown(line.strip())} is not valid TOML: {reason}; {remedy}"
 
 

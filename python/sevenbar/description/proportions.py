@@ -46,11 +46,11 @@ def _of_drawing(drawn: Sequence[JointForm], unit: str) -> list[Problem]:
         return []
     if pitches[steepest] > ahead.max():
         message = f"{pitches[steepest]:.3g} {unit} is too long"
-        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {_told(lost, unit)}")]
+        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {_loss_text(lost, unit)}")]
     away = np.linalg.norm(places - np.median(places, axis=0), axis=1)
     far = int(away.argmax())
     message = f"{shown(list(drawn[far].at))} is {away[far]:.3g} {unit} from most of the others"
-    return [Problem(f"joint[{far + 1}].at", f"{message}, {_told(lost, unit)}")]
+    return [Problem(f"joint[{far + 1}].at", f"{message}, {_loss_text(lost, unit)}")]
 
 
 def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
@@ -64,7 +64,9 @@ def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
         return []
     place = max(numbers, key=lambda place: abs(numbers[place]))
     lost = _lost([abs(value) for value in numbers.values()], abs(numbers[place]))
-    return [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {_told(lost, unit)}")] if lost else []
+    return (
+        [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {_loss_text(lost, unit)}")] if lost else []
+    )
 
 
 def _lost(lengths: Sequence[float], greatest: float) -> list[float]:
@@ -74,7 +76,7 @@ def _lost(lengths: Sequence[float], greatest: float) -> list[float]:
     return lost if 2 * len(lost) >= len(meant) else []
 
 
-def _told(lost: Sequence[float], unit: str) -> str:
+def _loss_text(lost: Sequence[float], unit: str) -> str:
     return (
         f"and {max(lost):.3g} {unit} is lost in rounding beside that; give lengths of which the greatest is "
         f"at most {1 / LEAST_SHARE:.0e} times the others"

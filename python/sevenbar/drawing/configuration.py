@@ -16,6 +16,7 @@ from sevenbar.drawing.names import short, shown_name
 from sevenbar.drawing.page import (
     EDGE,
     own_axes,
+    page_of_one,
     picture_height,
     prepare,
     prepare_given,
@@ -23,7 +24,7 @@ from sevenbar.drawing.page import (
     write_legend,
     write_title,
 )
-from sevenbar.drawing.scene import bars, box_of, keys, put, shown_places, stage
+from sevenbar.drawing.scene import bars, frame_box, keys, put, shown_places, stage
 from sevenbar.drawing.skeleton import Skeleton, one_pose, skeleton, skeleton_of
 from sevenbar.drawing.space import ViewAxes
 from sevenbar.drawing.style import letters, page_size, styled
@@ -87,18 +88,16 @@ def configuration(
             (ax,) = given_axes(ax, 1, "or none")
         seen = view_of(view, motion.linkage, shown_places(frame), ax)
         if ax is None:
-            figure = new_figure(*page_size(style, figsize, (WIDTH, WIDTH), wide=False))
+            page = page_size(style, figsize, (WIDTH, WIDTH), wide=False)
             which = f"circuit {chosen.index}, {len(poses)} position{'s' * (len(poses) > 1)}"
-            top = write_title(figure, title_text(title, f"{title_of(motion)}\n{which}"))
-            foot = write_legend(figure, keys(frame, ends, seen) if legend else [])
-            width, height = figure.get_size_inches()
-            if figsize is None:
-                height = top + foot + picture_height(seen, box_of(frame, seen), width)
-                set_height(figure, height)
-            space = ViewAxes(own_axes(figure, seen), seen)
-            prepare(space, frame, (0.0, foot, width, height - top - foot))
+            heading = title_text(title, f"{title_of(motion)}\n{which}")
+            shown_keys = keys(frame, ends, seen) if legend else []
+            box = frame_box(frame, seen)
+            figure, space, room = page_of_one(page, seen, box, heading, shown_keys, fixed=figsize is not None)
+            prepare(space, frame, room)
+            _, foot, _, tall = room
             within: Bbox | None = Bbox.from_extents(
-                0, foot * figure.dpi, figure.bbox.width, (height - top) * figure.dpi
+                0, foot * figure.dpi, figure.bbox.width, (foot + tall) * figure.dpi
             )
         else:
             figure, space, within = ax.figure.figure, ViewAxes(ax, seen), None
@@ -158,7 +157,7 @@ def modes_overview(
     with styled(style):
         given = None if ax is None else given_axes(ax, count, "one for each mode")
         seen = view_of(view, linkage, shown_places(poses), given[0] if given else None)
-        box = box_of(poses, seen)
+        box = frame_box(poses, seen)
         if given:
             for axes, index in zip(given, range(count), strict=True):
                 space = ViewAxes(axes, seen)

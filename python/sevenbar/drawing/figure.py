@@ -55,10 +55,15 @@ def column_label(motion: Motion, column: str) -> str:
     return quantity_label(column, "angle", "deg")
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """An empty white figure [inch] with a canvas of its own, outside pyplot's register."""
+def new_figure(width: float, height: float, *, pads: tuple[float, float] | None = None) -> Figure:
+    """An empty white figure [inch] with a canvas of its own, outside pyplot's register.
+
+    With `pads` its panels are laid out by matplotlib, with this room [inch] above and beside each.
+    """
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
+    if pads is not None:
+        figure.set_layout_engine("constrained", h_pad=pads[0], w_pad=pads[1])
     return figure
 
 
@@ -119,7 +124,7 @@ def tidy(figure: Figure) -> None:
     figure.align_ylabels()
 
 
-def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
+def range_drawn(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
     """The ends of drawn values (n,), of rates that grow without bound those of `CUT`; `None` without any."""
     finite = values[np.isfinite(values)]
     if not finite.size:
@@ -133,7 +138,7 @@ def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, 
 def note(motion: Motion, cut: bool) -> str:
     """How the input is driven, and whether rates were cut."""
     name = shown_name(motion.input)
-    unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
+    unit = motion.linkage.unit_of(motion.input)
     note = f"{name} at {motion.speed_written or f'{motion.speed:g} {unit}/s'}"
     if motion.law is not None:
         note = f"{name} driven by a law"

@@ -11,7 +11,8 @@ from matplotlib.legend import Legend
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing import style
-from sevenbar.drawing.scene import box_of, draw_box
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_frame, fit, measuring, seen_size, set_limits
 from sevenbar.drawing.view import Projection
@@ -103,6 +104,28 @@ def picture_height(view: Projection, box: Box, width: float) -> float:
     return float(np.clip(inner * tall / (wide or 1.0), LOWEST * inner, HIGHEST * inner) + below + above)
 
 
+def page_of_one(
+    size: tuple[float, float],
+    view: Projection,
+    box: Box,
+    heading: str,
+    handles: Sequence[Any],
+    *,
+    fixed: bool,
+) -> tuple[Figure, ViewAxes, Rectangle]:
+    """A page [inch] with a title, one picture and a legend; its axes, and the room of the picture.
+
+    Unless its height is `fixed`, it is what the picture needs.
+    """
+    figure = new_figure(*size)
+    top, foot = write_title(figure, heading), write_legend(figure, handles)
+    width, height = figure.get_size_inches()
+    if not fixed:
+        height = top + foot + picture_height(view, box, width)
+        set_height(figure, height)
+    return figure, ViewAxes(own_axes(figure, view), view), (0.0, foot, width, height - top - foot)
+
+
 def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = False) -> None:
     """Places axes on the page so that their box and its labels fill a rectangle; `bare`: without labels."""
     left, right, below, above = (0.1, 0.1, 0.1, 0.1) if bare else margins(space.view)
@@ -113,7 +136,7 @@ def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = Fals
 
 def prepare(space: ViewAxes, frame: Skeleton, room: Rectangle) -> None:
     """Limits, place on the page and frame of the axes, for all that a picture of a frame shows."""
-    box = box_of(frame, space.view)
+    box = frame_box(frame, space.view)
     set_limits(space, box)
     fit_picture(space, box, room)
     draw_box(space, frame, box)
@@ -121,7 +144,7 @@ def prepare(space: ViewAxes, frame: Skeleton, room: Rectangle) -> None:
 
 def prepare_given(space: ViewAxes, frame: Skeleton) -> None:
     """The same for the caller's axes, which keep their place."""
-    box = box_of(frame, space.view)
+    box = frame_box(frame, space.view)
     set_limits(space, box)
     fill_given(space, box)
     draw_box(space, frame, box)

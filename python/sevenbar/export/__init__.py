@@ -19,8 +19,8 @@ from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.export.pose import take
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.reporting.folder import check_targets, fill_folder
+from sevenbar.text.progress import Progress, silent
 
 if TYPE_CHECKING:
     from sevenbar.export.parts import Assembly
@@ -190,7 +190,7 @@ def export(
     samples: int = 360,
     units: Units | None = None,
     force: bool = False,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> list[Path]:
     """Writes a linkage or its motion for another program; returns the files written.
 
@@ -255,7 +255,7 @@ def format_of(path: Path, to: str | None) -> str:
         if path.suffix.lower() in form.endings:
             return word
     endings = ", ".join(ending for form in FORMATS.values() for ending in form.endings)
-    raise RequestError(f"{path}: {shown(path.suffix)} tells no format; give one of {endings}")
+    raise RequestError(f"{path}: {shown(path.suffix)} is the ending of no format; give one of {endings}")
 
 
 def ending_of(to: str) -> str:

@@ -16,7 +16,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.drawing.style import GROUND, JOINT
-from sevenbar.export.pose import Pose, shortest_link, size_of
+from sevenbar.export.pose import Pose, extent_of, shortest_link
 from sevenbar.kinematics.rigid import inverse, perpendicular
 from sevenbar.kinematics.rigid import pose as matrix
 from sevenbar.kinematics.rigid import unit as unit_vector
@@ -123,13 +123,13 @@ class Seat:
     other: int = 1
 
 
-def unit_of(pose: Pose) -> float:
+def hub_height(pose: Pose) -> float:
     """The height of a hub [length]: as the figures draw it, less where links are short."""
-    return min(CYLINDER * size_of(pose), 0.25 * shortest_link(pose))
+    return min(CYLINDER * extent_of(pose), 0.25 * shortest_link(pose))
 
 
 def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
-    """All parts in a pose, each joint seated as told."""
+    """All parts in a pose, each joint at its seat."""
     linkage = pose.linkage
     count = len(linkage.joints)
     colours = _link_colours(pose)
@@ -399,7 +399,7 @@ def _moved(part: Part, frame: Floats) -> Part:
 
 
 def _link_colours(pose: Pose) -> list[str]:
-    """The figures' colours of the moving links; neighbours of one colour are told apart by a lighter one."""
+    """The figures' colours of the moving links; of neighbours of one colour one is lighter."""
     colours, _ = link_colours(pose.linkage, (pose.motion.input, pose.motion.output))
     for k in range(1, len(colours)):
         if colours[k] == colours[k - 1]:

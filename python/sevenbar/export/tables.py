@@ -15,8 +15,8 @@ import numpy as np
 from sevenbar.errors import MissingExtraError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.reporting.folder import write_parts
+from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 
 #: "file": lengths in the linkage's own unit, and angles of flat tables in degrees; "si": metres and radians.
@@ -27,7 +27,7 @@ def write_csv(
     motion: Motion,
     path: Path,
     units: Units,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> None:
     """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
     rows = sum(circuit.tally.rows for circuit in motion)
@@ -119,7 +119,7 @@ def write_json(motion: Motion, path: Path, units: Units) -> None:
 def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
     """What the numbers mean: the linkage, the drive, the columns and the units.
 
-    In a `flat` table each column's name tells its unit, and angles are in degrees with units "file".
+    In a `flat` table each column's name has its unit, and angles are in degrees with units "file".
     """
     linkage = motion.linkage
     length = "m" if units == "si" else linkage.length_unit

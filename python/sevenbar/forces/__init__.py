@@ -1,1 +1,1 @@
-"""What acts on a linkage, and what follows from it: masses, loads and springs as values; torque, reactions and balance as arrays."""
+"""What acts on a linkage and what follows: bodies, loads and springs; torque, reactions, sizing, balance."""

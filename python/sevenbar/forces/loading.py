@@ -21,11 +21,11 @@ Three = tuple[float, float, float]
 class Load:
     """A force and a torque on a link.
 
-    `force` (3,) [N] at the point `at` [length], written as a point of link `link` is, and `torque` (3,) [N m],
-    both along the axes of the report frame, or with `axes` "link" along those in which the link's points are
-    written. It acts all the time, or where the input [rad, or length] lies `between` two values (from the
-    first up to the second, angles by whole turns), or as large as `table` says: inputs (k,) and the factors
-    (k,) there, straight lines between them, 0 outside; of a turning input by whole turns.
+    `force` (3,) [N] acts at the point `at` [length], written as a point of its link is, and `torque` (3,)
+    [N m]; both along the axes of the report frame, or with `axes` "link" along those in which the link's
+    points are written. It acts all the time, or where the input [rad, or length] lies `between` two values
+    (from the first up to the second, angles by whole turns), or as large as `table` says: inputs (k,) and the
+    factors (k,) there, straight lines between them, 0 outside; of a turning input by whole turns.
     """
 
     link: int
@@ -81,10 +81,10 @@ class Spring:
     """A spring with a damper, between points of two links or in a joint.
 
     Between `links` it pulls the points `at` (two of (3,), written as points are) together with
-    `stiffness (L - length) + damping dL/dt` [N] at the distance L: stiffness in N by the length unit, damping
-    in N s by it. In a `joint` (the name of a column) it acts back with `stiffness (q - length) + damping dq/dt`
-    [N m, or N] on its value q [rad, or length]: N m/rad and N m s/rad, of a slide N and N s by the length
-    unit.
+    `stiffness (L - length) + damping dL/dt` [N] at the distance L: stiffness in N by the length unit,
+    damping in N s by it. In a `joint` (the name of a column) it acts back on its value q [rad, or length]
+    with `stiffness (q - length) + damping dq/dt` [N m, or N]: N m/rad and N m s/rad, of a slide N and N s by
+    the length unit.
     """
 
     stiffness: float = 0.0
@@ -136,3 +136,7 @@ class Loading:
     def is_empty(self) -> bool:
         """Whether nothing has a mass, and nothing acts."""
         return not (any(self.bodies.values()) or self.loads or self.springs)
+
+
+#: What acts on a linkage that was given no bodies and no loads.
+UNLOADED = Loading()

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
+from sevenbar.forces.bodies import Body
+from sevenbar.forces.loading import Load, Spring
+from sevenbar.forces.result import Forces
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.rigid import axial, pose
@@ -82,7 +85,7 @@ class Sensitivity(Printed):
     `names` and `units` (k,) are those of the numbers, as in the file. `position` (n, columns, k) [rad, or
     length, by the number's unit], `velocity` and `acceleration` by time at the circuit's own input, which
     stays as it is; of a ball's turns there is the position only. `points` has each named point's derivative
-    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` tells why), for
+    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` says why), for
     numbers that open the loop if they change alone (`opening`), and for what spins idly.
     """
 
@@ -193,6 +196,10 @@ class Answers(Protocol):
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) in the plane of a planar loop (..., 2)."""
+        ...
+
+    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+        """The forces on its rows, with what is given in place of what the linkage has."""
         ...
 
 
@@ -402,6 +409,32 @@ class Circuit(Printed):
             (('M', 'N', 'L1', 'L2', 'L3', 'D'), (12, 8, 6))
         """
         return self._sensitivity(self)
+
+    @ends_here
+    def forces(
+        self,
+        *,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: tuple[float, float, float] | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+    ) -> Forces:
+        """What the input has to give, and what every joint bears, on each row.
+
+        Bodies (by their link), gravity [m/s^2], loads and springs are those of the linkage's file, or the
+        given ones. Rates are those of the circuit: for statics, ask a motion with a law that rests. Raises
+        `RequestError` where nothing has a mass and nothing acts.
+
+            >>> import sevenbar as sb
+            >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
+            >>> found = sb.load("rssr").motion().circuits[0].forces(bodies={1: crank}, gravity=(0, 0, -9.81))
+            >>> round(float(found.reactions["crank"].force[0, 2]), 6)  # the ground lifts 2 kg
+            19.62
+
+        Source: docs/theory_forces.md, (1) to (7).
+        """
+        given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
+        return self._answers.forces(self, {key: value for key, value in given.items() if value is not None})
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Joint, Loop
 from sevenbar.kinematics.word import Place
-from sevenbar.text.units import ANGLES, amount, examples_of, sizes_of
+from sevenbar.text.units import ANGLES, examples_of
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,10 @@ class Dimension:
 
         Raises `RequestError` for a text that is no finite number with a unit that fits.
         """
-        value = amount(text, sizes_of(self.unit), self.unit)
+        # `import sevenbar` needs no reader of formulas
+        from sevenbar.text.amounts import amount_in
+
+        value = amount_in(text, self.unit)
         if value is None:
             comma = " (a decimal point, not a comma)" if "," in text else ""
             given = shown(text.strip())
@@ -119,8 +122,7 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
     for i, table in enumerate(description.get("point", ())):
         name = table["name"]
         found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
-    column = linkage.columns.index(linkage.drive.joint)
-    speed = "rad/s" if linkage.column_kinds[column] == "turn" else f"{length}/s"
+    speed = f"{linkage.unit_of(linkage.drive.joint)}/s"
     found.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
     # a point may have the name of a joint
     taken = Counter(dimension.name for dimension in found)

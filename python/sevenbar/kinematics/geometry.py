@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
+from sevenbar.forces.loading import UNLOADED, Loading
 from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z
 from sevenbar.kinematics.rigid import about, inverse, pose
 from sevenbar.text.printing import Drawable
@@ -119,7 +120,7 @@ class Loop(Drawable):
     both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
     to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
-    tables and keys of a file, from which a linkage with other numbers is made.
+    tables and keys of a file, from which a linkage with other numbers is made. `loading` is what acts on it.
 
     Source: docs/theory.md, (1).
     """
@@ -136,6 +137,7 @@ class Loop(Drawable):
     dimensions: Mapping[str, float] = field(default_factory=dict)
     form: Form = "drawn"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    loading: Loading = field(default=UNLOADED, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):
@@ -178,6 +180,11 @@ class Loop(Drawable):
     def column_kinds(self) -> tuple[Freedom, ...]:
         """What each column is: an angle [rad] or a length."""
         return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
+
+    def unit_of(self, column: int | str) -> str:
+        """The unit of a column's values, by its number or name: "rad", or the length unit."""
+        place = self.columns.index(column) if isinstance(column, str) else column
+        return "rad" if self.column_kinds[place] == "turn" else self.length_unit
 
     @property
     def added_points(self) -> tuple[Point, ...]:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.units import amount, examples_of, number_in, sizes_of
+from sevenbar.text.units import examples_of
 
 
 def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
@@ -17,7 +17,10 @@ def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
     """
     slides = linkage.column_kinds[column] == "slide"
     unit, plain = (linkage.length_unit,) * 2 if slides else ("rad", "deg")
-    value = amount(text, sizes_of(unit), plain)
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import amount_in
+
+    value = amount_in(text, unit, plain)
     if value is None:
         kind = "slides" if slides else "turns"
         raise RequestError(
@@ -34,7 +37,10 @@ def given_number(key: str, value: object, unit: str) -> object:
     """
     if not isinstance(value, str):
         return value
-    number = number_in(unit, value)
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import amount_in, lacks_unit
+
+    number = None if lacks_unit(value, "angle" if unit == "rad" else "length") else amount_in(value, unit)
     if number is None:
         example = "one as in '30 deg'" if unit == "rad" else f"one as in '12 {unit}'"
         plain = "radians" if unit == "rad" else unit
@@ -45,21 +51,32 @@ def given_number(key: str, value: object, unit: str) -> object:
     return number
 
 
+def check_own_unit(key: str, angle: str) -> None:
+    """Refuses the text of an angle without a unit, as in Python a number alone is in radians."""
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import lacks_unit
+
+    if lacks_unit(angle, "angle"):
+        raise RequestError(
+            f"{key}: {shown(angle)} has no unit; give one as in '30 deg', or a number in radians"
+        )
+
+
 def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> float:
     """The value of a joint [rad, or length] that a caller gives: a number, or a text as in "30 deg"."""
-    return finite_number(key, given_number(key, value, _unit(linkage, column)))  # type: ignore[arg-type]
+    return finite_number(key, given_number(key, value, linkage.unit_of(column)))  # type: ignore[arg-type]
 
 
 def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
     """Values of a joint (n,) [rad, or length] that a caller gives: numbers, or texts; finite or not."""
     if not isinstance(values, (str, list, tuple)):
         return real_array(key, values)
-    return real_array(key, _read(key, values, [_unit(linkage, column)] * len_of(values)))
+    return real_array(key, _read(key, values, [linkage.unit_of(column)] * len_of(values)))
 
 
 def pose_numbers(key: str, values: npt.ArrayLike, linkage: Loop) -> Floats:
     """The values of all columns (columns,) [rad, or length] that a caller gives: finite numbers, or texts."""
-    units = [_unit(linkage, column) for column in range(len(linkage.columns))]
+    units = [linkage.unit_of(column) for column in range(len(linkage.columns))]
     return finite_array(key, _read(key, values, units))
 
 
@@ -77,7 +94,3 @@ def _read(key: str, values: npt.ArrayLike, units: list[str]) -> npt.ArrayLike:
     return [
         given_number(f"{key}[{i}]", value, units[min(i, len(units) - 1)]) for i, value in enumerate(values)
     ]  # type: ignore[return-value]
-
-
-def _unit(linkage: Loop, column: int) -> str:
-    return linkage.length_unit if linkage.column_kinds[column] == "slide" else "rad"

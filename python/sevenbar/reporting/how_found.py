@@ -21,8 +21,8 @@ _UNCOUNTED = {
     "still": "circuits are not counted, since there may be motions with the joint at rest",
 }
 
-#: Ranges that do not balance told in one sentence.
-MOST_RANGES_TOLD = 4
+#: Ranges that do not balance listed in one sentence.
+MOST_RANGES = 4
 
 #: A range narrower than this [deg] is given by its middle, as one about a change point.
 NARROW_RANGE_DEG = 0.01
@@ -50,8 +50,8 @@ def how_found(motion: Motion) -> str:
         text += f"the loop moves out of them with {search.freedoms} freedoms"
     else:
         text += "no motion leads out of them"
-    if told := _counted(search):
-        text += f"; {told}"
+    if counted := _counted(search):
+        text += f"; {counted}"
     if search.misfits.size:
         text += f"; {left_open(search.misfits, motion.agree)}"
     if motion.agree != AGREE:
@@ -60,7 +60,7 @@ def how_found(motion: Motion) -> str:
 
 
 def _counted(search: Search) -> str:
-    """What the count of branch points tells; empty where nothing was counted."""
+    """What the count of branch points shows; empty where nothing was counted."""
     count = search.count
     if count is None:
         return _UNCOUNTED.get(search.uncounted or "", "")
@@ -68,18 +68,18 @@ def _counted(search: Search) -> str:
         others = f" and {count.complex_branch_points} complex" if count.complex_branch_points else ""
         many = f"{count.dead_centres or 'no'} dead centre{'s' * (count.dead_centres > 1)}"
         return f"branch points of {count.joint} are all accounted for: {many}{others}"
-    told = []
-    for each in count.open[:MOST_RANGES_TOLD]:
+    parts = []
+    for each in count.open[:MOST_RANGES]:
         what = "some" if each.missing is None else f"{each.missing}"
         if each.missing is not None and each.missing < 0:
             what = f"{-each.missing} too many"
         start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
         if wide < NARROW_RANGE_DEG:
-            told.append(f"{what} within {wide / 2:.1g} deg of {(start + wide / 2) % 360:.6g} deg")
+            parts.append(f"{what} within {wide / 2:.1g} deg of {(start + wide / 2) % 360:.6g} deg")
         else:
-            told.append(f"{what} between {start % 360:.6g} and {start % 360 + wide:.6g} deg")
-    more = " and elsewhere" if len(count.open) > MOST_RANGES_TOLD else ""
-    return f"branch points of {count.joint} are not all accounted for: {', '.join(told)}{more}"
+            parts.append(f"{what} between {start % 360:.6g} and {start % 360 + wide:.6g} deg")
+    more = " and elsewhere" if len(count.open) > MOST_RANGES else ""
+    return f"branch points of {count.joint} are not all accounted for: {', '.join(parts)}{more}"
 
 
 def left_open(misfits: Floats, agree: float) -> str:

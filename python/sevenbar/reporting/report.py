@@ -20,21 +20,14 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
+from sevenbar.reporting.facts import COMPLETE, closure_error, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
-from sevenbar.reporting.summary import (
-    COMPLETE,
-    GAP,
-    Sheet,
-    closure_error,
-    joint_text,
-    modes_sheets,
-    side_lengths,
-    summary,
-)
-from sevenbar.text.markdown import plain, table
+from sevenbar.reporting.shown import value_text
+from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
+from sevenbar.text.markdown import escaped, table
 
 __all__ = [
     "as_dict",
@@ -55,11 +48,11 @@ __all__ = [
 def as_dict(motion: Motion) -> dict[str, Any]:
     """The report as plain values: angles in radians, lengths in the linkage's unit, null beside a status.
 
-    Values of a sliding input or output are lengths; `linkage.columns` tells which slide.
+    Values of a sliding input or output are lengths; `linkage.columns` says which slide.
 
         >>> import sevenbar as sb
-        >>> told = as_dict(sb.load("rssr").motion())
-        >>> told["motion_type"], len(told["circuits"])
+        >>> found = as_dict(sb.load("rssr").motion())
+        >>> found["motion_type"], len(found["circuits"])
         ('crank-rocker', 2)
     """
     linkage = motion.linkage
@@ -167,13 +160,13 @@ def text(motion: Motion) -> RenderableType:
     """The report for people, to be printed by rich; angles in degrees."""
 
     def parts(width: int) -> Iterator[RenderableType]:
-        told = summary(motion, width)
+        page = summary(motion, width)
         facts = Facts()
-        for name, fact in told.facts:
+        for name, fact in page.facts:
             facts.add(name, fact, style="bold" if name == "motion type" else "")
-        yield Text(told.title, style="bold underline")
+        yield Text(page.title, style="bold underline")
         yield facts.grid
-        for sheet in told.sheets:
+        for sheet in page.sheets:
             yield Text()
             yield _table(sheet)
             if sheet.note:
@@ -194,13 +187,13 @@ def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
     >>> markdown(sb.load("rssr").motion()).splitlines()[0]
     '# RSSR of Sun and Zhou'
     """
-    told = summary(motion)
-    parts = [f"# {plain(told.title)}"]
+    page = summary(motion)
+    parts = [f"# {escaped(page.title)}"]
     parts.append(
-        "\n".join(f"- {name}: {plain(fact)}" if name else f"  {plain(fact)}" for name, fact in told.facts)
+        "\n".join(f"- {name}: {escaped(fact)}" if name else f"  {escaped(fact)}" for name, fact in page.facts)
     )
-    for sheet in told.sheets:
-        heads, *rows = ([plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
+    for sheet in page.sheets:
+        heads, *rows = ([escaped(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
         parts.append(table(heads, rows, right=sheet.right))
         parts += [sheet.note] if sheet.note else []
     parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
@@ -266,7 +259,7 @@ def write(
 ) -> list[Path]:
     """Writes report.md, report.json, motion.csv and the figures into a folder; returns their paths.
 
-    The folder is made if need be. The figures are configuration and motion; but for an RSSR, whose curves
+    The folder is made if need be. The figures are configuration and motion; except for an RSSR, whose curves
     tell all, also joints, and path_<name> for each named point. All files are finished in a folder beside it
     before the first is put in place. Raises `OutputError` where that cannot be done, and where one of them
     exists and `force` is not given.
@@ -320,7 +313,7 @@ def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
     def parts(width: int) -> Iterator[RenderableType]:
         yield Text(linkage.heading, style="bold underline")
         count = len(modes)
-        value = joint_text(linkage, column, modes.input)
+        value = value_text(linkage, column, modes.input)
         yield Text(
             f"{count or 'no'} assembly mode{'s' * (count != 1)} at {linkage.columns[column]} = {value}, "
             f"{modes.completeness}: {COMPLETE[modes.completeness]}"

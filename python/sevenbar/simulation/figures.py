@@ -31,15 +31,14 @@ def output_figure(run: Simulation) -> Figure:
     """Angle, velocity and acceleration of the output: theory and engine left, their difference right."""
     motion, column = run.course.motion, run.course.circuit.output_column
     slide = slides(motion, motion.output)
-    unit = motion.linkage.length_unit if slide else "rad"
+    unit = motion.linkage.unit_of(motion.output)
     rows = (
         ("position" if slide else "angle", unit if slide else "deg", "", run.engine.q, run.theory.q),
         ("velocity", unit, "/s", run.engine.dq, run.theory.dq),
         ("acceleration", unit, "/s²", run.engine.ddq, run.theory.ddq),
     )
     with styled():
-        figure = new_figure(9.2, 7.2)
-        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
+        figure = new_figure(9.2, 7.2, pads=(0.06, 0.08))
         grid = figure.subplots(3, 2, sharex=True)
         for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
             own, other = theory[:, column], engine[:, column]
@@ -59,8 +58,7 @@ def joints_figure(run: Simulation) -> Figure:
     linkage = run.linkage
     kinds = [kind for kind in ("turn", "slide") if kind in linkage.column_kinds]
     with styled():
-        figure = new_figure(9.2, 1.6 + 3.4 * len(kinds))
-        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
+        figure = new_figure(9.2, 1.6 + 3.4 * len(kinds), pads=(0.06, 0.08))
         grid = figure.subplots(len(kinds), 2, sharex=True, squeeze=False)
         for (left, right), kind in zip(grid, kinds, strict=True):
             unit = "rad" if kind == "turn" else linkage.length_unit
@@ -94,8 +92,7 @@ def points_figure(run: Simulation) -> Figure:
     unit = run.linkage.length_unit
     rows = (("position", ""), ("velocity", "/s"), ("acceleration", "/s²"))
     with styled():
-        figure = new_figure(9.2, 7.4)
-        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
+        figure = new_figure(9.2, 7.4, pads=(0.06, 0.08))
         grid = figure.subplots(3, 2, sharex=True)
         for (left, right), (what, per) in zip(grid, rows, strict=True):
             for place, (name, (engine, theory)) in enumerate(run.points.items()):
@@ -167,7 +164,7 @@ def _finish(figure: Figure, run: Simulation) -> None:
             axes.set_ylim(max(FLOOR, SPAN * highest, lowest / 3), 3 * highest)
     for axes in figure.axes[-2:]:
         axes.set_xlabel(input_label(motion))
-    unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
+    unit = motion.linkage.unit_of(motion.input)
     which = f"circuit {run.course.circuit.index}, {shown_name(motion.input, 24)} at {motion.speed:g} {unit}/s"
     figure.suptitle(
         f"{short(motion.linkage.heading, 60)}: Sevenbar and {run.record.engine} {run.record.version}\n"

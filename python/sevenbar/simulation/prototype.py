@@ -141,7 +141,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     Raises `NotCoveredError` for an idle freedom that is not the spin of a link between two balls.
     """
     frames = frames_along(linkage, circuit, np.array([row]))[0]
-    # rates of a row are told for the input at the motion's own speed, whatever the pass
+    # rates of a row are given for the input at the motion's own speed, whatever the pass
     share = speed / circuit.dq[row, circuit.input_column]
     bodies: list[Body] = []
     connections: list[Connection] = []

@@ -38,7 +38,7 @@ def outputs_of(numbers: Numbers, input: int) -> tuple[Output, ...]:
     linkage = numbers.linkage
     found = []
     for k, name in enumerate(linkage.columns):
-        unit = "rad" if numbers.turns[k] else linkage.length_unit
+        unit = linkage.unit_of(k)
         orders = 0 if k == input else 1 if numbers.is_ball[k] else 3
         for quantity, per in zip(QUANTITIES[:orders], PER_TIME, strict=False):
             own = name if quantity == "position" else f"{name}.{quantity}"
@@ -67,7 +67,7 @@ def values_of(outputs: tuple[Output, ...], q: Floats, here: Slopes, speed: float
 def slopes_of(numbers: Numbers, outputs: tuple[Output, ...], q: Floats, here: Slopes, speed: float) -> Floats:
     """The derivatives (n, outputs, numbers) at rows q (n, columns) of the analysis.
 
-    What takes part in an idle motion, of which nothing can be told, is NaN.
+    What takes part in an idle motion, of which nothing is known, is NaN.
     """
     joints, idle = numbers.by_columns(q, here)
     slopes = np.stack(

@@ -21,13 +21,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
+from sevenbar.text.progress import Progress, silent
 
 #: Quantiles that are kept: the median, 95 % and the 3 sigma of a normal distribution.
 LEVELS = (0.00135, 0.025, 0.5, 0.975, 0.99865)
@@ -102,7 +103,7 @@ class MonteCarlo(Printed):
                 f"{100 * RATIO_HOLDS:g} %, the mean is off by less than {BIAS_HOLDS:g} of one"
             )
         if self.holds is None:
-            return f"whether the linear estimate holds cannot be told with {self.count} samples; take more"
+            return f"whether the linear estimate holds cannot be decided with {self.count} samples; take more"
         because = []
         if self.lost:
             because.append(
@@ -214,7 +215,7 @@ def _gaps(determinants: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Which samples have inputs between two rows at which their loop does not close.
 
     The determinant goes as the root of the distance from a dead centre, so its square is smooth and would be
-    negative in a gap: the parabola through the lowest three of it tells.
+    negative in a gap: as the parabola through the lowest three of it shows.
     """
     squares = determinants**2
     place = np.argmin(squares, axis=1)

@@ -8,7 +8,7 @@ from typing import Any
 
 import viser
 
-from sevenbar.description.files import decoded, text_of
+from sevenbar.description.files import decoded, toml_text
 from sevenbar.description.gallery import names, title
 from sevenbar.errors import SevenbarError
 from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
@@ -65,7 +65,7 @@ class FilesPanel:
     def _chosen(self, event: viser.GuiEvent[Any]) -> None:
         if by_person(event) and self._gallery.value != CHOOSE:
             name = self._names[self._gallery.value]
-            self._worker.ask("open", lambda: self._opened(lambda: text_of(name), name))
+            self._worker.ask("open", lambda: self._opened(lambda: toml_text(name), name))
 
     def _uploaded(self, _: viser.GuiEvent[Any]) -> None:
         file = self._open.value
@@ -122,13 +122,13 @@ class FilesPanel:
             name, content = DOWNLOADS[kind](scene)
         except SevenbarError as error:
             message = str(error)
-            self._worker.ask("told", lambda: self._unsaved.tell(message))
+            self._worker.ask("shown", lambda: self._unsaved.tell(message))
         except Exception:
             traceback.print_exc()
             fault = f"{kind}: this is a fault of Sevenbar; please report the lines in the terminal"
-            self._worker.ask("told", lambda: self._unsaved.tell(fault))
+            self._worker.ask("shown", lambda: self._unsaved.tell(fault))
         else:
             self._client.send_file_download(name, content, save_immediately=True)
-            self._worker.ask("told", self._unsaved.clear)
+            self._worker.ask("shown", self._unsaved.clear)
         finally:
             waiting.remove()

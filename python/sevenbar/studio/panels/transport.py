@@ -11,7 +11,7 @@ import viser
 
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.poses import at_row
-from sevenbar.reporting.summary import joint_text
+from sevenbar.reporting.shown import value_text
 from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
@@ -110,7 +110,7 @@ class Transport:
             self._worker.ask("circuit", lambda: self._session.choose(index))
 
     def show(self) -> None:
-        """Shows what the session has come to."""
+        """Shows the session as it is."""
         session, view = self._session, self._session.view
         shown = (view, session.draft, session.problem)
         if any(a is not b for a, b in zip(shown, self._shown, strict=False)) or not self._shown:
@@ -164,10 +164,10 @@ def _reading(session: Session, view: View) -> str:
     modes = session.modes()
     lines = [
         f"input {view.input_text(session.row)}{way}",
-        f"output {joint_text(view.linkage, circuit.output_column, second)}",
+        f"output {value_text(view.linkage, circuit.output_column, second)}",
         f"t = {view.time_at(session.row):.4g} s",
     ]
     if modes:
         lines.append(f"mode {session.mode(modes) + 1} of {len(modes)} at this input")
-    told = " &nbsp; ".join(escape(line) for line in lines)
-    return f'<div style="padding:2px 12px 8px;font-size:12.5px;color:#333">{told}</div>'
+    text = " &nbsp; ".join(escape(line) for line in lines)
+    return f'<div style="padding:2px 12px 8px;font-size:12.5px;color:#333">{text}</div>'
