@@ -60,52 +60,50 @@ def columns_of(got: sb.Forces, loaded: Loaded) -> tuple[np.ndarray, np.ndarray, 
 def axes_of(got: sb.Forces, loaded: Loaded, row: int) -> np.ndarray:
     """The axes (joints, 3, 3) along which reactions are told, found right."""
     found = np.array([got.reactions[joint.name].axes[row] for joint in loaded.linkage.joints])
-    links, _, _ = loaded.reference().motion.carried(
-        loaded.circuit.q[row], np.zeros((1, loaded.circuit.q.shape[1])), np.zeros((1, loaded.circuit.q.shape[1]))
-    )
-    frames = [loaded.reference().motion.joint_frame(links, k)[0] for k in range(len(found))]
-    for k, joint in enumerate(loaded.linkage.joints):
+    motion, q = loaded.reference().motion, loaded.circuit.q[row]
+    links, _, _ = motion.carried(q, 0 * q[None], 0 * q[None])
+    for k, (joint, axes) in enumerate(zip(loaded.linkage.joints, found, strict=True)):
         last = loaded.linkage.form == "drawn" and k + 1 == len(found)
         # the last joint of a drawing counts backwards; its axes are those that are written
         turn = half_turn(joint.row.half_turn)[:3, :3] if last else np.eye(3)
-        assert np.abs(found[k] - frames[k] @ turn).max() < 1e-12, joint.name
+        assert np.abs(axes - motion.joint_frame(links, k)[0] @ turn).max() < 1e-12, joint.name
     return found
 
 
 def judged(loaded: Loaded, got: sb.Forces, row: int, want: Forces) -> Judged:
     """Everything of one row."""
     moment, force, flags = columns_of(got, loaded)
-    length = loaded.reference().length
-    forces = np.array(want.force, dtype=np.float64)
-    moments = np.array(want.moment, dtype=np.float64)
+    mine = loaded.reference()
+    length, loop = mine.length, mine.motion.loop
+    places, moments, forces, shaking, dq = (
+        np.array(array, dtype=np.float64)
+        for array in (want.places, want.moment, want.force, want.shaking, want.dq)
+    )
     # least-norm parts of what is open are no scale
     known = np.where(want.determinate, np.concatenate([moments / length, forces], axis=1), 0.0)
-    turns = loaded.circuit.input_turns
-    torque = float(want.torque) / (length if turns else 1.0)
-    scale = max(np.abs(known).max(), abs(torque), 1e-300)
-    mine = np.concatenate([moment[row] / length, force[row]], axis=1)
-    apart = np.abs(np.where(flags, mine - known, 0.0)).max()
-    apart = max(apart, abs(got.torque[row] / (length if turns else 1.0) - torque))
-    assert np.isnan(mine[~flags]).all(), "an open component has a number"
-    for key, name in enumerate(loaded.linkage.joints):
-        at = got.reactions[name.name].at
-        place = np.array(want.places[key], dtype=np.float64) / loaded.metre
-        assert np.abs(at[row] - place).max() < 1e-11 * loaded.circuit.size * max(1.0, want.condition / WELL)
-    shaking = np.array(want.shaking, dtype=np.float64)
-    for part, unit in ((slice(0, 3), length), (slice(3, 6), 1.0)):
-        # the moment about the origin grows with how far away that is
-        about = np.abs(shaking[part]).max() / unit
-        apart = max(
-            apart, np.abs(got.shaking[row, part] - shaking[part]).max() / unit * scale / max(scale, about)
-        )
+    unit = length if loaded.circuit.input_turns else 1.0
+    scale = max(np.abs(known).max(), abs(float(want.torque)) / unit)
+    told = np.concatenate([moment[row] / length, force[row]], axis=1)
+    assert np.isnan(told[~flags]).all(), "an open component has a number"
+    # the moment of shaking about the origin grows with how far away that is
+    shaken = max(scale, np.abs(shaking[:3]).max() / length, np.abs(shaking[3:]).max())
+    speed = float(np.abs(dq * np.where(loop.turns != 0, length, loaded.metre)).max())
     energy = abs(float(want.kinetic)) + abs(float(want.potential)) + scale * length
-    apart_energy = max(
-        abs(got.kinetic[row] - float(want.kinetic)), abs(got.potential[row] - float(want.potential))
-    )
+    at = np.array([got.reactions[joint.name].at[row] for joint in loaded.linkage.joints])
+    errors = [
+        np.abs(np.where(flags, told - known, 0.0)).max() / scale,
+        abs(got.torque[row] - float(want.torque)) / unit / scale,
+        np.abs(at * loaded.metre - places).max() / max(length, np.abs(places).max()),
+        np.abs(got.shaking[row, :3] - shaking[:3]).max() / length / shaken,
+        np.abs(got.shaking[row, 3:] - shaking[3:]).max() / shaken,
+        abs(got.kinetic[row] - float(want.kinetic)) / energy,
+        abs(got.potential[row] - float(want.potential)) / energy,
+        abs(got.supplied[row] - float(want.loss)) / (scale * speed + abs(float(want.loss))),
+    ]
+    kinds = "".join(joint.kind for joint in loaded.linkage.joints)
+    worst = int(np.argmax(errors))
     return Judged(
-        max(apart / scale, apart_energy / energy),
-        want.condition,
-        f"{loaded.family}, {''.join(j.kind for j in loaded.linkage.joints)}, row {row}",
+        float(max(errors)), want.condition, f"{loaded.family}, {kinds}, row {row}, quantity {worst}"
     )
 
 
