@@ -107,6 +107,18 @@ def judged(loaded: Loaded, got: sb.Forces, row: int, want: Forces) -> Judged:
     )
 
 
+def in_sixty_digits(loaded: Loaded, got: sb.Forces, row: int) -> Forces:
+    """The reference at a row's input, its pose found anew."""
+    angle, *rates = (
+        float(array[row, loaded.circuit.input_column])
+        for array in (loaded.circuit.q, loaded.circuit.dq, loaded.circuit.ddq)
+    )
+    with mp.workdps(DIGITS):
+        precise = loaded.reference(precise=True)
+        q = precise.motion.pose(loaded.circuit.q[row], mp.mpf(angle))
+        return precise.at(q, *map(mp.mpf, rates), axes_of(got, loaded, row))
+
+
 def wrong_of(seed: int, numbers: range) -> tuple[list[str], int, int]:
     """What is wrong in loops of a seed, how many were judged, and how many of their rows were well conditioned."""
     wrong, count, well = [], 0, 0
@@ -127,6 +139,9 @@ def wrong_of(seed: int, numbers: range) -> tuple[list[str], int, int]:
             flags &= want.determinate
             one = judged(loaded, got, int(row), want)
             well += one.condition < WELL
+            if one.error >= one.tolerable and one.condition >= WELL and not want.open:
+                # the reference loses digits, too: more of them decide
+                one = judged(loaded, got, int(row), in_sixty_digits(loaded, got, int(row)))
             if not one.error < one.tolerable:
                 wrong.append(f"{number}: {one.error:.1e} at condition {one.condition:.0f}: {one.told}")
         _, _, told = columns_of(got, loaded)
@@ -162,17 +177,8 @@ def test_ten_random_loops_are_those_of_sixty_digits() -> None:
             # an overconstrained loop whose numbers have sixteen digits closes to sixteen
             continue
         count += 1
-        got = forces(loaded)
-        row = int(loaded.rows[loaded.rows.size // 2])
-        angle, *rates = (
-            float(array[row, loaded.circuit.input_column])
-            for array in (loaded.circuit.q, loaded.circuit.dq, loaded.circuit.ddq)
-        )
-        with mp.workdps(DIGITS):
-            precise = loaded.reference(precise=True)
-            q = precise.motion.pose(loaded.circuit.q[row], mp.mpf(angle))
-            want = precise.at(q, *map(mp.mpf, rates), axes_of(got, loaded, row))
-        one = judged(loaded, got, row, want)
+        got, row = forces(loaded), int(loaded.rows[loaded.rows.size // 2])
+        one = judged(loaded, got, row, in_sixty_digits(loaded, got, row))
         assert one.error < one.tolerable, one
 
 

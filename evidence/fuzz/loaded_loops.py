@@ -63,12 +63,14 @@ def loaded_loop(seed: int, number: int) -> Loaded | None:
     rng = np.random.default_rng((seed, number))
     family = list(FAMILIES)[number % len(FAMILIES)]
     case = FAMILIES[family](rng)
-    linkage = case.linkage()
     try:
         if isinstance(case, random_loops.Rows | random_loops.Drawn):
+            linkage = case.linkage(length_unit=str(rng.choice(["mm", "m", "in"])))
             modes = linkage.assembly_modes(case.theta).q
-            circuits = [linkage.circuit(mode, SAMPLES) for mode in rng.permutation(modes)[:1]]
+            driven = None if rng.random() < 0.5 else str(rng.choice(linkage.drivable()))
+            circuits = [linkage.circuit(mode, SAMPLES, input=driven) for mode in rng.permutation(modes)[:1]]
         else:
+            linkage = case.linkage()
             circuits = list(linkage.motion(SAMPLES).circuits)
     except SevenbarError:
         return None
