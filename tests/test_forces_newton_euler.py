@@ -98,7 +98,7 @@ def judged(loaded: Loaded, got: sb.Forces, row: int, want: Forces) -> Judged:
         np.abs(got.shaking[row, 3:] - shaking[3:]).max() / shaken,
         abs(got.kinetic[row] - float(want.kinetic)) / energy,
         abs(got.potential[row] - float(want.potential)) / energy,
-        abs(got.supplied[row] - float(want.loss)) / (scale * speed + abs(float(want.loss))),
+        abs(got.supplied[row] - float(want.loss)) / max(scale * speed + abs(float(want.loss)), 1e-300),
     ]
     kinds = "".join(joint.kind for joint in loaded.linkage.joints)
     worst = int(np.argmax(errors))
@@ -259,3 +259,47 @@ def test_statics_is_the_derivative_of_potential_energy(name: str) -> None:
             ]
             want.append(float((energies[1] - energies[0]) / (2 * step)) / unit)
     assert got.torque[loaded.rows] == pytest.approx(want, rel=0, abs=1e-12 * np.abs(want).max())
+
+
+def test_a_coupler_that_no_spin_concerns_is_held_by_nothing() -> None:
+    """A rod between two balls, or a body symmetric about their line, which frictionless balls never begin to spin."""
+    linkage = sb.load("rssr")
+    circuit = linkage.motion(SAMPLES).circuits[0]
+    length = linkage.lengths[1]
+    along, axial = np.diag([0.0, 1.0, 1.0]), np.diag([1.0, 0.0, 0.0])
+    rod = sb.Body(1.3, (0.3 * length, 0, 0), 4e-2 * along)
+    thick = sb.Body(1.3, (0.3 * length, 0, 0), 4e-2 * along + 3e-3 * axial)
+    gravity = (1.0, 2.0, -9.0)
+    loaded = Loaded("rod", linkage, circuit, Loading(gravity, {2: (rod,)}))
+    reference = loaded.reference()
+    for body in (rod, thick):
+        got = circuit.forces(bodies={2: body}, gravity=gravity)
+        for row in loaded.rows:
+            rates = (array[row, circuit.input_column] for array in (circuit.dq, circuit.ddq))
+            want = reference.at(circuit.q[row], *rates, axes_of(got, loaded, int(row)))
+            one = judged(loaded, got, int(row), want)
+            assert one.error < one.tolerable, one
+            held = np.linalg.norm(got.reactions["ball_a"].moment[row]) / reference.length
+            assert max(held, abs(want.spin[0]) / reference.length) < CLOSE * np.abs(want.force).max()
+
+
+def test_an_error_that_is_put_in_is_found() -> None:
+    loaded = gallery("rscr")
+    got = forces(loaded)
+    row = int(loaded.rows[1])
+    rates = [
+        float(array[row, loaded.circuit.input_column]) for array in (loaded.circuit.dq, loaded.circuit.ddq)
+    ]
+    want = loaded.reference().at(loaded.circuit.q[row], *rates, axes_of(got, loaded, row))
+    assert judged(loaded, got, row, want).error < CLOSE
+    greatest = float(np.abs(want.force).max())
+    for quantity, array in enumerate(
+        [got.reactions["cylinder"].force, got.torque, got.reactions["cylinder"].at]
+    ):
+        kept = array.copy()
+        array[row] += 1e-9 * (
+            greatest if quantity == 0 else np.abs(array[row]).max() + greatest * loaded.metre
+        )
+        worse = judged(loaded, got, row, want)
+        assert worse.error > CLOSE, quantity
+        array[:] = kept
