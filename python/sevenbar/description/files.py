@@ -116,7 +116,7 @@ _OTHER_KINDS = {
 #: What TOML's reader says of a place.
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)")
 
-#: Slips that people make in TOML, by how the line looks: a unit beside a number, a decimal comma, a text or
+#: Slips that people make in TOML, by how the line looks: a unit next to a number, a decimal comma, a text or
 #: a sign of another language.
 _SLIPS = (
     (

@@ -88,7 +88,7 @@ _AMOUNT = re.compile(rf"(.+?)\s*({_WORD}(?:\s*(?:/|\*(?!\*)|\s)\s*{_WORD})*)")
 def quantity_of(text: str, kind: QuantityKind, *, mass_unit: str = "kg", length_unit: str = "mm") -> float:
     """The number of an amount in its kind's unit, which a number alone is in; the number may be a formula.
 
-    A sign / stands before each unit that divides: "N m s/rad". Raises `RequestError` where units do not fit.
+    A sign / is before each unit that divides: "N m s/rad". Raises `RequestError` where units do not fit.
 
         >>> quantity_of("250 g", "mass"), quantity_of("2*20 N/m", "stiffness", length_unit="mm")
         (0.25, 0.04)
