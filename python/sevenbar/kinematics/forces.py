@@ -2,7 +2,7 @@
 
     A^T W = Q - c                                                                                         (4)
 
-The core (`crates/sevenbar-core/src/loops/forces`) counts lengths in parts of the size, so forces in
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths relative to the size, so forces in
 kg size/s^2; here they become newtons.
 
 Source: docs/theory_forces.md, (1) to (6).

@@ -14,7 +14,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.joints import KINDS, JointKind
+from sevenbar.kinematics.joints import JointKind, kind_row
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.poses import frames_along
 from sevenbar.kinematics.rigid import about, inverse, pose
@@ -66,7 +66,7 @@ class Connection:
     @property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
+        return kind_row(self.kind, backwards=self.backwards)
 
 
 @dataclass(frozen=True, eq=False)
