@@ -24,15 +24,12 @@ from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven
-from sevenbar.kinematics.link_bodies import joint_places, resolved
+from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.word import Product
 from sevenbar.text.units import LENGTHS
-
-#: A body within this part of its size, or inertia, of a line is one that is symmetric about the line.
-SYMMETRIC = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,32 +58,7 @@ class ForceSolver:
     @cached_property
     def bodies(self) -> dict[int, Body]:
         """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
-        found = resolved(self.loading, self.linkage)
-        return {link: self._unspun(link, body) for link, body in found.items()}
-
-    def _unspun(self, link: int, body: Body) -> Body:
-        """A body symmetric about the line of the balls between which it spins, without inertia about it.
-
-        Balls without friction never begin to turn it about that line, so it moves as if it had none.
-        """
-        balls = [joint.row.is_ball for joint in self.linkage.joints]
-        if link not in self.linkage.idle_links or not (balls[link - 1] and balls[link]):
-            return body
-        ends = joint_places(self.linkage, link)
-        along = ends[1] - ends[0]
-        length = float(np.linalg.norm(along))
-        if not length:
-            return body
-        z = along / length
-        arm = np.asarray(body.centre) - ends[0]
-        tensor = body.tensor
-        axial = float(z @ tensor @ z)
-        across = (float(np.trace(tensor)) - axial) / 2
-        round_it = across * (np.eye(3) - np.outer(z, z)) + axial * np.outer(z, z)
-        rest = np.abs(tensor - round_it).max() > SYMMETRIC * max(axial, across)
-        if np.linalg.norm(arm - (arm @ z) * z) > SYMMETRIC * length or rest:
-            return body
-        return Body(body.mass, body.centre, across * (np.eye(3) - np.outer(z, z)))
+        return as_moved(self.linkage, resolved(self.loading, self.linkage))
 
     def _carrier(self, link: int) -> tuple[int, Product]:
         """The steps before a link, and the frame there in which its points are written."""
