@@ -39,6 +39,8 @@ class ForceSolver:
     linkage: Solvable
     loading: Loading
     input: int
+    #: Whether derivatives by the description's numbers are wanted.
+    by_numbers: bool = False
 
     @cached_property
     def numbers(self) -> Numbers:
@@ -48,7 +50,7 @@ class ForceSolver:
     @cached_property
     def loop(self) -> NumberedLoop:
         """The loop that this input drives."""
-        return self.numbers.loop(self.input, only=())
+        return self.numbers.loop(self.input, only=None if self.by_numbers else ())
 
     @cached_property
     def size(self) -> float:
@@ -141,9 +143,7 @@ class ForceSolver:
             step += len(word.freedoms[i])
         return steps, np.array(frames)
 
-    def solved(
-        self, inputs: Floats, poses: Floats, speeds: Floats, *, by_numbers: bool = False
-    ) -> list[Floats]:
+    def solved(self, inputs: Floats, poses: Floats, speeds: Floats) -> list[Floats]:
         """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2)."""
         scales = self.numbers.scales
         turns = self.linkage.column_kinds[self.input] == "turn"
@@ -157,7 +157,7 @@ class ForceSolver:
             np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
             steps,
             frames,
-            by_numbers,
+            self.by_numbers,
         )
 
 

@@ -56,9 +56,7 @@ class Assembly:
             moments = about + mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
         inertia = [moments[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))]
         return self.system.AddObject(
-            self.items.ObjectRigidBody(
-                nodeNumber=node, mass=mass, inertia=inertia, centerOfMass=list(centre)
-            )
+            self.items.ObjectRigidBody(nodeNumber=node, mass=mass, inertia=inertia, centerOfMass=list(centre))
         )
 
     @property
