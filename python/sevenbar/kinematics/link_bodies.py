@@ -14,8 +14,13 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.forces.bodies import Body, as_one, triple
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import inverse
 from sevenbar.text.units import LENGTHS
+
+#: A centre within this part of a line's length, and an inertia within this part of itself, are symmetric
+#: about the line.
+SYMMETRIC = 1e-9
 
 #: The module whose `drawn_bodies(linkage, circuit)` gives what exports draw; filled by the package.
 DRAWN_IN: dict[str, str] = {}
@@ -48,6 +53,37 @@ def resolved(loading: Loading, linkage: Loop, *, circuit: int = 0) -> dict[int, 
         if bodies:
             found[link] = as_one([_worked_out(body, link, linkage, solids) for body in bodies], metre)
     return found
+
+
+def as_moved(linkage: Solvable, bodies: Mapping[int, Body]) -> dict[int, Body]:
+    """The bodies as balls without friction move them, where a link spins idly.
+
+    Such balls never begin to turn a body that is symmetric about their line about it, so it moves as if it
+    had no inertia about the line.
+
+    Source: docs/theory_forces.md, (6).
+    """
+    return {link: _without_spin(linkage, link, body) for link, body in bodies.items()}
+
+
+def _without_spin(linkage: Solvable, link: int, body: Body) -> Body:
+    balls = [joint.row.is_ball for joint in linkage.joints]
+    if link not in linkage.idle_links or not (balls[link - 1] and balls[link]):
+        return body
+    start, end = joint_places(linkage, link)
+    length = float(np.linalg.norm(end - start))
+    if not length:
+        return body
+    z = (end - start) / length
+    arm = np.asarray(body.centre) - start
+    axial = float(z @ body.tensor @ z)
+    across = (float(np.trace(body.tensor)) - axial) / 2
+    thin = across * (np.eye(3) - np.outer(z, z))
+    apart = float(np.abs(body.tensor - thin - axial * np.outer(z, z)).max())
+    off = float(np.linalg.norm(arm - (arm @ z) * z))
+    if off > SYMMETRIC * length or apart > SYMMETRIC * max(axial, across):
+        return body
+    return Body(body.mass, body.centre, thin)
 
 
 def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = False) -> None:
