@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.cycle_series import CycleSeries
+from sevenbar.errors import ends_here
 from sevenbar.forces.loading import Loading
+from sevenbar.forces.sizing import Sizing, sizing
 from sevenbar.text.printing import Printed
 
 #: The components of a reaction, in the frame of its joint, whose z is the joint's axis.
@@ -85,11 +89,43 @@ class Forces(Printed):
     #: Whether the rows are one period of a closed cycle at constant speed, evenly spaced.
     periodic: bool
     loading: Loading = field(repr=False)
+    #: The same at any inputs (m,) of the cycle, where it is periodic.
+    between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
 
     @property
     def unit(self) -> str:
         """The unit of `torque`."""
         return "N" if self.slides else "N m"
+
+    @property
+    def period(self) -> float | None:
+        """The way of the input [rad] round a periodic cycle, negative where it falls from row to row."""
+        return float(self.input[1] - self.input[0]) * len(self.input) if self.periodic else None
+
+    @ends_here
+    def sizing(self, *, unevenness: float | None = None) -> Sizing | None:
+        """Peaks of torque and power with their places, means, fluctuation of energy, bearing loads.
+
+        With an `unevenness`, (highest less lowest speed) / mean speed, also the flywheel for it. `None` for
+        rows without a torque, as of a circuit that rocks at constant speed: there it has no bound.
+
+            >>> import sevenbar as sb
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> found = circuit.forces(bodies={3: sb.Body(2.0, solid="rod")}).sizing(unevenness=0.01)
+            >>> found.found, bool(found.flywheel > 0), bool(abs(found.mean_torque) < 1e-12)
+            ('series', True, True)
+
+        Source: docs/theory_forces.md, (20) to (26).
+        """
+        period = self.period
+        return sizing(
+            self,
+            period=period,
+            speed=float(self.speed[0]) if period is not None else None,
+            evaluate=self.between,
+            breaks=() if period is None else self.loading.breaks(turns=round(abs(period) / math.tau)),
+            unevenness=unevenness,
+        )
 
     @property
     def balance(self) -> float | None:
@@ -103,12 +139,7 @@ class Forces(Printed):
         total = self.power + self.supplied
         if not self.periodic or len(total) < 3 or not np.isfinite(total).all():
             return None
-        energy = self.kinetic + self.potential
-        count = len(energy)
-        period = (self.time[1] - self.time[0]) * count
-        waves = np.fft.rfft(energy) * (2j * np.pi * np.arange(count // 2 + 1) / period)
-        if count % 2 == 0:
-            waves[-1] = 0.0
-        change = np.fft.irfft(waves, count)
+        period = float(self.time[1] - self.time[0]) * len(total)
+        change = CycleSeries(self.kinetic + self.potential, 0.0, period).finer(1, 1)
         peak = max(np.abs(change).max(), np.abs(self.power).max())
         return float(np.abs(total - change).max() / peak) if peak else 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.circuits import Circuit, Extremes, Law
 from sevenbar.kinematics.geometry import Point
@@ -79,6 +80,14 @@ class LinkageAnswers:
         from sevenbar.kinematics.forces import forces_of
 
         return forces_of(self.linkage, circuit, loading_with(self.linkage, **given))
+
+    def counterweights(
+        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
+    ) -> Balance:
+        """Counterweights on links for the least shaking, with what is given in place of what is written."""
+        from sevenbar.kinematics.balance import balance_of
+
+        return balance_of(self.linkage, circuit, self.forces(circuit, given), links, how)
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.geometry import Point
@@ -192,6 +193,12 @@ class Answers(Protocol):
 
     def advantage(self, circuit: Circuit) -> Extremes | None:
         """The lowest and the highest mechanical advantage."""
+        ...
+
+    def counterweights(
+        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
+    ) -> Balance:
+        """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
         ...
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
@@ -435,6 +442,42 @@ class Circuit(Printed):
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
         return self._answers.forces(self, {key: value for key, value in given.items() if value is not None})
+
+    @ends_here
+    def counterweights(
+        self,
+        links: Sequence[int],
+        *,
+        radius: float | Mapping[int, float] | None = None,
+        most_mass: float | Mapping[int, float] | None = None,
+        measure: Literal["rms", "greatest"] = "rms",
+        force: float = 1.0,
+        moment: float = 0.0,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+    ) -> Balance:
+        """Counterweights on some links for the least shaking of all bodies, the linkage's or those given.
+
+        Least squares over the cycle give mass times radius for each link, and the mass at a `radius` [length]
+        from its joint at the ground, or from the joint before it. With `most_mass` [kg] no mass is above and
+        none farther than `radius`, each a number or one by link; then the `measure` "rms" over the cycle or
+        the "greatest" of the rows is the least there is, with its proof. What counts is the size of `force`
+        times the force and `moment` [1/m] times the moment about the report's origin, without that of the
+        counterweights' own inertia.
+
+        Raises `RequestError` for arguments that do not fit, and where the shaking has no bound.
+
+            >>> import sevenbar as sb
+            >>> rod = {2: sb.Body(mass=1.3, solid="rod")}
+            >>> found = sb.load("rssr").motion().circuits[0].counterweights([1, 3], bodies=rod)
+            >>> found.rank, found.unknowns, bool(found.after < 1e-12 * found.before)
+            (4, 6, True)
+            >>> [round(one.product, 6) for one in found.counterweights]  # half of 1.3 kg at 250 and 550 mm
+            [162.5, 357.5]
+
+        Source: docs/theory_forces.md, (27) to (33).
+        """
+        how = {"radius": radius, "most_mass": most_mass, "measure": measure, "force": force, "moment": moment}
+        return self._answers.counterweights(self, links, {} if bodies is None else {"bodies": bodies}, how)
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

@@ -2,7 +2,7 @@
 
     A^T W = Q - c                                                                                         (4)
 
-The core (`crates/sevenbar-core/src/loops/forces`) counts lengths in parts of the size, so forces in
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths relative to the size, so forces in
 kg size/s^2; here they become newtons.
 
 Source: docs/theory_forces.md, (1) to (6).
@@ -11,7 +11,7 @@ Source: docs/theory_forces.md, (1) to (6).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -23,15 +23,13 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.link_bodies import joint_places, resolved
+from sevenbar.kinematics.driven import driven
+from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.word import Product
 from sevenbar.text.units import LENGTHS
-
-#: A body within this part of its size, or inertia, of a line is one that is symmetric about the line.
-SYMMETRIC = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,32 +58,7 @@ class ForceSolver:
     @cached_property
     def bodies(self) -> dict[int, Body]:
         """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
-        found = resolved(self.loading, self.linkage)
-        return {link: self._unspun(link, body) for link, body in found.items()}
-
-    def _unspun(self, link: int, body: Body) -> Body:
-        """A body symmetric about the line of the balls between which it spins, without inertia about it.
-
-        Balls without friction never begin to turn it about that line, so it moves as if it had none.
-        """
-        balls = [joint.row.is_ball for joint in self.linkage.joints]
-        if link not in self.linkage.idle_links or not (balls[link - 1] and balls[link]):
-            return body
-        ends = joint_places(self.linkage, link)
-        along = ends[1] - ends[0]
-        length = float(np.linalg.norm(along))
-        if not length:
-            return body
-        z = along / length
-        arm = np.asarray(body.centre) - ends[0]
-        tensor = body.tensor
-        axial = float(z @ tensor @ z)
-        across = (float(np.trace(tensor)) - axial) / 2
-        round_it = across * (np.eye(3) - np.outer(z, z)) + axial * np.outer(z, z)
-        rest = np.abs(tensor - round_it).max() > SYMMETRIC * max(axial, across)
-        if np.linalg.norm(arm - (arm @ z) * z) > SYMMETRIC * length or rest:
-            return body
-        return Body(body.mass, body.centre, across * (np.eye(3) - np.outer(z, z)))
+        return as_moved(self.linkage, resolved(self.loading, self.linkage))
 
     def _carrier(self, link: int) -> tuple[int, Product]:
         """The steps before a link, and the frame there in which its points are written."""
@@ -222,7 +195,13 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
         length_unit=linkage.length_unit,
         periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
         loading=loading,
+        between=partial(_between, linkage, circuit, loading),
     )
+
+
+def _between(linkage: Solvable, circuit: Circuit, loading: Loading, inputs: Floats) -> Forces:
+    """The forces of a circuit that goes round, at any inputs (n,)."""
+    return forces_of(linkage, driven(linkage, circuit, inputs, speed=circuit.speed), loading)
 
 
 def _winds_up(circuit: Circuit, loading: Loading) -> bool:
