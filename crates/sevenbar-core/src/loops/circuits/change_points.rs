@@ -102,7 +102,8 @@ pub(super) fn change_point(
 ) -> Option<ChangePoint> {
     let place = singular_place(chain, rough)?;
     let counts = place.counts(wished, stuck);
-    if !counts && !(stuck && place.is_let_pass()) {
+    let let_pass = stuck && place.is_let_pass();
+    if !(counts || let_pass) {
         return None;
     }
     let cut = CUT.max(CUT_TIMES * place.passing());
