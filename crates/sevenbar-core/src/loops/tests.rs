@@ -1,6 +1,6 @@
 //! The numerical work on loops with known answers.
 
-use crate::loops::circuits::curve::{self, Curve, End};
+use crate::loops::circuits::curve::{self, Curve};
 use crate::loops::circuits::follow;
 use crate::loops::circuits::join;
 use crate::loops::equation::chain::{Chain, Configuration, Joint};
