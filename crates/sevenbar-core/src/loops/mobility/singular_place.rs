@@ -30,6 +30,9 @@ const TOUCHING: f64 = 1e-6;
 /// A second-order form below this part of the closure's is none: a redundant constraint's.
 const NO_FORM: f64 = 1e-7;
 
+/// A closure error below this [rad, or parts of the size] is rounding, however weak the form that it is held against.
+const NO_VALUE: f64 = 1e-15;
+
 /// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
 pub(crate) const MOST_STEPS: usize = 40;
 
@@ -63,7 +66,8 @@ impl Place {
             let norm = form.iter().map(|x| x * x).sum::<f64>().sqrt();
             (2.0 * value.abs() / norm).sqrt()
         };
-        self.forms.iter().map(passes).fold(0.0, f64::max)
+        let known = self.forms.iter().filter(|(value, _)| value.abs() > NO_VALUE);
+        known.map(passes).fold(0.0, f64::max)
     }
 
     /// How far apart two limits of a column are there, also where they are complex.
@@ -78,6 +82,14 @@ impl Place {
         let (a, b) = (x[column], y[column]);
         let bent = (a * a * form[3] - 2.0 * a * b * form[1] + b * b * form[0]) / determinant;
         2.0 * (2.0 * (value * bent).abs()).sqrt()
+    }
+
+    /// Whether motions lead over it within what redundant constraints may miss each other by: two forms in two free directions have
+    /// no curve in common but through the pose itself, so nothing passes it beside.
+    pub fn is_let_pass(&self) -> bool {
+        let values = self.forms.iter().map(|(value, _)| value * value);
+        let missed = (self.open * self.open + values.sum::<f64>()).sqrt();
+        self.free.len() == 2 && self.forms.len() > 1 && missed < self.agree
     }
 
     /// Whether it counts as a change point for these columns: it is one, up to rounding, or their limits nearly meet; or nothing
