@@ -154,7 +154,7 @@ MEASURES: dict[str, Measure] = {
     )
 }
 
-#: Measures of what acts on the linkage; each circuit is asked for its forces.
+#: Measures of what acts on the linkage; they come from the forces of each circuit.
 FORCE_MEASURES: dict[str, Measure] = {
     measure.name: measure
     for measure in (

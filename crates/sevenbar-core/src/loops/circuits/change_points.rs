@@ -17,7 +17,7 @@ use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEAD
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
 
-/// Curves are cut this far [rad, or parts of the size] from the pose: farther in rounding turns their tangents by more than the way bends.
+/// Curves are cut this far [rad, or relative to the size] from the pose: farther in rounding turns their tangents by more than the way bends.
 const CUT: f64 = 2e-5;
 
 /// Curves that pass at a distance are cut so many times as far out, where both are straight.
@@ -27,11 +27,11 @@ const CUT_TIMES: f64 = 30.0;
 /// hides them from each other.
 const HIDDEN: f64 = 1e7;
 
-/// Radii of the sphere, the next where curves do not run straight into the pose from the one before [rad, or parts of the size].
+/// Radii of the sphere, the next where curves do not run straight into the pose from the one before [rad, or relative to the size].
 const RADII: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
 
 /// A sphere's radius is at least so many times the distance at which curves are cut, and at most this, where what redundant constraints
-/// miss each other by keeps curves far apart [rad, or parts of the size].
+/// miss each other by keeps curves far apart [rad, or relative to the size].
 const LEAST_RADIUS: f64 = 3.0;
 const WIDEST: f64 = 0.05;
 
@@ -59,7 +59,7 @@ pub(super) const AT_POINT: f64 = 3.0;
 const WANDERING_AFTER: usize = 15;
 const WANDERING: f64 = 1e-2;
 
-/// A closure error [rad, or parts of the size] up to which it is rounding; a part of the distance from a pose, and the part of the error
+/// A closure error [rad, or relative to the size] up to which it is rounding; a part of the distance from a pose, and the part of the error
 /// up to which the loop is only shaky where so much is left there: 1/64 by the second order. What redundant constraints miss each other by
 /// may fall, too, but as the distance: to 1/8.
 const ROUNDED: f64 = 1e-13;
@@ -76,7 +76,7 @@ pub(crate) struct Ray {
     pub start: Start,
     /// Seen from the pose, the places on the sphere and on the one of half its radius, relative to the radius.
     seen: [Columns; 2],
-    /// How near to the pose it can be followed [rad, or parts of the size].
+    /// How near to the pose it can be followed [rad, or relative to the size].
     hidden: f64,
 }
 
@@ -131,7 +131,7 @@ pub(super) fn change_point(
             break;
         }
     }
-    // what is only let pass is no pose that stands alone
+    // what is only let pass is no isolated pose
     if !counts && found.rays.is_empty() {
         return None;
     }

@@ -25,7 +25,7 @@ use crate::loops::equation::screws::{Twist, bordered_inverse, correction, twist_
 use crate::loops::rates::velocities::{self, Rates};
 use crate::number::Number;
 
-/// Longest step [rad, or parts of the size].
+/// Longest step [rad, or relative to the size].
 const LONGEST: f64 = 0.25;
 
 /// Change of the Newton map that steps aim at, that they must not exceed, and that bounds the tube in which a curve is alone.
@@ -66,7 +66,7 @@ pub(crate) struct Node<N = f64> {
     pub across: N,
     /// No two points of the chain are farther apart.
     pub far: N,
-    /// Closure error of the constraints that do not count [rad, or parts of the size].
+    /// Closure error of the constraints that do not count [rad, or relative to the size].
     pub open: N,
 }
 
@@ -213,7 +213,7 @@ impl Node {
     }
 }
 
-/// A correction below this [rad, or parts of the size] leaves less than `stand` takes off.
+/// A correction below this [rad, or relative to the size] leaves less than `stand` takes off.
 const NEARLY_CLOSED: f64 = 1e-6;
 
 /// The move that the rates of a node lead to.

@@ -10,10 +10,10 @@ const AT_REST: f64 = 1e-13;
 /// A column whose part of the unit tangent is below this stands still.
 const STILL: f64 = 1e-9;
 
-/// Places between which a column moves by less than this [rad, or parts of the size] are rounding where it rests.
+/// Places between which a column moves by less than this [rad, or relative to the size] are rounding where it rests.
 const UNMOVED: f64 = 1e-12;
 
-/// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
+/// A dead centre nearer than this to a node that is one [rad, or relative to the size] is that node.
 const SAME_PLACE: f64 = 1e-6;
 
 /// Near a change point, where the norm of the screws' inverse is greater, a rate below its square times this is rounding: the place,
@@ -21,7 +21,7 @@ const SAME_PLACE: f64 = 1e-6;
 const NEAR: f64 = 1e3;
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// How far [rad, or parts of the size] from a change point a column's direction is checked to see whether it turns back there.
+/// How far [rad, or relative to the size] from a change point a column's direction is checked to see whether it turns back there.
 const BESIDE: f64 = 1e-3;
 
 /// Places looked at within a step for a change of a column's direction.

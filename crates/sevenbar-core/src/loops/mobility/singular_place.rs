@@ -14,29 +14,29 @@ const NEARLY_ZERO: f64 = 1e-3;
 
 const AS_SMALL: f64 = 100.0;
 
-/// Farther than this [rad, or parts of the size] from where it was looked for, a place is another.
+/// Farther than this [rad, or relative to the size] from where it was looked for, a place is another.
 const NEAR: f64 = 0.05;
 
-/// Two limits of a joint nearer than this [rad, or parts of the size] are a change point.
+/// Two limits of a joint nearer than this [rad, or relative to the size] are a change point.
 const SAME_LIMIT: f64 = 1e-6;
 
-/// Curves that pass each other at more than this [rad, or parts of the size] are followed apart, whatever their limits.
+/// Curves that pass each other at more than this [rad, or relative to the size] are followed apart, whatever their limits.
 const APART: f64 = 1e-5;
 
-/// Curves that pass each other nearer than this [rad, or parts of the size] are not distinct: a relative change of some 1e-12 in a
+/// Curves that pass each other nearer than this [rad, or relative to the size] are not distinct: a relative change of some 1e-12 in a
 /// dimension makes as much, and rounding hides the way between them.
 const TOUCHING: f64 = 1e-6;
 
 /// A second-order form below this part of the closure's is none: a redundant constraint's.
 const NO_FORM: f64 = 1e-7;
 
-/// A closure error below this [rad, or parts of the size] is rounding, however weak the form that it is held against.
+/// A closure error below this [rad, or relative to the size] is rounding, however weak the form that it is held against.
 const NO_VALUE: f64 = 1e-15;
 
 /// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
 pub(crate) const MOST_STEPS: usize = 40;
 
-/// A step [rad, or parts of the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
+/// A step [rad, or relative to the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
 pub(crate) const LAST_STEP: f64 = 1e-15;
 
 pub(crate) const STEADY: f64 = 1e-9;
@@ -60,7 +60,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// By how much curves pass each other there [rad, or parts of the size], as seen in all columns.
+    /// By how much curves pass each other there [rad, or relative to the size], as seen in all columns.
     pub fn passing(&self) -> f64 {
         let passes = |(value, form): &(f64, Vec<f64>)| {
             let norm = form.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -85,7 +85,7 @@ impl Place {
     }
 
     /// Whether motions lead over it within what redundant constraints may miss each other by: two forms in two free directions have
-    /// no curve in common but through the pose itself, so nothing passes it beside.
+    /// no curve in common but through the pose itself, so nothing passes near it.
     pub fn is_let_pass(&self) -> bool {
         let values = self.forms.iter().map(|(value, _)| value * value);
         let missed = (self.open * self.open + values.sum::<f64>()).sqrt();

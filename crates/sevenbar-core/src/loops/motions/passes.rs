@@ -21,7 +21,7 @@ const SAME_LIMIT: f64 = 1e-12;
 /// Rows that are solved before they are put down: whole blocks of lanes, and few enough that what they begin from takes no room.
 const AT_ONCE: usize = 512 * LANES;
 
-/// The closure error [rad, or parts of the size] that a row may keep.
+/// The closure error [rad, or relative to the size] that a row may keep.
 const ROW_CLOSED: f64 = 1e-10;
 
 /// A place near a node of the curve: so far along its tangent.
