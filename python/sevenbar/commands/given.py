@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def check_law(law: Path | None, speed: str | None) -> None:
-    """Refuses a speed beside a law."""
+    """Refuses a speed where there is a law."""
     if law is not None and speed is not None:
         raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
 

@@ -58,7 +58,7 @@ def column_label(motion: Motion, column: str) -> str:
 def new_figure(width: float, height: float, *, pads: tuple[float, float] | None = None) -> Figure:
     """An empty white figure [inch] with a canvas of its own, outside pyplot's register.
 
-    With `pads` its panels are laid out by matplotlib, with this room [inch] above and beside each.
+    With `pads` its panels are laid out by matplotlib, with this room [inch] above and at the sides of each.
     """
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)

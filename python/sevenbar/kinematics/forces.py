@@ -2,7 +2,7 @@
 
     A^T W = Q - c                                                                                         (4)
 
-The core (`crates/sevenbar-core/src/loops/forces`) counts lengths in parts of the size, so forces in
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths relative to the size, so forces in
 kg size/s^2; here they become newtons.
 
 Source: docs/theory_forces.md, (1) to (6).
@@ -10,6 +10,7 @@ Source: docs/theory_forces.md, (1) to (6).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -24,15 +25,12 @@ from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven
-from sevenbar.kinematics.link_bodies import joint_places, resolved
+from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.word import Product
 from sevenbar.text.units import LENGTHS
-
-#: A body within this part of its size, or inertia, of a line is one that is symmetric about the line.
-SYMMETRIC = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +40,8 @@ class ForceSolver:
     linkage: Solvable
     loading: Loading
     input: int
+    #: Whether derivatives by the description's numbers are wanted.
+    by_numbers: bool = False
 
     @cached_property
     def numbers(self) -> Numbers:
@@ -51,7 +51,7 @@ class ForceSolver:
     @cached_property
     def loop(self) -> NumberedLoop:
         """The loop that this input drives."""
-        return self.numbers.loop(self.input, only=())
+        return self.numbers.loop(self.input, only=None if self.by_numbers else ())
 
     @cached_property
     def size(self) -> float:
@@ -61,32 +61,7 @@ class ForceSolver:
     @cached_property
     def bodies(self) -> dict[int, Body]:
         """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
-        found = resolved(self.loading, self.linkage)
-        return {link: self._unspun(link, body) for link, body in found.items()}
-
-    def _unspun(self, link: int, body: Body) -> Body:
-        """A body symmetric about the line of the balls between which it spins, without inertia about it.
-
-        Balls without friction never begin to turn it about that line, so it moves as if it had none.
-        """
-        balls = [joint.row.is_ball for joint in self.linkage.joints]
-        if link not in self.linkage.idle_links or not (balls[link - 1] and balls[link]):
-            return body
-        ends = joint_places(self.linkage, link)
-        along = ends[1] - ends[0]
-        length = float(np.linalg.norm(along))
-        if not length:
-            return body
-        z = along / length
-        arm = np.asarray(body.centre) - ends[0]
-        tensor = body.tensor
-        axial = float(z @ tensor @ z)
-        across = (float(np.trace(tensor)) - axial) / 2
-        round_it = across * (np.eye(3) - np.outer(z, z)) + axial * np.outer(z, z)
-        rest = np.abs(tensor - round_it).max() > SYMMETRIC * max(axial, across)
-        if np.linalg.norm(arm - (arm @ z) * z) > SYMMETRIC * length or rest:
-            return body
-        return Body(body.mass, body.centre, across * (np.eye(3) - np.outer(z, z)))
+        return as_moved(self.linkage, resolved(self.loading, self.linkage))
 
     def _carrier(self, link: int) -> tuple[int, Product]:
         """The steps before a link, and the frame there in which its points are written."""
@@ -169,9 +144,7 @@ class ForceSolver:
             step += len(word.freedoms[i])
         return steps, np.array(frames)
 
-    def solved(
-        self, inputs: Floats, poses: Floats, speeds: Floats, *, by_numbers: bool = False
-    ) -> list[Floats]:
+    def solved(self, inputs: Floats, poses: Floats, speeds: Floats) -> list[Floats]:
         """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2)."""
         scales = self.numbers.scales
         turns = self.linkage.column_kinds[self.input] == "turn"
@@ -185,7 +158,7 @@ class ForceSolver:
             np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
             steps,
             frames,
-            by_numbers,
+            self.by_numbers,
         )
 
 
@@ -208,6 +181,7 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading, *, at_rest:
     torque = torque * (size if slides else size**2)
     speed = speeds[:, 0]
     energies = energies * size**2
+    reactions = _reactions(solver, wrenches, seats, free)
     return Forces(
         input=circuit.input,
         time=circuit.time,
@@ -220,8 +194,8 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading, *, at_rest:
         potential=energies[:, 1],
         supplied=energies[:, 2],
         shaking=shaking * np.repeat([size**2, size], 3),
-        reactions=_reactions(solver, wrenches, seats, free),
-        spin=_spins(solver, spin * size**2),
+        reactions=reactions,
+        spin=_spins(solver, spin * size**2, reactions),
         indeterminate=linkage.mobility().redundant if free.shape[1] else (),
         slides=slides,
         length_unit=linkage.length_unit,
@@ -294,14 +268,22 @@ def _known(open_ways: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
     return known, determinate
 
 
-def _spins(solver: ForceSolver, spin: Floats) -> dict[str, Floats]:
-    """The moment that holds each idle spin (n,) [N m], by its link."""
+def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction]) -> dict[str, Floats]:
+    """The size of the moment (n,) [N m] in each ball that the rule of an idle spin needs, by its link.
+
+    The ball is held to two axes, so its moment is square to both; what the core has is its part about the
+    third axis of the word.
+    """
     linkage = solver.linkage
     spun, *_ = linkage.held
-    columns = list(solver.numbers.held)
     found = {}
     for ball in sorted(spun):
         column = linkage.places[ball].stop - 1
-        if column in columns:
-            found[f"link {ball + 1}"] = spin[:, columns.index(column)]
+        reaction = reactions[linkage.joints[ball].name]
+        if column not in solver.numbers.held:
+            continue
+        own = np.abs(spin[:, solver.numbers.held.index(column)])
+        name = "coupler" if linkage.kind == "RSSR" else f"link {ball + 1}"
+        known = bool(reaction.determinate[:3].all())
+        found[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
     return found

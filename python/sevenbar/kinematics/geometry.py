@@ -15,7 +15,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
-from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z
+from sevenbar.kinematics.joints import Freedom, JointKind, Step, X, Z, kind_row
 from sevenbar.kinematics.rigid import about, inverse, pose
 from sevenbar.text.printing import Drawable
 
@@ -44,7 +44,7 @@ class Joint:
     @cached_property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
+        return kind_row(self.kind, backwards=self.backwards)
 
     @cached_property
     def columns(self) -> tuple[str, ...]:

@@ -108,7 +108,7 @@ class Modes(Printed):
     completeness: Literal["closed-form", "algebraic", "searched"]
     columns: tuple[str, ...]
     input: float
-    #: Other poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.
     misfits: Floats = field(default_factory=_none)
     #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
     agree: float = math.nan
@@ -165,7 +165,7 @@ class Search:
     unfollowed: int = 0
     rank: int | None = None
     freedoms: int | None = None
-    #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.
     misfits: Floats = field(default_factory=_none)
     #: How the circuits were counted; `None` where they were not.
     count: Count | None = None

@@ -31,7 +31,7 @@ from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import about, adjoint, cross
 from sevenbar.kinematics.word import Carried, Place, Product, Values, holding_axis, points_of, vector, word_of
 
-#: Part of what one of a number moves [rad, or parts of the size, for a radian or the size of it] that no
+#: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
 OPENING = 1e-9
 

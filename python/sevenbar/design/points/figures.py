@@ -98,16 +98,7 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
         part = "; no pole near the box"
     middle = (room[0] + room[2] / 2) / width
     figure.text(middle, 0.845, f"(b) in the link: the box{part}", fontsize=10, ha="center", va="bottom")
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        frameon=False,
-        fontsize=8.5,
-        loc="lower center",
-        bbox_to_anchor=(middle, 0.0),
-        ncols=3,
-    )
+    _legend_below(figure, axes, middle, 3)
 
 
 def nearest_figure(found: NearestPath, name: str) -> Figure:
@@ -123,16 +114,7 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
         space = place_picture(figure, both, room, linkage.length_unit, view)
         space.line(_closed(path, cycle), color=FOUND, lw=1.4, label=f"path of {short(name, 24)}")
         space.line(found.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label="wanted")
-        handles, labels = space.axes.get_legend_handles_labels()
-        figure.legend(
-            handles,
-            labels,
-            frameon=False,
-            fontsize=8.5,
-            loc="lower center",
-            bbox_to_anchor=(0.27, 0.0),
-            ncols=2,
-        )
+        _legend_below(figure, space.axes, 0.27, 2)
         where = "(a) in its plane" if view.flat else "(a) in space"
         figure.text(0.27, 0.835, where, fontsize=10, ha="center", va="bottom")
         below = figure.add_axes((0.59, 0.12, 0.39, 0.70))
@@ -201,6 +183,15 @@ def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:
     if not slides(cycle.motion, cycle.motion.input):
         axes.xaxis.set_major_locator(DegreeLocator(9))
     axes.set_xlabel(input_label(cycle.motion))
+
+
+def _legend_below(figure: Figure, axes: Any, middle: float, columns: int) -> None:
+    """The legend of axes at the foot of the page, about a place across it [share]."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(
+        handles, labels, frameon=False, fontsize=8.5, loc="lower center", bbox_to_anchor=(middle, 0.0),
+        ncols=columns,
+    )  # fmt: skip
 
 
 def _closed(path: Floats, cycle: Cycle) -> Floats:
