@@ -10,6 +10,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Motion, Solvable
+from sevenbar.reporting.force_words import acting_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
@@ -77,6 +78,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.idle:
         facts.append(("idle freedom", "; ".join(motion.idle) + ", held by convention"))
     facts.append(("redundant", "; ".join(motion.redundant) or "no constraints"))
+    if not linkage.loading.is_empty:
+        facts.append(("forces", f"{acting_text(linkage.loading)}; 'sevenbar forces' reports all joints"))
     if motion.circuits:
         facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
     return facts

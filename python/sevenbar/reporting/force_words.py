@@ -119,6 +119,20 @@ def triple_text(values: Sequence[float]) -> str:
     return f"({', '.join(f'{value + 0.0:.6g}' for value in values)})"
 
 
+def acting_text(loading: Loading) -> str:
+    """What acts, counted."""
+    what = [
+        f"{count} {name if count == 1 else many}"
+        for count, name, many in (
+            (sum(map(len, loading.bodies.values())), "body", "bodies"),
+            (len(loading.loads), "load", "loads"),
+            (len(loading.springs), "spring", "springs"),
+        )
+        if count
+    ]
+    return ", ".join([*what, *(["gravity"] if any(loading.gravity) else [])])
+
+
 def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]]:
     """What acts, a line each; `sliding` are the joints that slide."""
     loading, place = forces.loading, Places(forces)

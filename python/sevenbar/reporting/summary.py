@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -12,6 +13,8 @@ from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Modes, Motion
 from sevenbar.reporting.facts import facts_of, turns_text
+from sevenbar.reporting.force_peaks import peaks_of
+from sevenbar.reporting.force_words import number
 from sevenbar.reporting.shown import Shown, degrees, six_digits
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
@@ -214,6 +217,31 @@ def _quantities(motion: Motion) -> list[_Quantity]:
             _Quantity(others, head, lambda c: _dead_centres(c, end, place, within=True), only="table"),
         ]
 
+    def forces() -> list[_Quantity]:
+        if motion.linkage.loading.is_empty:
+            return []
+        what, unit = ("torque", "N m") if in_unit == "rad" else ("force", "N")
+        # once for both, and only where they are reported
+        found = cache(peaks_of)
+
+        def torque(circuit: Circuit) -> Texts:
+            peaks = found(circuit)
+            if peaks is None:
+                return ("-" if circuit.goes_round else "no bound at limits",)
+            return (f"{number(peaks.torque.value)} @ {place(peaks.torque.input, whole=True)}",)
+
+        def bearing(circuit: Circuit) -> Texts:
+            peaks = found(circuit)
+            if peaks is None or peaks.greatest is None:
+                return ("-",)
+            name, peak = peaks.greatest
+            return (f"{number(peak.value)} in {name} @ {place(peak.input, whole=True)}",)
+
+        return [
+            _Quantity(f"peak {what} of {first}", f"peak {what}\n[{unit}] @ {first}", torque, f"[{unit}]"),
+            _Quantity("greatest reaction", f"greatest reaction\n[N] @ {first}", bearing, "[N]", spare=True),
+        ]
+
     position = "angle" if out_unit == "rad" else "position"
     return [
         _Quantity("motion type", "motion type", way),
@@ -255,6 +283,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         ),
         rate_of("velocity", f"{out_unit}/s", lambda c: c.velocity),
         rate_of("acceleration", f"{out_unit}/s\u00b2", lambda c: c.acceleration),
+        *forces(),
     ]
 
 
