@@ -15,6 +15,7 @@ from sevenbar.text.ranges import Place, split_list, split_range, three_numbers, 
 from sevenbar.text.units import amount, examples_of, sizes_of
 
 if TYPE_CHECKING:
+    from sevenbar.description.draft import Draft
     from sevenbar.design.synthesis.limits import Limits
     from sevenbar.kinematics.circuits import Law
     from sevenbar.reporting.figures import FigureLook
@@ -29,6 +30,19 @@ def check_law(law: Path | None, speed: str | None) -> None:
 def agreed(agree: float | None) -> float | None:
     """The closure error of --agree, if one is given."""
     return None if agree is None else agreement("--agree", agree)
+
+
+def opened(source: str, agree: float | None) -> sb.Linkage:
+    """The linkage of FILE|NAME and --agree."""
+    return sb.load(source, agree=agreed(agree))
+
+
+def drafted(source: str, agree: float | None) -> Draft:
+    """The same to be shaped: with the text of the file."""
+    from sevenbar.description.draft import Draft
+    from sevenbar.description.files import text_of
+
+    return Draft.of(text_of(source), source, agree=agreed(agree))
 
 
 def law_of(law: Path | None, linkage: sb.Linkage, input_joint: str | None) -> Law | None:

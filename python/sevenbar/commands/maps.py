@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.given import opened
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     Follow,
     Force,
@@ -46,6 +47,7 @@ def map_(
     ] = None,
     input_joint: InputJoint = None,
     follow: Follow = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for map.json, boundaries.csv, contours.csv and the figures.")
     ] = None,
@@ -71,7 +73,7 @@ def map_(
     if levels is not None and not names:
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
     chosen = with_contours(names) if names else ()
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     report = map_report(names, formats, size=size, side=not no_key)
     check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.heading}") as progress:

@@ -119,7 +119,8 @@ class Loop(Drawable):
     both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
     to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
-    tables and keys of a file, from which a linkage with other numbers is made.
+    tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
+    up to a closure error [rad, or relative to the size], the usual one where it is `None`.
 
     Source: docs/theory.md, (1).
     """
@@ -136,6 +137,7 @@ class Loop(Drawable):
     dimensions: Mapping[str, float] = field(default_factory=dict)
     form: Form = "drawn"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    agree: float | None = None
 
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):
