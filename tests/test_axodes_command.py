@@ -104,7 +104,7 @@ def test_a_traceback_ends_at_the_call(call):
 
 
 def test_the_speed_is_reported_as_it_was_written():
-    from sevenbar.reporting.summary import facts_of
+    from sevenbar.reporting.facts import facts_of
 
     found = sb.load("planar_4r")
     assert dict(facts_of(found.motion(12, speed="3000 rpm")))["drive"] == (

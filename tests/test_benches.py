@@ -296,7 +296,7 @@ def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
     """Also where its last message comes so late that the page seemed to be at rest before."""
     from evidence.benches.cases import studio
     from evidence.benches.cases.studio_client import updates
-    from sevenbar.description.files import text_of
+    from sevenbar.description.files import toml_text
     from sevenbar.studio import tab as tab_module
     from sevenbar.studio.server import StudioServer
 
@@ -308,7 +308,7 @@ def test_a_change_in_the_studio_is_timed_by_what_it_sends_itself(monkeypatch):
         told[len(starts)] = 1e3 * (time.perf_counter() - starts[-1]) if starts else 0.0
         return verdict(session)
 
-    server = StudioServer(text_of("rssr"), "rssr", "127.0.0.1", 0)
+    server = StudioServer(toml_text("rssr"), "rssr", "127.0.0.1", 0)
     try:
         listener, tab = studio.connected(server)
         change, begun = tab.session.change, len(listener.frames)

@@ -12,7 +12,7 @@ import pytest
 from sevenbar import errors
 from sevenbar.commands import cli
 from sevenbar.kinematics.circuits import SPIN_UNDEFINED, STATUSES
-from sevenbar.reporting.summary import COMPLETE
+from sevenbar.reporting.facts import COMPLETE
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs" / "errors.md").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sevenbar.description.files import text_of
+from sevenbar.description.files import toml_text
 from sevenbar.drawing.skeleton import places_of
 from sevenbar.studio.server import StudioServer
 from tab_client import TabClient
@@ -126,7 +126,7 @@ def restless(client, dice):
 )
 def test_random_dragging_never_fails_nor_grows_nor_shows_a_wrong_mode(name, acts, capsys):
     dice = random.Random(acts)
-    server = StudioServer(text_of(name), name, "127.0.0.1", 0)
+    server = StudioServer(toml_text(name), name, "127.0.0.1", 0)
     client, tab = visited(server)
     moved = 0
     for act in range(acts):
@@ -153,7 +153,7 @@ def test_random_dragging_never_fails_nor_grows_nor_shows_a_wrong_mode(name, acts
 
 
 def test_two_tabs_have_nothing_in_common():
-    server = StudioServer(text_of("rssr"), "rssr", "127.0.0.1", 0)
+    server = StudioServer(toml_text("rssr"), "rssr", "127.0.0.1", 0)
     one, other = (visited(server)[0] for _ in range(2))
     before = other.html()
     one.put("L1 [mm]", "260")
@@ -171,7 +171,7 @@ def test_two_tabs_have_nothing_in_common():
 def test_names_of_a_file_are_no_html():
     hostile = "<img src=x onerror=alert(1)>"
     text = (
-        text_of("rssr").replace("RSSR of Sun and Zhou", hostile)
+        toml_text("rssr").replace("RSSR of Sun and Zhou", hostile)
         + f'\n[[point]]\nname = "{hostile}"\nlink = 2\nat = [1, 2, 3]\n'
     )
     server = StudioServer(text, hostile, "127.0.0.1", 0)
@@ -190,7 +190,7 @@ def bodies(client):
 
 
 def test_what_never_moved_is_not_drawn_and_can_be_mended():
-    far = text_of("rssr").replace("D = 0", "D = 0\nL2 = 5000")
+    far = toml_text("rssr").replace("D = 0", "D = 0\nL2 = 5000")
     server = StudioServer(far, "far", "127.0.0.1", 0)
     client, tab = visited(server)
     assert "cannot-assemble" in client.html()

@@ -12,7 +12,7 @@ import viser
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from sevenbar.description.files import text_of
+from sevenbar.description.files import toml_text
 from sevenbar.studio.guard import Guard
 from sevenbar.studio.server import StudioServer
 from tab_client import TabClient
@@ -22,7 +22,7 @@ KEY = "the-key"
 
 @pytest.fixture(scope="module")
 def served():
-    server = StudioServer(text_of("rssr"), "rssr", "127.0.0.1", 0)
+    server = StudioServer(toml_text("rssr"), "rssr", "127.0.0.1", 0)
     yield server
     server.stop()
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.description.files import text_of
+from sevenbar.description.files import toml_text
 from sevenbar.studio.server import StudioServer
 from sevenbar.studio.state.sketch import beginning, drawn, kinds_of
 from tab_client import TabClient
@@ -69,7 +69,7 @@ def test_points_are_pulled_and_a_pull_is_one_step(tmp_path):
 
 
 def test_the_points_of_another_form_are_pulled_where_they_are(tmp_path):
-    server, _ = served(tmp_path, text_of("seven_r"))
+    server, _ = served(tmp_path, toml_text("seven_r"))
     client, tab = visited(server)
     client.put("go to input", "60")
     client.until(lambda: abs(tab.session.row - 60) < 1e-6)

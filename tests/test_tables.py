@@ -12,7 +12,7 @@ import pytest
 import sevenbar as sb
 from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
-from sevenbar.description.files import note_of, text_of
+from sevenbar.description.files import note_of, toml_text
 from sevenbar.description.table_columns import SPELLINGS, key_of
 from sevenbar.description.table_writer import linkage_table, points_table
 from sevenbar.errors import DescriptionError, MissingExtraError, RequestError, TableError
@@ -268,7 +268,7 @@ def test_the_gallery_goes_to_tables_and_back(tmp_path, name):
     for row in [points_table(linkage)[0], *points_table(linkage)[1]]:
         sheet.append(row)
     added.save(book)
-    for back in (sb.load(path), sb.load(book), sb.loads(text_of(path))):
+    for back in (sb.load(path), sb.load(book), sb.loads(toml_text(path))):
         np.testing.assert_allclose(back.transforms, linkage.transforms, rtol=3e-16, atol=1e-16)
         assert (back.drive, back.name, back.columns) == (linkage.drive, linkage.name, linkage.columns)
     assert sb.load(book).points == linkage.points
@@ -279,7 +279,7 @@ def test_the_gallery_goes_to_tables_and_back(tmp_path, name):
 def test_a_table_opens_as_a_draft_and_is_written_as_toml(tmp_path):
     path = tmp_path / "dh.csv"
     path.write_text(written(ROWS, DH))
-    draft = Draft.of(text_of(path), str(path)).with_values({"length_1": 46.0})
+    draft = Draft.of(toml_text(path), str(path)).with_values({"length_1": 46.0})
     assert sb.loads(draft.toml()).dimensions["length_1"] == 46
     assert draft.toml().startswith("# Read as 7 classic Denavit-Hartenberg rows")
 

@@ -17,7 +17,7 @@ from sevenbar.design.tolerance.tolerances import (
     CLASSES,
     DEVIATIONS,
     general_tolerance,
-    parsed,
+    parsed_tolerances,
     tolerances,
 )
 from sevenbar.design.tolerance.worst import worst_case
@@ -341,7 +341,7 @@ def test_a_name_counts_before_a_pattern_and_the_later_pattern_before_the_earlier
     found = sensitivities(sb.load("seven_r"), samples=8)
     given = tolerances(
         found.dimensions,
-        parsed(["length_2=0.3", "*=1", "twist_*=0.1deg", "length_*=0.2", "link[3].length=0.7"]),
+        parsed_tolerances(["length_2=0.3", "*=1", "twist_*=0.1deg", "length_*=0.2", "link[3].length=0.7"]),
         length_unit="mm",
     )
     widths = dict(zip(found.loop.numbers.names, given.widths, strict=True))

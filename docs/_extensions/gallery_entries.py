@@ -6,7 +6,9 @@ from pathlib import Path
 import sevenbar as sb
 from page_tables import code, table
 from sevenbar.description import gallery
-from sevenbar.reporting import report, summary
+from sevenbar.reporting import report
+from sevenbar.reporting.facts import facts_of
+from sevenbar.reporting.shown import value_text
 
 #: Where the pictures are written, below the pages' folder.
 PICTURES = "_made/gallery"
@@ -50,9 +52,7 @@ def _section(name: str, motion: sb.Motion, pages: Path) -> str:
     text = gallery.text(name)
     remarks = re.match(r"(?:#.*\n)*", text)[0]
     origin = " ".join(line.lstrip("# ") for line in remarks.splitlines())
-    facts = [
-        (fact, value.replace("  ", ", ")) for fact, value in summary.facts_of(motion) if fact not in LEFT_OUT
-    ]
+    facts = [(fact, value.replace("  ", ", ")) for fact, value in facts_of(motion) if fact not in LEFT_OUT]
     rows = [*facts, ("mobility", str(motion.mobility)), ("modes", _modes(motion, drawn))]
     parts = (
         f"({name})=",
@@ -72,4 +72,4 @@ def _modes(motion: sb.Motion, drawn: sb.Circuit) -> str:
     column = drawn.input_column
     value = float(drawn.input[len(drawn.input) // 3])
     modes = motion.linkage.assembly_modes(value, input=motion.input)
-    return f"{len(modes)} at {motion.input} = {summary.joint_text(motion.linkage, column, value)}"
+    return f"{len(modes)} at {motion.input} = {value_text(motion.linkage, column, value)}"

@@ -100,10 +100,10 @@ def run(setting: Setting) -> Outcome:
 
 def measured(name: str, changes: int, asked: float) -> list[Cell]:
     """The cells of a linkage."""
-    from sevenbar.description.files import text_of
+    from sevenbar.description.files import toml_text
     from sevenbar.studio.server import StudioServer
 
-    server = StudioServer(text_of(name), name, "127.0.0.1", 0)
+    server = StudioServer(toml_text(name), name, "127.0.0.1", 0)
     listener, tab = connected(server)
     before = len(listener.frames)
     drawn, all_sent = changed(tab, listener, changes)

@@ -150,14 +150,14 @@ def calibrate(
     json: Json = False,
 ) -> None:
     """Find the dimensions that explain a measured curve, with intervals; a new file (extra 'calibrate')."""
-    from sevenbar.description.files import text_of
+    from sevenbar.description.files import toml_text
     from sevenbar.measuring.calibrate import calibrate as calibrated
     from sevenbar.measuring.measured import MeasuredExtremes
     from sevenbar.measuring.report import calibration_report
     from sevenbar.measuring.rewrite import calibrated_toml
 
     formats = figure_formats(figures, out)
-    text = text_of(linkage)
+    text = toml_text(linkage)
     loaded = opened(linkage, agree)
     check_out(calibration_report(lambda _: "", formats), out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)

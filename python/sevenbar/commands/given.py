@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.joint_text import joint_value
-from sevenbar.kinematics.linkage import agreement
-from sevenbar.text.expression import number_of
+from sevenbar.kinematics.linkage import closure_tolerance
+from sevenbar.text.expression import constant_of
 from sevenbar.text.ranges import Place, split_list, split_range, three_numbers, with_common_unit
 from sevenbar.text.units import amount, examples_of, sizes_of
 
@@ -29,7 +29,7 @@ def check_law(law: Path | None, speed: str | None) -> None:
 
 def agreed(agree: float | None) -> float | None:
     """The closure error of --agree, if one is given."""
-    return None if agree is None else agreement("--agree", agree)
+    return None if agree is None else closure_tolerance("--agree", agree)
 
 
 def opened(source: str, agree: float | None) -> sb.Linkage:
@@ -40,9 +40,9 @@ def opened(source: str, agree: float | None) -> sb.Linkage:
 def drafted(source: str, agree: float | None) -> Draft:
     """The same to be shaped: with the text of the file."""
     from sevenbar.description.draft import Draft
-    from sevenbar.description.files import text_of
+    from sevenbar.description.files import toml_text
 
-    return Draft.of(text_of(source), source, agree=agreed(agree))
+    return Draft.of(toml_text(source), source, agree=agreed(agree))
 
 
 def law_of(law: Path | None, linkage: sb.Linkage, input_joint: str | None) -> Law | None:
@@ -138,7 +138,7 @@ def lengths(option: str, text: str, unit: str) -> tuple[float, float]:
 def numbers(option: str, text: str) -> tuple[float, float]:
     """The two numbers of a range like 0:1, 0:pi/2 or 0:90deg; an angle with a unit counts in radians."""
     if ends := split_range(text):
-        low, high = map(number_of, ends)
+        low, high = map(constant_of, ends)
         if low is not None and high is not None:
             return low, high
     raise RequestError(

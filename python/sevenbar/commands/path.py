@@ -67,13 +67,13 @@ def path(
 ) -> None:
     """Linkages of a type whose point goes through wanted points in order (extra 'design')."""
     from sevenbar.description.draft import Draft
-    from sevenbar.description.files import text_of
+    from sevenbar.description.files import toml_text
     from sevenbar.design.curve_table import read_curve
     from sevenbar.design.synthesis.path.generation import check_counts, generated, path_task
     from sevenbar.design.synthesis.path.report import PathDesigns, path_report
 
     report = path_report(designs, command_line(), figure_formats(figures, out))
-    draft = Draft.of(text_of(linkage), linkage)
+    draft = Draft.of(toml_text(linkage), linkage)
     check_out(report, out, force=force)
     drive = draft.linkage.drive.joint
     points, inputs = read_curve(wanted, draft.linkage, drive, point=point or "")

@@ -24,7 +24,7 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.ranges import finite_number, split_list, split_named, split_range, three_numbers
+from sevenbar.text.ranges import split_list, split_named, split_range, three_numbers
 from sevenbar.text.units import amount, sizes_of
 
 if TYPE_CHECKING:
@@ -174,7 +174,7 @@ def parsed_masses(given: list[str]) -> dict[str, float]:
     what, hint = "a mass", "give a point and kilograms, as in P=2.5"
     found = {}
     for name, text in split_named("--mass", given, what, hint).items():
-        kilograms = finite_number(text.removesuffix("kg"))
+        kilograms = amount(text, {"kg": 1.0}, "kg")
         if kilograms is None:
             raise RequestError(f"--mass: {shown(f'{name}={text}')} is not {what}; {hint}")
         found[name] = kilograms

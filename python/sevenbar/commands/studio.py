@@ -11,7 +11,7 @@ import typer
 
 from sevenbar.commands.given import agreed
 from sevenbar.commands.options import Agree
-from sevenbar.description.files import text_of
+from sevenbar.description.files import toml_text
 from sevenbar.errors import MissingExtraError, RequestError
 
 #: Where the studio is served unless told otherwise.
@@ -34,7 +34,7 @@ def studio(
     agree: Agree = None,
 ) -> None:
     """Shape a linkage in the browser and see it move (extra 'studio'); Ctrl+C ends it."""
-    text, error_taken = text_of(linkage), agreed(agree)
+    text, error_taken = toml_text(linkage), agreed(agree)
     for name in ("viser", "tomlkit"):
         if importlib.util.find_spec(name) is None:
             raise MissingExtraError(f"studio needs {name}; install it with: pip install 'sevenbar[studio]'")

@@ -82,10 +82,10 @@ def tolerance(
     from sevenbar.design.tolerance.report import Findings, tolerance_report
     from sevenbar.design.tolerance.samples import monte_carlo
     from sevenbar.design.tolerance.sensitivities import sensitivities
-    from sevenbar.design.tolerance.tolerances import parsed
+    from sevenbar.design.tolerance.tolerances import parsed_tolerances
     from sevenbar.design.tolerance.worst import worst_case
 
-    tolerances = parsed(given or [])
+    tolerances = parsed_tolerances(given or [])
     report = tolerance_report(formats)
     check_out(report, out, force=force)
     found = sensitivities(
@@ -104,7 +104,7 @@ def tolerance(
         linear = linear_estimate(found, tolerances, distribution=distribution, output=of, quantity=quantity)
     with progress_bar(f"designs within the tolerances of {loaded.heading}") as progress:
         # one bar for both
-        worst = worst_case(found, linear, progress=lambda done, total, _: progress(done, total + count))
+        worst = worst_case(found, linear, progress=lambda done, total, _="": progress(done, total + count))
         tried, exact = worst.tried, None
         if count != 0:
             exact = monte_carlo(
@@ -112,7 +112,7 @@ def tolerance(
                 linear,
                 count,
                 seed=seed,
-                progress=lambda done, total, _: progress(tried + done, tried + total),
+                progress=lambda done, total, _="": progress(tried + done, tried + total),
             )
     deliver(Findings(linear, worst, exact), report, out, json=json, force=force)
 

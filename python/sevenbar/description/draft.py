@@ -124,7 +124,7 @@ class Draft:
 
     def with_point(self, name: str, link: int, at: Sequence[float]) -> Draft:
         """The draft with one more named point."""
-        point = {"name": name, "link": link, "at": [plain(value) for value in at]}
+        point = {"name": name, "link": link, "at": [plain_number(value) for value in at]}
         points = [*self.raw.get("point", ()), point]
         return replace(self, raw={**self.raw, "point": points})
 
@@ -141,7 +141,7 @@ class Draft:
 
     def written(self, dimension: Dimension, value: float) -> object:
         """What stands in the file for a value of a dimension: a speed with its unit, else the number."""
-        number = plain(value)
+        number = plain_number(value)
         return f"{number!r} {dimension.unit}" if dimension.place == ("drive", "speed") else number
 
     def toml(self) -> str:
@@ -166,7 +166,7 @@ class Draft:
         return written if _says(written, self.raw) else tomlkit.dumps(self.raw)
 
 
-def plain(value: float) -> float | int:
+def plain_number(value: float) -> float | int:
     """A number as people write it, without the point where it is whole."""
     return int(value) if abs(value) < 1e15 and value.is_integer() else value
 

@@ -52,7 +52,7 @@ def load(source: str | os.PathLike[str], *, agree: float | None = None) -> Linka
     return loads(decoded(content, str(path)), str(source)).agreeing(agree)
 
 
-def text_of(source: str | os.PathLike[str]) -> str:
+def toml_text(source: str | os.PathLike[str]) -> str:
     """The TOML text of a file, or of a linkage of the gallery by its name; raises as `load` does.
 
     Of a table it is the description that the table has become.

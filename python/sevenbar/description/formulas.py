@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from sevenbar.description.schema import context_of
-from sevenbar.description.values import number_of
+from sevenbar.description.values import value_in_file
 from sevenbar.errors import RequestError
 from sevenbar.text.amounts import Kind
 
@@ -45,7 +45,9 @@ def _table(table: Any, kinds: Mapping[str, Kind], context: Mapping[str, Any]) ->
     if not isinstance(table, Mapping):
         return table
     return {
-        key: _numbers(value, partial(number_of, kind=kinds[key], context=context)) if key in kinds else value
+        key: _numbers(value, partial(value_in_file, kind=kinds[key], context=context))
+        if key in kinds
+        else value
         for key, value in table.items()
     }
 

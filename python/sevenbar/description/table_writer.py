@@ -84,6 +84,4 @@ def _mark(columns: Sequence[str], chosen: str) -> Cell:
 
 
 def _speed(linkage: Loop) -> str:
-    column = linkage.columns.index(linkage.drive.joint)
-    unit = "rad/s" if linkage.column_kinds[column] == "turn" else f"{linkage.length_unit}/s"
-    return f"{linkage.drive.speed!r} {unit}"
+    return f"{linkage.drive.speed!r} {linkage.unit_of(linkage.drive.joint)}/s"

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.text.amounts import Kind, speed_text, value_of
+from sevenbar.text.amounts import Kind, plain_speed, value_of
 from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
@@ -29,7 +29,7 @@ def refuse(message: str) -> PydanticCustomError:
     return PydanticCustomError("sevenbar", "{message}", {"message": message})
 
 
-def number_of(text: str, kind: Kind, context: Mapping[str, Any]) -> float:
+def value_in_file(text: str, kind: Kind, context: Mapping[str, Any]) -> float:
     """The number of a formula in the units of its file: `length_unit` and `angle_unit` of the context."""
     units = {key: str(context[key]) for key in ("length_unit", "angle_unit") if key in context}
     return value_of(text, kind, **units)
@@ -38,7 +38,7 @@ def number_of(text: str, kind: Kind, context: Mapping[str, Any]) -> float:
 def _number(value: object, info: ValidationInfo, kind: Kind = "number") -> float:
     if isinstance(value, str):
         try:
-            value = number_of(value, kind, info.context or {})
+            value = value_in_file(value, kind, info.context or {})
         except RequestError as error:
             raise refuse(str(error)) from None
     if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -145,7 +145,7 @@ def one_word(end: str) -> Callable[[object], object]:
 def _speed(value: object, info: ValidationInfo) -> float:
     slides = (info.context or {}).get("slides")
     try:
-        plain = speed_text(value)
+        plain = plain_speed(value)
         return sliding_speed(plain, slides) if slides else turning_speed(plain)
     except RequestError as error:
         raise refuse(str(error)) from None

@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-#: Takes the steps done, of how many (0: not known), and the best so far in words.
-Progress = Callable[[int, int, str], object]
+from sevenbar.text.progress import Progress, silent
 
 #: The remark about a search that Ctrl+C ended.
 UNFINISHED = "stopped after {done} of {total} steps; these are the best so far"
-
-
-def silent(done: int, total: int, best: str) -> None:
-    """Reports nothing."""
 
 
 class SearchCourse:

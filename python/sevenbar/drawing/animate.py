@@ -33,6 +33,7 @@ from sevenbar.errors import MissingExtraError, OutputError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import Walk, walk
+from sevenbar.text.progress import Progress, silent
 
 Picture = npt.NDArray[np.uint8]
 
@@ -61,7 +62,7 @@ def animate(
     figsize: Sequence[float] | None = None,
     style: str | None = None,
     title: bool | str = True,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress | None = None,
 ) -> Path:
     """Writes one cycle of a circuit, evenly in time, as GIF, MP4 or HTML by the path's ending; returns it.
 
@@ -155,13 +156,11 @@ def check_ending(target: Path) -> str:
     return _ffmpeg() if ending == ".mp4" else ""
 
 
-def _reported(
-    pictures: Iterator[Picture], total: int, progress: Callable[[int, int], object] | None
-) -> Iterator[Picture]:
+def _reported(pictures: Iterator[Picture], total: int, progress: Progress | None) -> Iterator[Picture]:
+    report = progress or silent
     for done, picture in enumerate(pictures, start=1):
         yield picture
-        if progress is not None:
-            progress(done, total)
+        report(done, total)
 
 
 def _rows(motion: Motion, path: Walk, frames: int) -> Floats:

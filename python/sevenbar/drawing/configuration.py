@@ -23,7 +23,7 @@ from sevenbar.drawing.page import (
     write_legend,
     write_title,
 )
-from sevenbar.drawing.scene import bars, box_of, keys, put, shown_places, stage
+from sevenbar.drawing.scene import bars, frame_box, keys, put, shown_places, stage
 from sevenbar.drawing.skeleton import Skeleton, one_pose, skeleton, skeleton_of
 from sevenbar.drawing.space import ViewAxes
 from sevenbar.drawing.style import letters, page_size, styled
@@ -93,7 +93,7 @@ def configuration(
             foot = write_legend(figure, keys(frame, ends, seen) if legend else [])
             width, height = figure.get_size_inches()
             if figsize is None:
-                height = top + foot + picture_height(seen, box_of(frame, seen), width)
+                height = top + foot + picture_height(seen, frame_box(frame, seen), width)
                 set_height(figure, height)
             space = ViewAxes(own_axes(figure, seen), seen)
             prepare(space, frame, (0.0, foot, width, height - top - foot))
@@ -158,7 +158,7 @@ def modes_overview(
     with styled(style):
         given = None if ax is None else given_axes(ax, count, "one for each mode")
         seen = view_of(view, linkage, shown_places(poses), given[0] if given else None)
-        box = box_of(poses, seen)
+        box = frame_box(poses, seen)
         if given:
             for axes, index in zip(given, range(count), strict=True):
                 space = ViewAxes(axes, seen)

@@ -133,7 +133,7 @@ def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, 
 def note(motion: Motion, cut: bool) -> str:
     """How the input is driven, and whether rates were cut."""
     name = shown_name(motion.input)
-    unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
+    unit = motion.linkage.unit_of(motion.input)
     note = f"{name} at {motion.speed_written or f'{motion.speed:g} {unit}/s'}"
     if motion.law is not None:
         note = f"{name} driven by a law"

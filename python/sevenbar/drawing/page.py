@@ -11,7 +11,7 @@ from matplotlib.legend import Legend
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing import style
-from sevenbar.drawing.scene import box_of, draw_box
+from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_frame, fit, measuring, seen_size, set_limits
 from sevenbar.drawing.view import Projection
@@ -113,7 +113,7 @@ def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = Fals
 
 def prepare(space: ViewAxes, frame: Skeleton, room: Rectangle) -> None:
     """Limits, place on the page and frame of the axes, for all that a picture of a frame shows."""
-    box = box_of(frame, space.view)
+    box = frame_box(frame, space.view)
     set_limits(space, box)
     fit_picture(space, box, room)
     draw_box(space, frame, box)
@@ -121,7 +121,7 @@ def prepare(space: ViewAxes, frame: Skeleton, room: Rectangle) -> None:
 
 def prepare_given(space: ViewAxes, frame: Skeleton) -> None:
     """The same for the caller's axes, which keep their place."""
-    box = box_of(frame, space.view)
+    box = frame_box(frame, space.view)
     set_limits(space, box)
     fill_given(space, box)
     draw_box(space, frame, box)

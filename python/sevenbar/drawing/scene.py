@@ -72,7 +72,7 @@ def stage(space: ViewAxes, frame: Skeleton, ends: tuple[str, str], *, around: Sk
         space.line(stem, color=GROUND, lw=2.2, zorder=2.3)
 
 
-def box_of(frame: Skeleton, view: Projection) -> Box:
+def frame_box(frame: Skeleton, view: Projection) -> Box:
     """What shows all of a frame in a view."""
     outline, sphere = None, frame.sphere
     if sphere is not None and not view.flat:

@@ -19,8 +19,8 @@ from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.export.pose import take
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.reporting.folder import check_targets, fill_folder
+from sevenbar.text.progress import Progress, silent
 
 if TYPE_CHECKING:
     from sevenbar.export.parts import Assembly
@@ -190,7 +190,7 @@ def export(
     samples: int = 360,
     units: Units | None = None,
     force: bool = False,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> list[Path]:
     """Writes a linkage or its motion for another program; returns the files written.
 

@@ -12,14 +12,14 @@ from sevenbar.errors import MissingExtraError, OutputError
 from sevenbar.export.libraries import installed
 from sevenbar.export.parts import Assembly, Ball, Bar, Part, Rod, Solid
 from sevenbar.kinematics.rigid import perpendicular
-from sevenbar.reporting.files import Progress, no_progress
+from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 
 
 def write_step(
     assembly: Assembly,
     path: Path,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> None:
     """Writes an assembly of one component for each part, in place in the pose, in millimetres.
 

@@ -12,7 +12,7 @@ from itertools import product
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, unit_of
+from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, hub_height
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.joints import Shape
@@ -28,7 +28,7 @@ SHIFT_COST = 0.03
 
 def arrange(pose: Pose) -> Assembly:
     """The parts of a linkage in a pose, seated with the least overlap found."""
-    unit = unit_of(pose)
+    unit = hub_height(pose)
     shapes = [joint.row.shape for joint in pose.linkage.joints]
     # by turns above and below, as in a plane linkage of two layers
     seats = tuple(Seat(side=1 if i % 2 == 0 else -1) for i in range(len(shapes)))

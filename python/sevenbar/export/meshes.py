@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.errors import MissingExtraError
 from sevenbar.export.libraries import installed
 from sevenbar.export.parts import Assembly, Ball, Part, Rod, Solid, frame_of, length_of
-from sevenbar.reporting.files import Progress, no_progress
+from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 
 #: Flat faces round a rod, and rings of a ball: 0.2 % of the radius from round.
@@ -23,7 +23,7 @@ TO_GLTF = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 def write_glb(
     assembly: Assembly,
     path: Path,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> None:
     """Writes the assembly as a scene [m]: a node for each link, in place by its matrix, parts below it."""
     _begun(assembly, progress)
@@ -60,7 +60,7 @@ def write_glb(
 def write_stl(
     assembly: Assembly,
     path: Path,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> None:
     """Writes all parts in the pose into one binary STL, in the linkage's own length unit and report frame."""
     _begun(assembly, progress)
@@ -77,7 +77,7 @@ def write_stl(
 def write_stl_parts(
     assembly: Assembly,
     folder: Path,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> None:
     """Writes each part into a binary STL of its own, in its link's frame and the linkage's length unit."""
     _begun(assembly, progress)

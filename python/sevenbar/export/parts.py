@@ -16,7 +16,7 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.scene import link_colours
 from sevenbar.drawing.skeleton import CYLINDER
 from sevenbar.drawing.style import GROUND, JOINT
-from sevenbar.export.pose import Pose, shortest_link, size_of
+from sevenbar.export.pose import Pose, extent_of, shortest_link
 from sevenbar.kinematics.rigid import inverse, perpendicular
 from sevenbar.kinematics.rigid import pose as matrix
 from sevenbar.kinematics.rigid import unit as unit_vector
@@ -123,9 +123,9 @@ class Seat:
     other: int = 1
 
 
-def unit_of(pose: Pose) -> float:
+def hub_height(pose: Pose) -> float:
     """The height of a hub [length]: as the figures draw it, less where links are short."""
-    return min(CYLINDER * size_of(pose), 0.25 * shortest_link(pose))
+    return min(CYLINDER * extent_of(pose), 0.25 * shortest_link(pose))
 
 
 def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:

@@ -102,7 +102,7 @@ def take(motion: Motion, circuit: int = 0, at: float | None = None, branch: int 
     )
 
 
-def size_of(pose: Pose) -> float:
+def extent_of(pose: Pose) -> float:
     """The size [length] that drawn parts are shares of: the extent of all places along the circuit."""
     return max(pose.places.span, skeleton_of(pose.linkage, pose.others[:, :-1]).span)
 

@@ -15,8 +15,8 @@ import numpy as np
 from sevenbar.errors import MissingExtraError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.files import Progress, no_progress
 from sevenbar.reporting.folder import write_parts
+from sevenbar.text.progress import Progress, silent
 from sevenbar.text.units import LENGTHS
 
 #: "file": lengths in the linkage's own unit, and angles of flat tables in degrees; "si": metres and radians.
@@ -27,7 +27,7 @@ def write_csv(
     motion: Motion,
     path: Path,
     units: Units,
-    progress: Progress = no_progress,
+    progress: Progress = silent,
 ) -> None:
     """Writes the flat table as CSV; a value that does not exist is an empty cell beside its status."""
     rows = sum(circuit.tally.rows for circuit in motion)

@@ -119,8 +119,7 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
     for i, table in enumerate(description.get("point", ())):
         name = table["name"]
         found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)
-    column = linkage.columns.index(linkage.drive.joint)
-    speed = "rad/s" if linkage.column_kinds[column] == "turn" else f"{length}/s"
+    speed = f"{linkage.unit_of(linkage.drive.joint)}/s"
     found.append(Dimension("speed", ("drive", "speed"), "speed", "drive", speed, linkage.drive.speed))
     # a point may have the name of a joint
     taken = Counter(dimension.name for dimension in found)

@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.general import expanded
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.grashof import FourBar, four_bar, least, slider_crank
+from sevenbar.kinematics.grashof import FourBar, four_bar_of_links, least, slider_crank_of_links
 from sevenbar.kinematics.plane_and_sphere import in_plane, sphere_of
 from sevenbar.kinematics.rigid import cross, inverse
 
@@ -56,17 +56,19 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
     roles = _roles(names, input, output)
     if found is None:
         arcs = [math.atan2(math.hypot(*cross(m[:3, 2], _Z)), float(m[2, 2])) for m in between]
-        return four_bar("spherical", least(arcs), names, roles)
+        return four_bar_of_links("spherical", least(arcs), names, roles)
     lengths = [math.hypot(m[0, 3], m[1, 3]) for m in between]
     if "P" not in letters:
-        return four_bar("planar", lengths, names, roles)
+        return four_bar_of_links("planar", lengths, names, roles)
     slide = letters.index("P")
     a, b, c = ((slide + k) % 4 for k in (1, 2, 3))
     # from the pin on the slider to that on the other side of the slide, in the frame of the slide
     to_slide = inverse(between[c])
     apart = between[slide][:3, 3] - to_slide[:3, 3]
     offset = abs(float(apart @ cross(to_slide[:3, 2], _Z)))
-    return slider_crank(lengths[a], lengths[b], offset, [names[k] for k in (a, b, c)], (roles[a], roles[b]))
+    return slider_crank_of_links(
+        lengths[a], lengths[b], offset, [names[k] for k in (a, b, c)], (roles[a], roles[b])
+    )
 
 
 def _between(links: Sequence[Floats], last: Floats, moves: Sequence[int]) -> list[Floats]:

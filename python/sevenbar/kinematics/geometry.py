@@ -181,6 +181,11 @@ class Loop(Drawable):
         """What each column is: an angle [rad] or a length."""
         return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
 
+    def unit_of(self, column: int | str) -> str:
+        """The unit of a column's values, by its number or name: "rad", or the length unit."""
+        place = self.columns.index(column) if isinstance(column, str) else column
+        return "rad" if self.column_kinds[place] == "turn" else self.length_unit
+
     @property
     def added_points(self) -> tuple[Point, ...]:
         """The points that a person has added: all but A and B of an RSSR, which come first."""

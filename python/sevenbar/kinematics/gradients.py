@@ -106,7 +106,7 @@ def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[Me
         extremes: Extremes | None = getattr(circuit, quantity)
         if extremes is None:
             continue
-        rate = ("rad" if numbers.turns[column] else numbers.linkage.length_unit) + PER_TIME[order]
+        rate = numbers.linkage.unit_of(column) + PER_TIME[order]
         for end in ("lowest", "highest"):
             value, at = getattr(extremes, end), getattr(extremes, f"{end}_at")
             here = _rates_at(loop, circuit, at, order, value, speed)

@@ -58,7 +58,7 @@ class FourBar(Printed):
     turning: tuple[str, ...]
 
 
-def four_bar(
+def four_bar_of_links(
     kind: Literal["planar", "spherical"], lengths: Sequence[float], names: Sequence[str], roles: Sequence[str]
 ) -> FourBar:
     """A four-bar by the links after each of its joints."""
@@ -81,7 +81,7 @@ def four_bar(
     return FourBar(kind, links, None, roles[shortest], roles[longest], excess, grashof, turning)
 
 
-def slider_crank(
+def slider_crank_of_links(
     first: float, second: float, offset: float, names: Sequence[str], roles: Sequence[str]
 ) -> FourBar:
     """A slider-crank by the lengths of its two links and the offset of the slide.

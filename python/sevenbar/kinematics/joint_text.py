@@ -47,19 +47,19 @@ def given_number(key: str, value: object, unit: str) -> object:
 
 def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> float:
     """The value of a joint [rad, or length] that a caller gives: a number, or a text as in "30 deg"."""
-    return finite_number(key, given_number(key, value, _unit(linkage, column)))  # type: ignore[arg-type]
+    return finite_number(key, given_number(key, value, linkage.unit_of(column)))  # type: ignore[arg-type]
 
 
 def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -> Floats:
     """Values of a joint (n,) [rad, or length] that a caller gives: numbers, or texts; finite or not."""
     if not isinstance(values, (str, list, tuple)):
         return real_array(key, values)
-    return real_array(key, _read(key, values, [_unit(linkage, column)] * len_of(values)))
+    return real_array(key, _read(key, values, [linkage.unit_of(column)] * len_of(values)))
 
 
 def pose_numbers(key: str, values: npt.ArrayLike, linkage: Loop) -> Floats:
     """The values of all columns (columns,) [rad, or length] that a caller gives: finite numbers, or texts."""
-    units = [_unit(linkage, column) for column in range(len(linkage.columns))]
+    units = [linkage.unit_of(column) for column in range(len(linkage.columns))]
     return finite_array(key, _read(key, values, units))
 
 
@@ -77,7 +77,3 @@ def _read(key: str, values: npt.ArrayLike, units: list[str]) -> npt.ArrayLike:
     return [
         given_number(f"{key}[{i}]", value, units[min(i, len(units) - 1)]) for i, value in enumerate(values)
     ]  # type: ignore[return-value]
-
-
-def _unit(linkage: Loop, column: int) -> str:
-    return linkage.length_unit if linkage.column_kinds[column] == "slide" else "rad"

@@ -67,7 +67,7 @@ class Linkage(Solvable):
         """
         if agree is None:
             return self
-        value = agreement("agree", agree)
+        value = closure_tolerance("agree", agree)
         if value == AGREE and self.agree is None:
             return self
         if value not in self._agreeing:
@@ -99,10 +99,10 @@ class Linkage(Solvable):
         if speed is None:
             return self.speed_of(column)
         # a number needs no reader of formulas
-        from sevenbar.text.amounts import speed_text
+        from sevenbar.text.amounts import plain_speed
 
         try:
-            plain = float(speed) if isinstance(speed, np.number) else speed_text(speed)
+            plain = float(speed) if isinstance(speed, np.number) else plain_speed(speed)
             if self.column_kinds[column] == "slide":
                 return sliding_speed(plain, self.length_unit)
             return turning_speed(plain)
@@ -376,7 +376,7 @@ class Linkage(Solvable):
         return method == "auto" and self.kind == "RSSR"
 
 
-def agreement(name: str, value: object) -> float:
+def closure_tolerance(name: str, value: object) -> float:
     """A closure error up to which redundant constraints agree, or `RequestError` that names it."""
     if (
         isinstance(value, bool)

@@ -25,7 +25,7 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -46,15 +46,13 @@ from sevenbar.measuring.measured import Ends, Measured
 from sevenbar.measuring.model import OFFSETS, CurveModel
 from sevenbar.measuring.passes import UNEXPLAINED
 from sevenbar.text.printing import Printed
+from sevenbar.text.progress import Progress, silent
 
 #: Correlation of neighbouring residuals, in standard deviations of that of random ones, that is reported.
 FOLLOWS = 4.0
 
 #: `fixed` and `follows` as the caller wants it; `untold` is what the data do not identify.
 Status = Literal["calibrated", "fixed", "follows", "untold", "opens the loop"]
-
-#: Called with the evaluations done, how many there will be (0: not known), and the best residual so far.
-Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True)
@@ -184,7 +182,7 @@ def calibrate(
     if follow:
         Draft.of_linkage(linkage).holding(follow)
     _refuse_what_stays(measured, ends)
-    evaluations, seen = 0, progress or (lambda _done, _total, _best: None)
+    evaluations, seen = 0, progress or silent
     seen(0, 0, "")
     align = [word for word, side in (("phase", "input"), ("offset", "output")) if side in offsets]
     before = compare(

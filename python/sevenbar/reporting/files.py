@@ -15,6 +15,7 @@ import numpy.typing as npt
 from rich.console import Console, RenderableType
 
 from sevenbar.reporting.folder import check_targets, fill_folder, write_columns, write_parts
+from sevenbar.text.progress import Progress, silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,14 +45,6 @@ class LongTable(Generic[T]):
         """Writes it; `progress(share)` is called with the share that is written, 0 to 1."""
         total = max(1, self.rows(found))
         write_parts(path, self.parts(found), lambda done: progress(done / total))
-
-
-#: Called with what is done, of how much, and what is at work.
-Progress = Callable[[float, int, str], object]
-
-
-def no_progress(done: float, total: int, what: str) -> None:
-    """Reports nothing."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +81,7 @@ class Report(Generic[T]):
         folder: str | os.PathLike[str],
         *,
         force: bool = False,
-        progress: Progress = no_progress,
+        progress: Progress = silent,
     ) -> list[Path]:
         """Writes the files of a result into a folder, all or none; returns their paths.
 

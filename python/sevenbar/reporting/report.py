@@ -20,21 +20,14 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
+from sevenbar.reporting.facts import COMPLETE, closure_error, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
-from sevenbar.reporting.summary import (
-    COMPLETE,
-    GAP,
-    Sheet,
-    closure_error,
-    joint_text,
-    modes_sheets,
-    side_lengths,
-    summary,
-)
-from sevenbar.text.markdown import plain, table
+from sevenbar.reporting.shown import value_text
+from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
+from sevenbar.text.markdown import escaped, table
 
 __all__ = [
     "as_dict",
@@ -195,12 +188,12 @@ def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
     '# RSSR of Sun and Zhou'
     """
     told = summary(motion)
-    parts = [f"# {plain(told.title)}"]
+    parts = [f"# {escaped(told.title)}"]
     parts.append(
-        "\n".join(f"- {name}: {plain(fact)}" if name else f"  {plain(fact)}" for name, fact in told.facts)
+        "\n".join(f"- {name}: {escaped(fact)}" if name else f"  {escaped(fact)}" for name, fact in told.facts)
     )
     for sheet in told.sheets:
-        heads, *rows = ([plain(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
+        heads, *rows = ([escaped(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
         parts.append(table(heads, rows, right=sheet.right))
         parts += [sheet.note] if sheet.note else []
     parts += [f"![{name.rpartition('.')[0]}]({name})" for name in pictures]
@@ -320,7 +313,7 @@ def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
     def parts(width: int) -> Iterator[RenderableType]:
         yield Text(linkage.heading, style="bold underline")
         count = len(modes)
-        value = joint_text(linkage, column, modes.input)
+        value = value_text(linkage, column, modes.input)
         yield Text(
             f"{count or 'no'} assembly mode{'s' * (count != 1)} at {linkage.columns[column]} = {value}, "
             f"{modes.completeness}: {COMPLETE[modes.completeness]}"

@@ -14,17 +14,16 @@ from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
 from sevenbar.kinematics.screw_axes import ScrewAxes
-from sevenbar.reporting.shown import Shown
-from sevenbar.reporting.summary import (
+from sevenbar.reporting.facts import (
     COMPLETE,
-    circuit_facts,
     closure_error,
     dimensions_text,
     facts_of,
     joints_text,
-    speed_text,
-    way_round,
 )
+from sevenbar.reporting.page import drive_text
+from sevenbar.reporting.shown import Shown
+from sevenbar.reporting.summary import circuit_facts, way_round
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 if TYPE_CHECKING:
@@ -50,16 +49,12 @@ SIZE = (4.6, 2.8)
 @text_of.register(Linkage)
 def _(linkage: Linkage) -> str:
     drive = linkage.drive
-    speed = speed_text(linkage, drive.joint, drive.speed)
     return lines(
         f"Linkage '{linkage.heading}'",
         [
             ("loop", joints_text(linkage)),
             ("dimensions", dimensions_text(linkage) or _rows(linkage)),
-            (
-                "drive",
-                f"{drive.joint} {speed}, output {drive.output}",
-            ),
+            ("drive", drive_text(drive.joint, drive.speed, linkage.unit_of(drive.joint), drive.output)),
             ("points", ", ".join(f"{point.name} on link {point.link}" for point in linkage.points)),
             ("length unit", linkage.length_unit),
         ],

@@ -16,8 +16,7 @@ from sevenbar.kinematics.columns import joint_column
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.screw_axes import ScrewAxes
 from sevenbar.reporting.files import Report, columns_file, json_file
-from sevenbar.reporting.page import number_table
-from sevenbar.reporting.summary import speed_text
+from sevenbar.reporting.page import drive_text, number_table
 
 #: A pitch or slide rate below this share of the size, or of the fastest turn of the size, is printed as 0.
 ROUNDING = 1e-12
@@ -118,8 +117,8 @@ def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> Rend
             words = ", ".join(f"{n} {word}" for word, n in _statuses(axes).items())
             rows.append((f"{link}", f"{circuit.index}", words, *cells))
     title = Text(linkage.heading, style="bold underline")
-    speed = speed_text(linkage, motion.input, motion.speed)
-    facts = Text(f"screw axes against {other}, {motion.input} {speed}; --out writes all rows")
+    drive = drive_text(motion.input, motion.speed, linkage.unit_of(motion.input))
+    facts = Text(f"screw axes against {other}, {drive}; --out writes all rows")
     if not motion.circuits:
         return Group(title, Text(f"motion type {motion.motion_type}: no circuit to have axes"))
     return Group(title, facts, Text(), number_table(heads, rows, words=(2,)))

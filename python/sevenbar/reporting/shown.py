@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from sevenbar.kinematics.geometry import Loop
+
 
 class Shown:
     """How a joint's value is written: an angle in degrees, a slide in the length unit."""
@@ -27,7 +29,12 @@ class Shown:
         return self(a, whole=True) == self(b, whole=True)
 
 
-def plain(value: float) -> str:
+def value_text(linkage: Loop, column: int, value: float) -> str:
+    """The value of a column with its unit."""
+    return Shown(linkage.unit_of(column))(value)
+
+
+def six_digits(value: float) -> str:
     """A number to six digits."""
     return f"{value:.6g}"
 

@@ -1,23 +1,18 @@
-"""The result of a motion, in words and tables for people; what circuits share is said once."""
+"""A motion as a page of facts and tables, circuits side by side or in rows; what they share is given once."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from sevenbar.description.angle_doubts import angle_doubt
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.kinematics.mobility import Mobility
-from sevenbar.kinematics.motion import Modes, Motion, Solvable
-from sevenbar.reporting.four_bar_text import grashof_text, links_text
-from sevenbar.reporting.how_found import how_found
-from sevenbar.reporting.page import drive_text
-from sevenbar.reporting.shown import Shown, degrees, plain
+from sevenbar.kinematics.motion import Modes, Motion
+from sevenbar.reporting.facts import facts_of, turns_text
+from sevenbar.reporting.shown import Shown, degrees, six_digits
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
@@ -25,19 +20,8 @@ MOST_COLUMNS = 2
 #: Dead centres told in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
 
-#: Limits of the input that are listed.
-MOST_LIMITS = 8
-
 #: Characters between two columns in print.
 GAP = 2
-
-#: What each word for completeness means.
-COMPLETE = {
-    "closed-form": "all modes are found",
-    "counted": "all modes and all circuits are found",
-    "algebraic": "all modes are found",
-    "searched": "the modes that a search from many starts found; there may be others",
-}
 
 #: What a cell says where there is nothing to tell.
 NOTHING = ("-", "none")
@@ -113,120 +97,6 @@ def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
     return sheets
 
 
-def joint_text(linkage: Loop, column: int, value: float) -> str:
-    """A joint's value with its unit."""
-    return Shown("rad" if linkage.column_kinds[column] == "turn" else linkage.length_unit)(value)
-
-
-def side_lengths(linkage: Solvable) -> dict[str, float]:
-    """Crank, coupler and rocker of an RSSR."""
-    if linkage.kind != "RSSR":
-        return {}
-    return dict(zip(("crank", "coupler", "rocker"), linkage.lengths, strict=True))
-
-
-def closure_error(circuits: Iterable[Circuit]) -> float:
-    """The greatest closure error [length]; NaN where no row has one."""
-    residuals = [circuit.tally.residual for circuit in circuits]
-    return max((worst for worst in residuals if not math.isnan(worst)), default=math.nan)
-
-
-def facts_of(motion: Motion) -> list[tuple[str, str]]:
-    """What the report tells of the motion as a whole: names and words."""
-    linkage = motion.linkage
-    facts = [("loop", joints_text(linkage))]
-    if linkage.form == "rows":
-        before = f"link {len(linkage.joints) - 1}" if len(linkage.joints) > 2 else "the link before it"
-        facts.append(("last joint", f"{linkage.joints[-1].name} counts the ground relative to {before}"))
-    if numbers := dimensions_text(linkage):
-        facts.append(("dimensions", numbers))
-    if bar := motion.four_bar:
-        facts.append(("links", links_text(bar, linkage.length_unit)))
-        facts.append(("Grashof", grashof_text(bar, linkage.length_unit)))
-    if doubt := angle_doubt(linkage.description):
-        facts.append(("angles", doubt))
-    speed = motion.speed if motion.law is None else None
-    unit, written = _units(motion)[0], motion.speed_written
-    facts.append(("drive", drive_text(motion.input, speed, unit, motion.output, written=written)))
-    if motion.law is not None:
-        t = motion.law.t
-        rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
-        facts.append(("law", f"{rows}; extremes of velocity and acceleration are those of its rows"))
-    facts.append(("motion type", motion.motion_type))
-    if told := meaning(motion):
-        facts.append(("", told))
-    if near := nearly_moves(motion):
-        facts.append(("nearly moves", near))
-    facts.append(("circuits", _circuit_count(motion)))
-    if motion.circuits or motion.limits.size:
-        facts.append(("input limits", _limits_text(motion)))
-    facts.extend(_change_points(motion))
-    facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
-    if motion.completeness != "closed-form":
-        facts.append(("how found", how_found(motion)))
-        facts.append(("mobility", _mobility(motion.mobility)))
-    if motion.idle:
-        facts.append(("idle freedom", "; ".join(motion.idle) + ", held by convention"))
-    facts.append(("redundant", "; ".join(motion.redundant) or "no constraints"))
-    if motion.circuits:
-        facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
-    return facts
-
-
-def _limits_text(motion: Motion) -> str:
-    """The input's limits; of many no more than their number, since the tables have them by circuit."""
-    if motion.limits.size > MOST_LIMITS:
-        return f"{motion.limits.size}, by circuit in the table below"
-    show = Shown(_units(motion)[0])
-    return "  ".join(show(x) for x in motion.limits) or _no_limits(motion)
-
-
-def joints_text(linkage: Loop) -> str:
-    """The joints in loop order: kinds and names."""
-    return "  ".join(f"{joint.kind} {joint.name}" for joint in linkage.joints)
-
-
-def dimensions_text(linkage: Solvable) -> str:
-    """The dimensions by name; nothing of Denavit-Hartenberg rows, which want a table."""
-    numbers = {} if linkage.form == "rows" else dict(linkage.dimensions) or side_lengths(linkage)
-    told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
-    return f"{told}  [{linkage.length_unit}]" if told else ""
-
-
-def speed_text(linkage: Loop, input: str, speed: float) -> str:
-    """The speed at which a joint drives."""
-    turns = linkage.column_kinds[linkage.columns.index(input)] == "turn"
-    return f"at {speed:.6g} {'rad' if turns else linkage.length_unit}/s"
-
-
-def _change_points(motion: Motion) -> list[tuple[str, str]]:
-    """Lines for the poses at which branches meet, and for those that stand alone."""
-    show = Shown(_units(motion)[0])
-    lines = []
-    meeting = [point for point in motion.change_points if not point.isolated]
-    if meeting:
-        where = "  ".join(show(x) for x in motion.change_point_inputs)
-        what = "branches meet there; the least change of a dimension decides how it goes on"
-        lines.append(("change point", f"input {where}: {what}"))
-    free = max((point.freedoms for point in meeting), default=0)
-    if free > 1:
-        lines.append(("", f"there it can also move with {free} freedoms, which no circuit shows"))
-    alone = [show(point.input) for point in motion.change_points if point.isolated]
-    if alone:
-        lines.append(("isolated pose", f"input {'  '.join(alone)}: no motion leads out of it"))
-    return lines
-
-
-def _units(motion: Motion) -> tuple[str, str]:
-    """The units of the input and of the output as their rates are given: rad or a length."""
-    linkage = motion.linkage
-    kinds = dict(zip(linkage.columns, linkage.column_kinds, strict=True))
-    first, second = (
-        "rad" if kinds[c] == "turn" else linkage.length_unit for c in (motion.input, motion.output)
-    )
-    return first, second
-
-
 def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     """The rows as written, one a link, to the last digit if `exact`; a joint's own value is no dimension."""
     digits = _every_digit if exact else "{:.6g}".format
@@ -260,82 +130,6 @@ def _every_digit(number: float) -> str:
     return f"{number!r}".removesuffix(".0")
 
 
-def nearly_moves(motion: Motion) -> str:
-    """By how little a linkage without a circuit misses a motion; empty where it moves, or misses more."""
-    near = motion.near_motion
-    if near is None:
-        return ""
-    return (
-        f"as a {near.motion_type}: redundant constraints miss by up to {near.share:.1e} of the size "
-        f"({near.miss:.2g} {motion.linkage.length_unit}), or as many rad; --agree {near.agree:.0e} takes "
-        "them to agree"
-    )
-
-
-def meaning(motion: Motion) -> str:
-    """A sentence on a motion type that is not a pair of words for input and output."""
-    match motion.motion_type:
-        case "two-inputs":
-            return (
-                f"the loop moves with {motion.mobility.finite} freedoms, so one input does not determine it: "
-                "lock a joint (leave it out)"
-            )
-        case "rigid":
-            taken = motion.mobility.freedoms
-            return f"the loop closes but cannot move: closing it removes all of its {taken} freedoms"
-        case "cannot-assemble" if motion.linkage.kind == "RSSR":
-            return "no input closes the loop: the coupler is too short or too long"
-        case "cannot-assemble":
-            return "no values of the joints were found that close the loop"
-        case "change-point":
-            return "the motion runs through a pose from which it can go on in more than one way"
-        case "mixed":
-            return "the circuits differ; see below"
-    return ""
-
-
-def _mobility(mobility: Mobility) -> str:
-    count = f"Gruebler {mobility.freedoms} - 6 = {mobility.gruebler}"
-    parts = [count] if mobility.rank is None else [count, f"rank {mobility.rank}"]
-    for number, name in (
-        (len(mobility.idle), "idle freedom"),
-        (len(mobility.redundant), "redundant constraint"),
-    ):
-        if number:
-            parts.append(f"{number} {name}{'s' * (number > 1)}")
-    start = "not known, as no pose was found" if mobility.finite is None else f"{mobility.finite}"
-    return f"{start} ({', '.join(parts)})"
-
-
-def _no_limits(motion: Motion) -> str:
-    turns = all(circuit.input_range is None for circuit in motion)
-    return "none: the input turns fully" if turns else "none found"
-
-
-def _circuit_count(motion: Motion) -> str:
-    if not motion.circuits:
-        return "none: it closes only in isolated poses" if motion.change_points else "none"
-    turning = sorted({c.turns for c in motion if c.closed and c.turns})
-    ways = {
-        f"{{}} after {_turns(k)} of the input": sum(c.closed and c.turns == k for c in motion)
-        for k in turning
-    }
-    ways["{} to and fro"] = sum(c.closed and c.turns == 0 for c in motion)
-    ways["{} not known to close"] = sum(not c.closed for c in motion)
-    found = {way: count for way, count in ways.items() if count}
-    total = len(motion.circuits)
-
-    def told(way: str, who: str, many: bool) -> str:
-        verb = ("go" if many else "goes") if "fro" in way else ("are" if many else "is")
-        if "after" in way:
-            verb = "close" if many else "closes"
-        return f"{who} {way.format(verb)}"
-
-    if len(found) == 1:
-        return f"{total}, {told(next(iter(found)), 'each' if total > 1 else 'it', False)}"
-    return f"{total}: " + ", ".join(told(way, str(count), count > 1) for way, count in found.items())
-
-
 @dataclass(frozen=True)
 class _Quantity:
     """What is told of each circuit: one text or more.
@@ -361,7 +155,7 @@ class _Quantity:
 def _quantities(motion: Motion) -> list[_Quantity]:
     """All that is told of circuits, in order."""
     first, second = motion.input, motion.output
-    in_unit, out_unit = _units(motion)
+    in_unit, out_unit = (motion.linkage.unit_of(end) for end in (first, second))
     place, result = (Shown("rad" if unit == "rad" else "") for unit in (in_unit, out_unit))
     # of a slide the unit is in the label: a line is not broken between a number and its unit
     in_label, out_label = ("" if unit == "rad" else f"[{unit}]" for unit in (in_unit, out_unit))
@@ -375,8 +169,8 @@ def _quantities(motion: Motion) -> list[_Quantity]:
 
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
-            return ends(extremes, plain, "no row within the range")
-        return ends(extremes, plain, "change point" if circuit.goes_round else "no bound at limits")
+            return ends(extremes, six_digits, "no row within the range")
+        return ends(extremes, six_digits, "change point" if circuit.goes_round else "no bound at limits")
 
     def range_of(circuit: Circuit, end: int, show: Shown) -> Texts:
         extent = circuit.output_range if end else circuit.input_range
@@ -397,7 +191,9 @@ def _quantities(motion: Motion) -> list[_Quantity]:
     def time_ratio(circuit: Circuit) -> Texts:
         # a ratio of angles, and of times at a constant speed
         return (
-            ("-",) if circuit.time_ratio is None or motion.law is not None else (plain(circuit.time_ratio),)
+            ("-",)
+            if circuit.time_ratio is None or motion.law is not None
+            else (six_digits(circuit.time_ratio),)
         )
 
     def reach(circuit: Circuit) -> Texts:
@@ -452,7 +248,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         _Quantity(
             f"{second} {position}",
             "",
-            lambda c: ends(c.angle, plain, "-"),
+            lambda c: ends(c.angle, six_digits, "-"),
             f"[{out_unit}]",
             ends=True,
             only="list",
@@ -466,11 +262,7 @@ def way_round(circuit: Circuit) -> str:
     """How a circuit closes: after so many turns of the input, to and fro, or not."""
     if not circuit.closed:
         return "open"
-    return _turns(circuit.turns) if circuit.turns else "to and fro"
-
-
-def _turns(count: int) -> str:
-    return {1: "one turn", 2: "two turns"}.get(count, f"{count} turns")
+    return turns_text(circuit.turns) if circuit.turns else "to and fro"
 
 
 def _telling(
@@ -575,7 +367,7 @@ def width_of(sheet: Sheet) -> int:
 
 
 def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts]], width: int = 0) -> Sheet:
-    unit = _units(motion)[0]
+    unit = motion.linkage.unit_of(motion.input)
     where = f"value @ angle of {motion.input}"
     if unit != "rad":
         where = f"value @ position of {motion.input} [{unit}]"

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError
-
-#: Told of steps done and steps in all.
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,10 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
 from sevenbar.kinematics.rigid import perpendicular, pose
-from sevenbar.simulation.engine import Progress, Record, imported
+from sevenbar.simulation.engine import Record, imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
 from sevenbar.simulation.prototype import GROUND, GYRATION, Body, Connection, Prototype, SpinRule
+from sevenbar.text.progress import Progress
 
 #: Numerical damping of the generalized-alpha method, which needs less than 1 for constraints on positions;
 #: an error of the accelerations at the start shrinks by about this factor a step.

@@ -31,7 +31,7 @@ def output_figure(run: Simulation) -> Figure:
     """Angle, velocity and acceleration of the output: theory and engine left, their difference right."""
     motion, column = run.course.motion, run.course.circuit.output_column
     slide = slides(motion, motion.output)
-    unit = motion.linkage.length_unit if slide else "rad"
+    unit = motion.linkage.unit_of(motion.output)
     rows = (
         ("position" if slide else "angle", unit if slide else "deg", "", run.engine.q, run.theory.q),
         ("velocity", unit, "/s", run.engine.dq, run.theory.dq),
@@ -167,7 +167,7 @@ def _finish(figure: Figure, run: Simulation) -> None:
             axes.set_ylim(max(FLOOR, SPAN * highest, lowest / 3), 3 * highest)
     for axes in figure.axes[-2:]:
         axes.set_xlabel(input_label(motion))
-    unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
+    unit = motion.linkage.unit_of(motion.input)
     which = f"circuit {run.course.circuit.index}, {shown_name(motion.input, 24)} at {motion.speed:g} {unit}/s"
     figure.suptitle(
         f"{short(motion.linkage.heading, 60)}: Sevenbar and {run.record.engine} {run.record.version}\n"

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from sevenbar.errors import EngineError
-from sevenbar.simulation.engine import Progress, Record, imported
+from sevenbar.simulation.engine import Record, imported
 from sevenbar.simulation.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
 from sevenbar.simulation.prototype import Prototype
+from sevenbar.text.progress import Progress
 from sevenbar.text.units import LENGTHS
 
 #: Linkages below this size [m] have forces and inertias that MuJoCo takes for none.

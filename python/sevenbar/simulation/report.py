@@ -63,8 +63,7 @@ def text(run: Simulation) -> RenderableType:
     facts = Facts()
     facts.add("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))
     facts.add("engine", f"{record.engine} {record.version}: {record.method}")
-    slide = linkage.column_kinds[way.circuit.input_column] == "slide"
-    facts.add("drive", drive_text(motion.input, motion.speed, unit if slide else "rad", motion.output))
+    facts.add("drive", drive_text(motion.input, motion.speed, linkage.unit_of(motion.input), motion.output))
     facts.add("course", way.told())
     lead = f", after {len(way.lead)} that are not compared" if len(way.lead) else ""
     facts.add("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
@@ -85,6 +84,7 @@ def text(run: Simulation) -> RenderableType:
         "median",
         "values up to",
     )
+    slide = linkage.unit_of(motion.input) != "rad"
     table = number_table(heads, (_cells(found, slide, unit) for found in run.differences))
     return Group(Text(linkage.heading, style="bold underline"), facts.grid, Text(), table)
 

@@ -15,8 +15,9 @@ from sevenbar.kinematics.linkage import Linkage, sample_count
 from sevenbar.simulation import exudyn_engine, mujoco_engine
 from sevenbar.simulation.agreement import Simulation, agreement
 from sevenbar.simulation.course import Course, course
-from sevenbar.simulation.engine import Progress, Record, imported
+from sevenbar.simulation.engine import Record, imported
 from sevenbar.simulation.prototype import Prototype, prototype
+from sevenbar.text.progress import Progress
 
 #: The engines by name.
 ENGINES: dict[str, Callable[..., Record]] = {"exudyn": exudyn_engine.run, "mujoco": mujoco_engine.run}

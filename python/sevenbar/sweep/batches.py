@@ -39,7 +39,7 @@ def batched(plan: SweepPlan, values: Floats, threads: int) -> tuple[list[Block],
 
     Left are those that a description refuses or that do not move, which have a reason to report, change
     points of an RSSR, whose output must be followed, other loops whose transmission angle is measured,
-    and all where a closure error is asked for or the sweep is of functions.
+    and all of a sweep of functions or with a closure error of its own.
     """
     count = values.shape[1]
     if not all(isinstance(measure, str) for measure in plan.measures):

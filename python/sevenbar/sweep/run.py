@@ -20,6 +20,7 @@ from sevenbar.sweep.parts import PartsFolder, other_maker
 from sevenbar.sweep.plan import SweepPlan, maker
 from sevenbar.sweep.result import Sweep
 from sevenbar.sweep.rows import need_pyarrow, part_bytes, schema
+from sevenbar.text.progress import Progress, silent
 
 #: What is measured by default.
 USUAL = ("motion_type", "limits")
@@ -59,7 +60,7 @@ def run(
     scheduler: str | None = None,
     part_size: int | None = None,
     follow: Collection[str] = (),
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Sweep:
     """Measures of many linkages: named dimensions over grids, lists and samples.
 
@@ -98,7 +99,7 @@ def carry_out(
     mixed: bool = False,
     threads: int | None = None,
     scheduler: str | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Sweep:
     """The sweep of a plan; as `run` for the rest."""
     need_pyarrow()
@@ -136,7 +137,7 @@ def _filled(
     *,
     resume: bool,
     mixed: bool,
-    progress: Callable[[int, int], None] | None,
+    progress: Progress | None,
 ) -> Sweep:
     """The sweep with all its parts, the missing ones made."""
     unlike = [one for one in makers if one != makers[0]]
@@ -147,8 +148,8 @@ def _filled(
     try:
         done = frozenset[int]() if folder is None else folder.done
         linkages = sum(len(plan.linkages(part)) for part in done)
-        if progress is not None:
-            progress(linkages, plan.space.count)
+        report = progress or silent
+        report(linkages, plan.space.count)
         known = list(makers)
         missing = (part for part in range(plan.parts) if part not in done)
         with closing(made(missing)) as finished:
@@ -164,8 +165,7 @@ def _filled(
                 else:
                     folder.keep(part, content)
                 linkages += len(plan.linkages(part))
-                if progress is not None:
-                    progress(linkages, plan.space.count)
+                report(linkages, plan.space.count)
     finally:
         if folder is not None:
             folder.close()

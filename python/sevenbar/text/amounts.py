@@ -205,10 +205,10 @@ _SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])
 _FORMULA_OF_SPEED = re.compile(rf"(.+?)\s*({_SPEED_UNITS})")
 
 
-def speed_text(value: Any) -> Any:
+def plain_speed(value: Any) -> Any:
     """A speed whose number is a formula, with the number; any other value as it is.
 
-    >>> speed_text("2*3 rad/s"), speed_text("60 rpm"), speed_text(5)
+    >>> plain_speed("2*3 rad/s"), plain_speed("60 rpm"), plain_speed(5)
     ('6.0 rad/s', '60 rpm', 5)
     """
     match = _FORMULA_OF_SPEED.fullmatch(value) if isinstance(value, str) else None

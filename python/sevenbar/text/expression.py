@@ -109,10 +109,10 @@ def function_of(text: str) -> Callable[[Floats], Floats]:
     return partial(_values, _of_x(text))
 
 
-def number_of(text: str) -> float | None:
+def constant_of(text: str) -> float | None:
     """The number that a formula without x writes down, angles in radians; `None` for what is no finite one.
 
-    >>> number_of("90deg"), number_of("pi/2"), number_of("2*x")
+    >>> constant_of("90deg"), constant_of("pi/2"), constant_of("2*x")
     (1.5707963267948966, 1.5707963267948966, None)
     """
     try:

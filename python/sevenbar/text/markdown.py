@@ -16,10 +16,10 @@ _MEANS = re.compile(
 )
 
 
-def plain(words: str) -> str:
+def escaped(words: str) -> str:
     r"""Words that Markdown shows as they are; only what it would take for something else is escaped.
 
-    >>> print(plain("ball_a [mm]  x < y  *b*"))
+    >>> print(escaped("ball_a [mm]  x < y  *b*"))
     ball_a [mm]  x \< y  \*b\*
     """
     return _MEANS.sub(r"\\\g<0>", words).replace("\n", "<br>")

@@ -6,11 +6,10 @@ in a list each value has its own.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.units import ANGLES, LENGTHS, split_quantity
+from sevenbar.text.units import ANGLES, LENGTHS, amount, sizes_of, split_quantity
 
 #: Three numbers: a place, a direction.
 Place = tuple[float, float, float]
@@ -89,20 +88,11 @@ def split_list(text: str) -> list[str]:
 
 def three_numbers(option: str, text: str, what: str, example: str) -> Place:
     """Three numbers parted by commas."""
-    values = [finite_number(word) for word in split_list(text)]
+    values = [amount(word, sizes_of(""), "") for word in split_list(text)]
     if len(values) != 3 or None in values:
         raise RequestError(f"{option}: {shown(text)} is not {what}; give three numbers, as in '{example}'")
     x, y, z = (value for value in values if value is not None)
     return x, y, z
-
-
-def finite_number(text: str) -> float | None:
-    """The number of a text; `None` for what is no finite one."""
-    try:
-        value = float(text)
-    except ValueError:
-        return None
-    return value if math.isfinite(value) else None
 
 
 def _parts(text: str) -> list[str]:

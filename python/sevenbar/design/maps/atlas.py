@@ -14,7 +14,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
 from sevenbar.design.maps.outline import Boundary, Region, boundaries, regions
-from sevenbar.design.maps.plane import Kind, LoopPlane, Plane, Progress
+from sevenbar.design.maps.plane import Kind, LoopPlane, Plane
 from sevenbar.design.maps.rssr_plane import RssrPlane
 from sevenbar.design.maps.window import MapAxis, Range, axes_of
 from sevenbar.errors import RequestError, shown
@@ -22,6 +22,7 @@ from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
+from sevenbar.text.progress import Progress
 
 #: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
 GRID, LOOP_GRID = 61, 25

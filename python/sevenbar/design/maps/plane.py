@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -17,9 +17,7 @@ from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure, rows_of
 from sevenbar.kinematics.motion import Motion
-
-#: Counts the linkages that were classified or measured, and those in sight, 0 where they are not known.
-Progress = Callable[[int, int], None]
+from sevenbar.text.progress import Progress, silent
 
 #: Which circuit's value counts where a linkage has several: the best one, or that of an index.
 Take = Literal["highest", "lowest"] | int
@@ -66,15 +64,14 @@ class Plane(ABC):
     ) -> None:
         self.draft, self.axes, self.input, self.samples = draft, axes, input, samples
         self.kinds: list[Kind] = []
-        self._progress = progress
+        self._progress = progress or silent
         self._done = self._planned = 0
         self.count(0)
 
     def count(self, done: int) -> None:
-        """Reports that so many more linkages are done."""
+        """Reports that so many more linkages are done, of those in sight."""
         self._done += done
-        if self._progress is not None:
-            self._progress(self._done, self._planned)
+        self._progress(self._done, self._planned)
 
     @abstractmethod
     def numbers_at(self, points: Floats) -> Integers:
@@ -106,7 +103,7 @@ class Plane(ABC):
 
     def values_at(self, points: Floats, measures: Sequence[Measure], take: Take) -> Floats:
         """Measures at each point (n, measures), NaN where there is none."""
-        rows = [[value_of(motion, m, take) for m in measures] for motion in self.motions(points)]
+        rows = [[measure_of(motion, m, take) for m in measures] for motion in self.motions(points)]
         return np.array(rows, dtype=np.float64).reshape(len(points), len(measures))
 
     def number(self, kind: Kind) -> int:
@@ -130,7 +127,7 @@ class Plane(ABC):
         return found
 
 
-def value_of(motion: Motion | None, measure: Measure, take: Take) -> float:
+def measure_of(motion: Motion | None, measure: Measure, take: Take) -> float:
     """The measure of a motion, of the circuits that `take` chooses; NaN where it has none."""
     if motion is None:
         return math.nan

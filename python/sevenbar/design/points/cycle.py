@@ -189,6 +189,11 @@ def driven(
     return again, np.ones(len(inputs), dtype=bool)
 
 
+def shown_inputs(cycle: Cycle, inputs: Floats) -> Floats:
+    """Inputs as people read them: degrees, or lengths."""
+    return np.degrees(inputs) if cycle.motion.linkage.unit_of(cycle.motion.input) == "rad" else inputs
+
+
 def input_text(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
     slides = motion.linkage.column_kinds[motion.linkage.columns.index(motion.input)] == "slide"

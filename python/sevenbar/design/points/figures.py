@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.design.points.cycle import Cycle
+from sevenbar.design.points.cycle import Cycle, shown_inputs
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import ZERO, LeastPoint
 from sevenbar.design.points.nearest import NearestPath
@@ -40,7 +40,7 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
     with styled():
         figure = new_figure(11.0, 5.0)
         axes = figure.add_axes((0.065, 0.12, 0.44, 0.70))
-        across = _across(cycle, cycle.rates.input)
+        across = shown_inputs(cycle, cycle.rates.input)
         for i, point in enumerate(found.before[:MOST_LINES]):
             look: dict[str, Any] = {"color": _other(i), "ls": LINE_STYLES[1 + i % 3], "lw": 1.4}
             axes.plot(
@@ -50,7 +50,7 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
         bound = "least root mean square" if found.measure == "rms" else "lower bound of the greatest"
         axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=bound)
         if len(found.inputs):
-            marks = _across(cycle, found.inputs)
+            marks = shown_inputs(cycle, found.inputs)
             axes.plot(marks, np.full(len(marks), found.value), "o", color=FOUND, mfc="white", ms=5)
         _input_axis(axes, cycle, across)
         # a point that stands still is at the foot of what others of the box have
@@ -158,7 +158,7 @@ def inertia_figure(found: Inertia) -> Figure:
         figure = new_figure(7.0, 6.6)
         figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
         torque, force = figure.subplots(2, 1, sharex=True)
-        across = _across(cycle, found.input)
+        across = shown_inputs(cycle, found.input)
         torque.axhline(0, color=BOUND, lw=0.8)
         torque.plot(across, found.torque, color=FOUND, lw=1.7)
         torque.fill_between(across, found.torque, color=FOUND, alpha=0.15, lw=0)
@@ -191,11 +191,6 @@ def _other(index: int) -> str:
 def _sizes(cycle: Cycle, of: str, at: Floats) -> Floats:
     sizes: Floats = np.linalg.norm(cycle.rates.of(of, at), axis=1)
     return sizes
-
-
-def _across(cycle: Cycle, inputs: Floats) -> Floats:
-    """Inputs as they are drawn: degrees, or lengths."""
-    return inputs if slides(cycle.motion, cycle.motion.input) else np.degrees(inputs)
 
 
 def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:

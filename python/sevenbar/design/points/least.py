@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import ConeSolution, least_greatest
 from sevenbar.design.points.cycle import ORDERS, Cycle, box_of, cycle_of
@@ -25,6 +25,7 @@ from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
+from sevenbar.text.progress import Progress, silent
 
 #: The part of the greatest within which upper and lower bound have to agree.
 GAP = 1e-9

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
@@ -26,6 +26,7 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
+from sevenbar.text.progress import Progress, silent
 
 #: Starts along each side of the box: from the 27 points of a grid the basins of a closed curve are met.
 STARTS = 3

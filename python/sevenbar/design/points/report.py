@@ -11,7 +11,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.arrays import Floats
-from sevenbar.design.points.cycle import Cycle, input_text
+from sevenbar.design.points.cycle import Cycle, input_text, shown_inputs
 from sevenbar.design.points.figures import inertia_figure, least_figure, nearest_figure
 from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import LeastPoint
@@ -138,7 +138,7 @@ def _title(cycle: Cycle) -> Text:
 
 def _whose(cycle: Cycle) -> str:
     motion = cycle.motion
-    unit = motion.linkage.length_unit if slides(motion, motion.input) else "rad"
+    unit = motion.linkage.unit_of(motion.input)
     drive = drive_text(motion.input, None if motion.law is not None else motion.speed, unit)
     branch = f", branch {cycle.branch}" if not cycle.circuit.goes_round else ""
     return f"circuit {cycle.circuit.index}{branch}, {drive}"
@@ -303,13 +303,8 @@ def _input_head(cycle: Cycle) -> str:
     )
 
 
-def _as_shown(cycle: Cycle, inputs: Floats) -> Floats:
-    """Inputs as people read them: degrees, or lengths."""
-    return inputs if slides(cycle.motion, cycle.motion.input) else np.degrees(inputs)
-
-
 def _row_columns(cycle: Cycle) -> dict[str, Floats]:
-    return {"time_s": cycle.rates.time, _input_head(cycle): _as_shown(cycle, cycle.rates.input)}
+    return {"time_s": cycle.rates.time, _input_head(cycle): shown_inputs(cycle, cycle.rates.input)}
 
 
 def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
@@ -323,7 +318,7 @@ def _rate_columns(found: LeastPoint, name: str) -> dict[str, Floats]:
 
 def _path_columns(found: NearestPath) -> dict[str, Floats]:
     unit = found.cycle.motion.linkage.length_unit
-    columns = {_input_head(found.cycle): _as_shown(found.cycle, found.inputs)}
+    columns = {_input_head(found.cycle): shown_inputs(found.cycle, found.inputs)}
     for who, places in (("wanted", found.wanted), ("path", found.path)):
         for i, letter in enumerate("xyz"):
             columns[f"{who}_{letter}_{unit}"] = places[:, i]

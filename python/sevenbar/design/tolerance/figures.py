@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
-from sevenbar.design.tolerance.words import plain, told_name, unit_of
+from sevenbar.design.tolerance.words import output_unit, output_values, output_words
 from sevenbar.drawing.figure import new_figure
 from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
@@ -41,7 +41,7 @@ def shares_figure(linear: Linear) -> Figure:
         for place, share in enumerate(shares):
             axes.annotate(f"{share:.1f} %", (share, place), (3, 0), textcoords="offset points", va="center")
         axes.set_xlim(0, 1.14 * max([*shares, 1e-9]))
-        axes.set_xlabel(f"share in the variance over the cycle, {told_name(linear)} [%]")
+        axes.set_xlabel(f"share in the variance over the cycle, {output_words(linear)} [%]")
         axes.grid(axis="x", lw=0.6)
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
@@ -68,7 +68,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
                 axes.xaxis.set_major_locator(DegreeLocator(9))
             if name:
                 axes.set_title(name, fontsize=9)
-        grid[0].set_ylabel(f"deviation, {told_name(linear)} [{unit_of(linear)}]")
+        grid[0].set_ylabel(f"deviation, {output_words(linear)} [{output_unit(linear)}]")
         handles, labels = grid[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
         circuit = f"circuit {linear.found.circuit.index}"
@@ -110,7 +110,7 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     )
 
     def shown(values: Floats) -> Floats:
-        return np.insert(plain(linear, values)[rows], gaps, np.nan)
+        return np.insert(output_values(linear, values)[rows], gaps, np.nan)
 
     turns = found.input_turns
     places = np.insert(np.degrees(x) if turns else x, gaps, np.nan)

@@ -38,7 +38,7 @@ def outputs_of(numbers: Numbers, input: int) -> tuple[Output, ...]:
     linkage = numbers.linkage
     found = []
     for k, name in enumerate(linkage.columns):
-        unit = "rad" if numbers.turns[k] else linkage.length_unit
+        unit = linkage.unit_of(k)
         orders = 0 if k == input else 1 if numbers.is_ball[k] else 3
         for quantity, per in zip(QUANTITIES[:orders], PER_TIME, strict=False):
             own = name if quantity == "position" else f"{name}.{quantity}"

@@ -17,7 +17,7 @@ from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
-from sevenbar.design.tolerance.words import input_text, plain, told_name, unit_of
+from sevenbar.design.tolerance.words import output_unit, output_values, output_words, shown_input
 from sevenbar.design.tolerance.worst import WorstCase
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
@@ -47,8 +47,8 @@ def text(findings: Findings) -> RenderableType:
     linear, worst, exact = findings.linear, findings.worst, findings.exact
     found = linear.found
     facts = Facts()
-    facts.add("told", f"{told_name(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})")
-    unit = "rad" if found.input_turns else found.linkage.length_unit
+    facts.add("told", f"{output_words(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})")
+    unit = found.linkage.unit_of(found.input_name)
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
     if linear.held.left_to_the_program:
@@ -59,9 +59,9 @@ def text(findings: Findings) -> RenderableType:
     if tried := _tried_text(worst):
         facts.add("", tried)
     row = int(np.argmax(linear.deviation))
-    three = 3 * float(plain(linear, linear.deviation)[row])
+    three = 3 * float(output_values(linear, linear.deviation)[row])
     facts.add(
-        "3 sigma", f"± {three:.4g} {unit_of(linear)} at {input_text(linear, linear.input[row])}, linear"
+        "3 sigma", f"± {three:.4g} {output_unit(linear)} at {shown_input(linear, linear.input[row])}, linear"
     )
     if exact is not None:
         facts.add("Monte Carlo", _samples_text(exact))
@@ -176,7 +176,7 @@ def _write_dimensions(findings: Findings, path: Path) -> None:
             e.dimension.value,
             e.width,
             e.source,
-            float(plain(linear, e.greatest)),
+            float(output_values(linear, e.greatest)),
             e.share,
         )
         for e in linear.effects
@@ -189,16 +189,16 @@ def _deviation(findings: Findings) -> dict[str, Any]:
     unit = _suffix(linear)
     columns = {
         "input": linear.input,
-        f"worst_case_{unit}": plain(linear, linear.worst),
-        f"corner_high_{unit}": plain(linear, worst.high),
-        f"corner_low_{unit}": plain(linear, worst.low),
-        f"deviation_{unit}": plain(linear, linear.deviation),
+        f"worst_case_{unit}": output_values(linear, linear.worst),
+        f"corner_high_{unit}": output_values(linear, worst.high),
+        f"corner_low_{unit}": output_values(linear, worst.low),
+        f"deviation_{unit}": output_values(linear, linear.deviation),
     }
     if exact is not None:
-        columns[f"monte_carlo_mean_{unit}"] = plain(linear, exact.mean)
-        columns[f"monte_carlo_deviation_{unit}"] = plain(linear, exact.deviation)
+        columns[f"monte_carlo_mean_{unit}"] = output_values(linear, exact.mean)
+        columns[f"monte_carlo_deviation_{unit}"] = output_values(linear, exact.deviation)
         for level, quantile in zip(LEVELS, exact.quantiles, strict=True):
-            columns[f"monte_carlo_q{100 * level:g}_{unit}"] = plain(linear, quantile)
+            columns[f"monte_carlo_q{100 * level:g}_{unit}"] = output_values(linear, quantile)
     return columns
 
 
@@ -206,12 +206,12 @@ def _sensitivities(findings: Findings) -> dict[str, Any]:
     linear = findings.linear
     slopes = {"input": linear.input}
     for dimension, column in zip(linear.found.dimensions, linear.slopes.T, strict=True):
-        slopes[f"{dimension.name}_{_per(_suffix(linear), dimension.unit)}"] = plain(linear, column)
+        slopes[f"{dimension.name}_{_per(_suffix(linear), dimension.unit)}"] = output_values(linear, column)
     return slopes
 
 
 def _suffix(linear: Linear) -> str:
-    return unit_of(linear).replace("/", "_").replace("²", "2")
+    return output_unit(linear).replace("/", "_").replace("²", "2")
 
 
 def _per(unit: str, dimension: str) -> str:
@@ -221,8 +221,8 @@ def _per(unit: str, dimension: str) -> str:
 
 def _worst_text(worst: WorstCase) -> str:
     linear = worst.linear
-    most = float(plain(linear, linear.worst)[worst.at])
-    return f"± {most:.4g} {unit_of(linear)} at {input_text(linear, linear.input[worst.at])}, linear"
+    most = float(output_values(linear, linear.worst)[worst.at])
+    return f"± {most:.4g} {output_unit(linear)} at {shown_input(linear, linear.input[worst.at])}, linear"
 
 
 def _corner_text(worst: WorstCase) -> str:
@@ -231,7 +231,7 @@ def _corner_text(worst: WorstCase) -> str:
     named = [f"{name} {value:.7g}" for name, value in list(worst.corner.items())[:MOST_NAMED]]
     more = len(worst.corner) - len(named)
     design = ", ".join(named) + (f" and {more} more" if more else "")
-    high, low = (float(plain(linear, side)[worst.at]) for side in (worst.high, worst.low))
+    high, low = (float(output_values(linear, side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
         return (
             f"{worst.open} of {worst.tried} {CORNERS} do not close there, one of them with {design}, "
@@ -253,10 +253,10 @@ def _tried_text(worst: WorstCase) -> str:
 
 def _samples_text(exact: MonteCarlo) -> str:
     linear = exact.linear
-    seen = float(plain(linear, exact.greatest))
-    three = 3 * float(plain(linear, exact.deviation).max())
+    seen = float(output_values(linear, exact.greatest))
+    three = 3 * float(output_values(linear, exact.deviation).max())
     return (
-        f"{exact.count} designs (seed {exact.seed}): 3 sigma ± {three:.4g} {unit_of(linear)}, "
+        f"{exact.count} designs (seed {exact.seed}): 3 sigma ± {three:.4g} {output_unit(linear)}, "
         f"greatest {seen:.4g}; "
         f"exact over linear deviation {_with_error(exact.ratio, exact.ratio_error)}, "
         f"bias {_with_error(exact.bias, exact.bias_error)} of one"
@@ -278,7 +278,7 @@ def _effects_table(linear: Linear) -> Table:
             f"{effect.dimension.value:.7g}",
             f"± {effect.width:.4g} {effect.dimension.unit}".rstrip(),
             _effect_text(linear, effect.greatest) if effect.greatest > least else "none",
-            input_text(linear, effect.at) if effect.greatest > least else "-",
+            shown_input(linear, effect.at) if effect.greatest > least else "-",
             f"{100 * effect.share:.1f} %",
             effect.source,
         )
@@ -288,7 +288,7 @@ def _effects_table(linear: Linear) -> Table:
 
 
 def _effect_text(linear: Linear, value: float) -> str:
-    return f"± {float(plain(linear, value)):.4g} {unit_of(linear)}"
+    return f"± {float(output_values(linear, value)):.4g} {output_unit(linear)}"
 
 
 def _measures_table(linear: Linear) -> Table:

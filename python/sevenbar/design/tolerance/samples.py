@@ -21,13 +21,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
+from sevenbar.text.progress import Progress, silent
 
 #: Quantiles that are kept: the median, 95 % and the 3 sigma of a normal distribution.
 LEVELS = (0.00135, 0.025, 0.5, 0.975, 0.99865)

@@ -160,7 +160,7 @@ def _exactly(name: str, dimensions: Sequence[Dimension]) -> int | None:
     return next((k for k, d in enumerate(dimensions) if name in (d.name, d.key)), None)
 
 
-def parsed(given: Sequence[str]) -> dict[str, float | str]:
+def parsed_tolerances(given: Sequence[str]) -> dict[str, float | str]:
     """Tolerances of a command line, `L1=0.5`; raises `RequestError` for one without name or value."""
     found: dict[str, float | str] = {}
     for word in given:

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 
 
-def told_name(linear: Linear) -> str:
+def output_words(linear: Linear) -> str:
     """The output as a sentence has it: "angle of rocker", "velocity of slider", "P.x"."""
     one = linear.found.outputs[linear.found.place(linear.output, linear.quantity)]
     if not one.joint:
@@ -21,18 +21,18 @@ def told_name(linear: Linear) -> str:
     return f"{one.quantity} of {one.owner}"
 
 
-def unit_of(linear: Linear) -> str:
+def output_unit(linear: Linear) -> str:
     """The unit in which people read the output: degrees for angles."""
     return "deg" if linear.unit == "rad" else linear.unit.replace("^2", "²")
 
 
-def plain(linear: Linear, values: npt.ArrayLike) -> Floats:
+def output_values(linear: Linear, values: npt.ArrayLike) -> Floats:
     """Values of the output in that unit."""
     array = np.asarray(values, dtype=np.float64)
     return np.degrees(array) if linear.unit == "rad" else array
 
 
-def input_text(linear: Linear, value: float) -> str:
+def shown_input(linear: Linear, value: float) -> str:
     """An input as people read it."""
     found = linear.found
     if found.input_turns:

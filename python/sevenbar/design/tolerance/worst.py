@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
 from sevenbar.design.tolerance.sensitivities import Sensitivities
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.progress import Progress, silent
 
 #: All corners are computed for so many dimensions with a tolerance: 256 designs.
 MOST_DIMENSIONS = 8

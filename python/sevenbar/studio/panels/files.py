@@ -8,7 +8,7 @@ from typing import Any
 
 import viser
 
-from sevenbar.description.files import decoded, text_of
+from sevenbar.description.files import decoded, toml_text
 from sevenbar.description.gallery import names, title
 from sevenbar.errors import SevenbarError
 from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
@@ -65,7 +65,7 @@ class FilesPanel:
     def _chosen(self, event: viser.GuiEvent[Any]) -> None:
         if by_person(event) and self._gallery.value != CHOOSE:
             name = self._names[self._gallery.value]
-            self._worker.ask("open", lambda: self._opened(lambda: text_of(name), name))
+            self._worker.ask("open", lambda: self._opened(lambda: toml_text(name), name))
 
     def _uploaded(self, _: viser.GuiEvent[Any]) -> None:
         file = self._open.value

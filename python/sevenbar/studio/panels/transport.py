@@ -11,7 +11,7 @@ import viser
 
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.poses import at_row
-from sevenbar.reporting.summary import joint_text
+from sevenbar.reporting.shown import value_text
 from sevenbar.studio.panels.controls import PAUSE, Alert, by_person, put
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import heading
@@ -164,7 +164,7 @@ def _reading(session: Session, view: View) -> str:
     modes = session.modes()
     lines = [
         f"input {view.input_text(session.row)}{way}",
-        f"output {joint_text(view.linkage, circuit.output_column, second)}",
+        f"output {value_text(view.linkage, circuit.output_column, second)}",
         f"t = {view.time_at(session.row):.4g} s",
     ]
     if modes:

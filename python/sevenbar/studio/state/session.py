@@ -12,7 +12,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.word import Place
-from sevenbar.reporting.summary import meaning
+from sevenbar.reporting.facts import meaning
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
@@ -125,8 +125,7 @@ class Session:
         draft = self.draft.with_value(("drive", "joint"), ends[0]).with_value(("drive", "output"), ends[1])
         was = linkage.column_kinds[linkage.columns.index(linkage.drive.joint)]
         if "speed" in draft.raw["drive"] and linkage.column_kinds[first] != was:
-            unit = "rad" if linkage.column_kinds[first] == "turn" else linkage.length_unit
-            draft = draft.with_value(("drive", "speed"), f"1 {unit}/s")
+            draft = draft.with_value(("drive", "speed"), f"1 {linkage.unit_of(first)}/s")
         self._step(draft)
 
     def add_point(self, name: str, link: int, at: tuple[float, float, float]) -> None:

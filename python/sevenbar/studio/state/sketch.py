@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sevenbar.description.draft import Draft, plain
+from sevenbar.description.draft import Draft, plain_number
 from sevenbar.description.gallery import text
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.joints import JOINT_KINDS, KINDS
@@ -47,11 +47,11 @@ class DrawnJoint:
     def table(self) -> dict[str, Any]:
         """Its table in a file."""
         found: dict[str, Any] = {"name": self.name.strip()} if self.name.strip() else {}
-        found |= {"kind": self.kind, "at": [plain(float(x)) for x in self.at]}
+        found |= {"kind": self.kind, "at": [plain_number(float(x)) for x in self.at]}
         values = {
-            "axis": [plain(float(x)) for x in self.axes[0]],
-            "axes": [[plain(float(x)) for x in axis] for axis in self.axes],
-            "pitch": plain(self.pitch),
+            "axis": [plain_number(float(x)) for x in self.axes[0]],
+            "axes": [[plain_number(float(x)) for x in axis] for axis in self.axes],
+            "pitch": plain_number(self.pitch),
         }
         return found | {key: values[key] for key in KINDS[self.kind].drawn_keys}
 

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from html import escape
 
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.summary import circuit_facts, facts_of
+from sevenbar.reporting.facts import facts_of
+from sevenbar.reporting.summary import circuit_facts
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 

@@ -16,7 +16,7 @@ from sevenbar.kinematics.circuits import Circuit, Trace
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.poses import Walk, along, at_row, frames_of, joint_frames, walk
-from sevenbar.reporting.summary import joint_text
+from sevenbar.reporting.shown import value_text
 
 #: Inputs [rad, or parts of the linkage's size] nearer to a limit are at it.
 SAME_INPUT = 1e-9
@@ -233,7 +233,7 @@ class View:
         """The input at a row with its unit, an angle within a turn."""
         value, column = self.input_at(row), self.circuit.input_column
         turns = self.linkage.column_kinds[column] == "turn"
-        return joint_text(self.linkage, column, value % math.tau if turns else value)
+        return value_text(self.linkage, column, value % math.tau if turns else value)
 
     def rates(self, point: int, row: float) -> tuple[Floats, Floats, Floats]:
         """Position, velocity and acceleration (3,) of a named point at a row; NaN where there is none.

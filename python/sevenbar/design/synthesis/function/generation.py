@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -36,6 +36,7 @@ from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
 from sevenbar.errors import MissingExtraError, RequestError
 from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed
+from sevenbar.text.progress import Progress, silent
 
 #: What a design must keep to where nothing else is given.
 USUAL = Limits(transmission_lowest=math.radians(30))

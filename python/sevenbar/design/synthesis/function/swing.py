@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Claim,
@@ -39,6 +39,7 @@ from sevenbar.design.synthesis.function.precision import reflected
 from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
 from sevenbar.design.synthesis.limits import Limits, size_room, turning_room
 from sevenbar.errors import RequestError
+from sevenbar.text.progress import Progress, silent
 
 #: Designs of the global search, and inputs of a turn at which they are checked.
 SEARCHED, LOOKED_AT = 16384, 72

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.draft import Draft
-from sevenbar.design.course import Progress, SearchCourse, silent
+from sevenbar.design.course import SearchCourse
 from sevenbar.design.synthesis.candidates import (
     Candidate,
     Refusal,
@@ -26,6 +26,7 @@ from sevenbar.design.synthesis.path.search import Seed, apart, looked_at, seeds
 from sevenbar.design.synthesis.path.task import MOST_POINTS, PathTask, Where, path_task
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.progress import Progress, silent
 
 #: Starts by default, the most, and the most designs.
 STARTS, MOST_STARTS, MOST_DESIGNS = 256, 65536, 50
