@@ -21,6 +21,7 @@ from sevenbar.drawing.style import STYLE
 from sevenbar.errors import OutputError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
+from sevenbar.text.words import say
 
 #: What a figure can be written as.
 FORMATS = ("png", "svg", "pdf", "eps")
@@ -64,7 +65,8 @@ def new_figure(width: float, height: float) -> Figure:
 
 def title_of(motion: Motion) -> str:
     """The linkage's name and motion type."""
-    return f"{short(motion.linkage.heading, 60)}: {motion.motion_type}"
+    heading = short(motion.linkage.heading, 60)
+    return say("{linkage}: {motion_type}", linkage=heading, motion_type=say(motion.motion_type))
 
 
 def title_text(title: bool | str, usual: str) -> str:
@@ -94,7 +96,9 @@ def key_below(figure: Figure, handles: Sequence[Any], heading: str = "") -> None
 def circuits_text(numbers: Sequence[int]) -> str:
     """Circuits by their numbers: "circuit 3", "circuits 1 and 5", "circuits 0, 1 and 2"."""
     *first, last = map(str, numbers)
-    return f"circuits {', '.join(first)} and {last}" if first else f"circuit {last}"
+    if not first:
+        return say("circuit {number}", number=last)
+    return say("circuits {numbers} and {last}", numbers=say(", ").join(first), last=last)
 
 
 def given_axes(ax: Any, count: int, what: str) -> list[Any]:
@@ -134,12 +138,15 @@ def note(motion: Motion, cut: bool) -> str:
     """How the input is driven, and whether rates were cut."""
     name = shown_name(motion.input)
     unit = motion.linkage.unit_of(motion.input)
-    note = f"{name} at {motion.speed_written or f'{motion.speed:g} {unit}/s'}"
+    speed = motion.speed_written or f"{motion.speed:g} {unit}/s"
+    if not all(circuit.goes_round for circuit in motion):
+        speed = f"±{abs(motion.speed):g} {unit}/s"
+    driven = say("{joint} at {speed}", joint=name, speed=speed)
     if motion.law is not None:
-        note = f"{name} driven by a law"
-    elif not all(circuit.goes_round for circuit in motion):
-        note = f"{name} at ±{abs(motion.speed):g} {unit}/s"
-    return note + ("; rates grow without bound at dead centres: axes cut" if cut else "")
+        driven = say("{joint} driven by a law", joint=name)
+    if not cut:
+        return driven
+    return say("{driven}; rates grow without bound at dead centres: axes cut", driven=driven)
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:

@@ -57,7 +57,7 @@ class Linkage(Solvable):
     def agreeing(self, agree: float | None) -> Linkage:
         """The same linkage, whose redundant constraints agree up to a closure error; `None` changes nothing.
 
-        All that is asked of it takes that error, and of linkages made of it with other numbers; see `motion`.
+        Its motion, its modes and linkages made of it with other numbers take that error; see `motion`.
 
             >>> import sevenbar as sb
             >>> rows = {"length": [50, 98.48] * 2, "twist": ["30 deg", "100 deg"] * 2, "offset": [0] * 4}

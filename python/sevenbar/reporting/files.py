@@ -16,6 +16,7 @@ from rich.console import Console, RenderableType
 
 from sevenbar.reporting.folder import check_targets, fill_folder, write_columns, write_parts
 from sevenbar.text.progress import Progress, silent
+from sevenbar.text.words import language
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,7 +70,8 @@ class Report(Generic[T]):
 
     def json(self, found: T) -> str:
         """A result as JSON text."""
-        return json_text(self.as_dict(found))
+        with language("en"):
+            return json_text(self.as_dict(found))
 
     def print(self, found: T, console: Console | None = None) -> None:
         """Prints a result for people."""
@@ -117,7 +119,13 @@ def text_file(text: Callable[[T], str]) -> Write[T]:
 
 def json_file(as_dict: Callable[[T], Any]) -> Write[T]:
     """Writes plain values as JSON."""
-    return text_file(lambda found: json_text(as_dict(found)) + "\n")
+
+    def text(found: T) -> str:
+        # programs read it
+        with language("en"):
+            return json_text(as_dict(found)) + "\n"
+
+    return text_file(text)
 
 
 def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T]:
