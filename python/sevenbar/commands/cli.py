@@ -53,7 +53,7 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.commands.progress import STOPPED, progress_bar
-from sevenbar.errors import AngleUnitWarning, RequestError, SevenbarError, shown
+from sevenbar.errors import AngleUnitWarning, MissingFontWarning, RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import sample_count
 from sevenbar.kinematics.motion import chosen_circuit
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
@@ -381,7 +381,7 @@ def _tell_warning(
     line: str | None = None,
 ) -> None:
     """Writes a warning of ours as one line on the error stream, any other as Python does."""
-    ours = issubclass(category, AngleUnitWarning)
+    ours = issubclass(category, (AngleUnitWarning, MissingFontWarning))
     text = (
         f"sevenbar: {message}\n"
         if ours

@@ -82,18 +82,24 @@ def look_of(view: str | None, size: str | None, style: str | None) -> FigureLook
         return FigureLook()
     # matplotlib is needed from here on
     from sevenbar.drawing.style import check_style
-    from sevenbar.drawing.view import check_view
 
-    asked: str | tuple[float, float] | None = view
-    if view is not None and "," in view:
-        angles = [amount(word, sizes_of("deg"), "deg") for word in split_list(view)]
-        if len(angles) == 2 and None not in angles:
-            asked = angles[0] or 0.0, angles[1] or 0.0
     return FigureLook(
-        check_view(asked, "--view"),
+        None if view is None else view_of(view),
         None if size is None else _page("--size", size),
         None if style is None else check_style(style, "--style"),
     )
+
+
+def view_of(text: str) -> str | tuple[float, float] | None:
+    """The view of --view: a name, or elevation and azimuth [deg]."""
+    from sevenbar.drawing.view import check_view
+
+    asked: str | tuple[float, float] = text
+    if "," in text:
+        angles = [amount(word, sizes_of("deg"), "deg") for word in split_list(text)]
+        if len(angles) == 2 and None not in angles:
+            asked = angles[0] or 0.0, angles[1] or 0.0
+    return check_view(asked, "--view")
 
 
 def _page(option: str, text: str) -> tuple[float, float]:

@@ -52,7 +52,9 @@ def map_(
         Path | None, typer.Option(help="Folder for map.json, boundaries.csv, contours.csv and the figures.")
     ] = None,
     figures: Figures = None,
-    size: Annotated[str, typer.Option(help="Sheet of the figures: A4, A3, A2 or A1.")] = "A4",
+    size: Annotated[
+        str | None, typer.Option(help="Sheet of the figures: A4 (the default), A3, A2 or A1.")
+    ] = None,
     no_key: Annotated[
         bool, typer.Option("--no-key", help="Leave out the key and the numbers at the side.")
     ] = False,
@@ -67,7 +69,7 @@ def map_(
     from sevenbar.design.maps.window import split_ranges
 
     formats = figure_formats(figures, out)
-    sheet(size)
+    sheet(size or "A4")
     ranges, at, which = split_ranges(over or []), _levels(levels), _take(take)
     names = words(measure or [])
     if levels is not None and not names:

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from sevenbar.arrays import Floats
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.space import measuring
-from sevenbar.drawing.style import STYLE
+from sevenbar.drawing.style import STYLE, page_size
 from sevenbar.errors import OutputError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
@@ -28,6 +28,9 @@ FORMATS = ("png", "svg", "pdf", "eps")
 
 
 PNG_DPI = 200
+
+#: A figure that is usually wider than this [inch] takes both columns of a paper.
+BOTH_COLUMNS = 7.5
 
 
 #: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it).
@@ -61,6 +64,11 @@ def new_figure(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
     return figure
+
+
+def page_figure(width: float, height: float) -> Figure:
+    """An empty figure of a usual size [inch], or of the style's width: both columns where it is wide."""
+    return new_figure(*page_size(None, None, (width, height), wide=width > BOTH_COLUMNS))
 
 
 def title_of(motion: Motion) -> str:

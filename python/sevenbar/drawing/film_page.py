@@ -44,7 +44,9 @@ def film_page(
             "curves": _curves(motion, circuit, rows),
             "reading": _reading(circuit, rows),
             "words": {
-                "play": say("Play"), "pause": say("Pause"), "cut": say("{quantity}, cut at dead centres"),
+                "play": say("Play"),
+                "pause": say("Pause"),
+                "cut": say("{quantity}, cut at dead centres"),
             },
         },
         allow_nan=False,

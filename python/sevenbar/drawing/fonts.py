@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
 from functools import cache
 from pathlib import Path
@@ -54,6 +55,8 @@ def chinese_font() -> str | None:
 
 @cache
 def _installed() -> str | None:
+    # a font that has one weight only is drawn in that, which matplotlib would note for each text
+    logging.getLogger("matplotlib.font_manager").addFilter(_no_note_of_weights)
     found = _known()
     if found is None:
         # the list that matplotlib keeps may be older than the font
@@ -62,6 +65,10 @@ def _installed() -> str | None:
                 fontManager.addfont(path)
         found = _known()
     return found
+
+
+def _no_note_of_weights(record: logging.LogRecord) -> bool:
+    return not record.getMessage().startswith("findfont: Failed to find font weight")
 
 
 def _known() -> str | None:

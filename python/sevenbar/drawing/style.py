@@ -10,6 +10,7 @@ from typing import Any
 from matplotlib import rc_context, rcParams
 from matplotlib.font_manager import get_font_names
 
+from sevenbar.drawing.asked import asked_style
 from sevenbar.drawing.fonts import chinese_font
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.text.words import language, spoken
@@ -119,11 +120,11 @@ def check_style(name: str, key: str = "style") -> str:
 
 @contextmanager
 def styled(name: str | None = None) -> Iterator[None]:
-    """Draws in a style, "screen" where none is given, and leaves matplotlib as it was.
+    """Draws in a style, that of `drawn_as` or "screen" where none is given, and leaves matplotlib as it was.
 
     In Chinese with a font that has its characters; where none is installed, in English, with a warning.
     """
-    chosen = STYLES[check_style(name or "screen")]
+    chosen = STYLES[check_style(name or asked_style() or "screen")]
     fonts: dict[Any, Any] = {}
     chinese = chinese_font() if spoken() == "zh" else None
     if chosen.fonts or chinese:
@@ -156,7 +157,7 @@ def page_size(
     """
     if figsize is not None:
         return checked_size(figsize)
-    widths = STYLES[style or "screen"].widths
+    widths = STYLES[style or asked_style() or "screen"].widths
     if widths is None:
         return usual
     width = widths[wide]

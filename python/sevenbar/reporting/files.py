@@ -59,6 +59,8 @@ class Report(Generic[T]):
     figures: Callable[[T], Files[T]] | None = None
     #: files that show the figures; written last
     pages: Files[T] = field(default_factory=dict)
+    #: whether its text is in the language that is spoken; else it is in English
+    spoken: bool = False
 
     def targets(self, folder: Path) -> list[Path]:
         """The files that `write` may write, for a look before long work."""
@@ -75,7 +77,8 @@ class Report(Generic[T]):
 
     def print(self, found: T, console: Console | None = None) -> None:
         """Prints a result for people."""
-        (console or Console()).print(self.text(found))
+        with language(None if self.spoken else "en"):
+            (console or Console()).print(self.text(found))
 
     def write(
         self,
@@ -113,24 +116,28 @@ def _further(progress: Progress, done: int, total: int, name: str, share: float)
 
 
 def text_file(text: Callable[[T], str]) -> Write[T]:
-    """Writes a text in UTF-8."""
-    return lambda found, path: path.write_text(text(found), encoding="utf-8")
+    """Writes a text in UTF-8, in English: programs read it."""
+
+    def write(found: T, path: Path) -> None:
+        with language("en"):
+            path.write_text(text(found), encoding="utf-8")
+
+    return write
 
 
 def json_file(as_dict: Callable[[T], Any]) -> Write[T]:
     """Writes plain values as JSON."""
-
-    def text(found: T) -> str:
-        # programs read it
-        with language("en"):
-            return json_text(as_dict(found)) + "\n"
-
-    return text_file(text)
+    return text_file(lambda found: json_text(as_dict(found)) + "\n")
 
 
 def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T]:
     """Writes columns of one length (n,) as CSV."""
-    return lambda found, path: write_columns(path, columns(found))
+
+    def write(found: T, path: Path) -> None:
+        with language("en"):
+            write_columns(path, columns(found))
+
+    return write
 
 
 def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure | None]) -> Files[T]:

@@ -238,6 +238,7 @@ def motion_report(
         files,
         lambda motion: report_figures(drawn(motion), figures, circuit=circuit, look=look),
         {"report.md": _write_markdown},
+        spoken=True,
     )
 
 
@@ -278,7 +279,7 @@ def write(
 
 def modes_report(linkage: Loop, column: int) -> Report[Modes]:
     """How the assembly modes at a value of a column are reported."""
-    return Report(partial(_modes_text, linkage, column), partial(_modes_dict, linkage, column))
+    return Report(partial(_modes_text, linkage, column), partial(_modes_dict, linkage, column), spoken=True)
 
 
 def modes_json(linkage: Loop, modes: Modes, column: int) -> str:

@@ -71,6 +71,9 @@ def say(sentence: str, /, **values: object) -> str:
 
 def retold(text: str) -> str:
     """A text that was made in English, in the language that is spoken if the catalogue has its sentence."""
+    known = catalogue(_spoken.get()).get(text)
+    if known is not None:
+        return known
     for pattern, translation in _patterns(_spoken.get()):
         if match := pattern.fullmatch(text):
             return translation.format(**match.groupdict())
