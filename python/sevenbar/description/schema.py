@@ -198,6 +198,10 @@ class LinkageForm(_Form):
         tuple[LinkForm, ...] | None,
         _key("Denavit-Hartenberg rows in loop order, the last is the ground"),
     ] = None
+    layout: Annotated[
+        Literal["dh", "planar"],
+        _key("of [[link]] rows: where the frame lies and angles begin"),
+    ] = "dh"
     point: Annotated[tuple[PointForm, ...], _key("points to be traced")] = ()
 
     @property

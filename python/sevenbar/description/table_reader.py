@@ -165,7 +165,7 @@ class _Reader:
     @property
     def _own(self) -> list[int]:
         """The columns that make a row one of the table."""
-        marks = ("joint", "order", "input", "output", "speed")
+        marks = ("joint", "order", "input", "output", "speed", "layout")
         return [column for key, column in self.columns.items() if key not in marks] or list(
             self.columns.values()
         )
@@ -317,6 +317,8 @@ class _Reader:
             raw["point"] = [self.point(row, k) for k, row in enumerate(points)]
         count = f"{len(tables)} "
         if form == "link":
+            if layout := next((word for row in joints if (word := self.text(row, "layout"))), ""):
+                raw["layout"] = layout
             what = f"{count}classic Denavit-Hartenberg rows (Rz Tz Tx Rx, the last link is the ground)"
             return raw, f"read as {what}, lengths in {self.length_unit}, angles in {self.angle_unit}"
         left = len(self.filled) - len(rows)

@@ -130,10 +130,10 @@ def point_path(
         wide = len(pictures) > 1
         usual = WIDTH if wide else ALONE
         figure = new_figure(*page_size(style, figsize, (usual, usual), wide=wide))
-        place = f"({', '.join(f'{x:g}' for x in at)})"
+        where = f"({', '.join(f'{x:g}' for x in at)})"
         which = say(
             "point {name}, circuit {number}, {driven}",
-            name=short(name or say("link {number} at {place}", number=link, place=place), 40),
+            name=short(name or say("link {number} at {place}", number=link, place=where), 40),
             number=chosen.index, driven=note(motion, False),
         )  # fmt: skip
         heading = f"{title_of(motion)}\n{which}"

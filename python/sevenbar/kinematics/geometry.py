@@ -18,8 +18,9 @@ from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z
 from sevenbar.kinematics.rigid import about, inverse, pose
 from sevenbar.text.printing import Drawable
 
-#: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, joints as drawn.
-Form = Literal["rssr", "rows", "drawn"]
+#: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, the same in the
+#: layout of planar textbooks, joints as drawn.
+Form = Literal["rssr", "rows", "planar", "drawn"]
 
 
 #: What a linkage is called that was made without a name.
@@ -156,6 +157,11 @@ class Loop(Drawable):
     def kind(self) -> str:
         """The joints' letters in loop order."""
         return "".join(joint.kind for joint in self.joints)
+
+    @property
+    def in_rows(self) -> bool:
+        """Whether it is written as rows, a row a link."""
+        return self.form in ("rows", "planar")
 
     @property
     def heading(self) -> str:

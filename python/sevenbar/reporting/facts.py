@@ -113,7 +113,7 @@ def joints_text(linkage: Loop) -> str:
 
 def dimensions_text(linkage: Solvable) -> str:
     """The dimensions by name; nothing of Denavit-Hartenberg rows, which want a table."""
-    numbers = {} if linkage.form == "rows" else dict(linkage.dimensions) or side_lengths(linkage)
+    numbers = {} if linkage.in_rows else dict(linkage.dimensions) or side_lengths(linkage)
     told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
     return f"{told}  [{linkage.length_unit}]" if told else ""
 

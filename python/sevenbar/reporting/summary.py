@@ -59,7 +59,7 @@ def summary(motion: Motion, room: int = 100) -> Summary:
     linkage = motion.linkage
     # of an overconstrained loop the last digits decide
     exact = bool(motion.redundant)
-    sheets = [_dimension_sheet(linkage, exact=exact)] if linkage.form == "rows" else []
+    sheets = [_dimension_sheet(linkage, exact=exact)] if linkage.in_rows else []
     if len(motion.circuits) > MOST_COLUMNS:
         sheets += _compared(motion, room)
     elif motion.circuits:
