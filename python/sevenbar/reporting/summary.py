@@ -23,6 +23,9 @@ MOST_COLUMNS = 2
 #: Dead centres told in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
 
+#: Values below this share of what the linkage's size and its drive make are rounding.
+REST = 1e-12
+
 #: Characters between two columns in print.
 GAP = 2
 
@@ -166,7 +169,22 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         if extremes is None:
             return (otherwise,)
         pairs = ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at))
+        if extremes.lowest == extremes.highest:
+            # throughout, and at no place more than at another
+            return (show(extremes.lowest),)
         return tuple(f"{show(value)} @ {place(at, whole=True)}" for value, at in pairs)
+
+    def settled(extremes: Extremes | None, circuit: Circuit, order: int) -> Extremes | None:
+        """Extremes without rounding: of a joint that rests, or follows evenly, both are one number."""
+        if extremes is None:
+            return None
+        quick = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max(initial=0.0))
+        size = circuit.size or 1.0
+        natural = (1.0 if circuit.output_turns else size) * (
+            quick / (1.0 if circuit.input_turns else size)
+        ) ** order
+        low, high = (0.0 if abs(x) < REST * natural else x for x in (extremes.lowest, extremes.highest))
+        return replace(extremes, lowest=low, highest=low if high - low < REST * natural else high)
 
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
@@ -200,12 +218,21 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         return (say("{ratio}", ratio=six_digits(ratio), between=between),)
 
     def reach(circuit: Circuit) -> Texts:
-        return ends(circuit.angle, result, "") if circuit.angle else range_of(circuit, 1, result)
+        return (
+            ends(settled(circuit.angle, circuit, 0), result, "")
+            if circuit.angle
+            else range_of(circuit, 1, result)
+        )
 
-    def rate_of(name: str, unit: str, pick: Callable[[Circuit], Extremes | None]) -> _Quantity:
+    def rate_of(name: Literal["velocity", "acceleration"], unit: str) -> _Quantity:
+        order = 1 + (name == "acceleration")
         words = say("{joint} {quantity}", joint=second, quantity=say(name))
+
+        def of(circuit: Circuit) -> Texts:
+            return rate(settled(getattr(circuit, name), circuit, order), circuit)
+
         head = f"{words}\n[{unit}] @ {first}"
-        return _Quantity(f"{second} {name}", words, head, lambda c: rate(pick(c), c), f"[{unit}]", ends=True)
+        return _Quantity(f"{second} {name}", words, head, of, f"[{unit}]", ends=True)
 
     def stands_still(end: Literal["input", "output"]) -> list[_Quantity]:
         # a table tells the ends of a range as that
@@ -281,13 +308,13 @@ def _quantities(motion: Motion) -> list[_Quantity]:
             f"{second} {position}",
             say("{joint} {quantity}", joint=second, quantity=say(position)),
             "",
-            lambda c: ends(c.angle, six_digits, "-"),
+            lambda c: ends(settled(c.angle, c, 0), six_digits, "-"),
             f"[{out_unit}]",
             ends=True,
             only="list",
         ),
-        rate_of("velocity", f"{out_unit}/s", lambda c: c.velocity),
-        rate_of("acceleration", f"{out_unit}/s\u00b2", lambda c: c.acceleration),
+        rate_of("velocity", f"{out_unit}/s"),
+        rate_of("acceleration", f"{out_unit}/s\u00b2"),
     ]
 
 
