@@ -15,7 +15,7 @@ from sevenbar.errors import RequestError, shown, suggestion
 #: The languages by their codes, and what each calls itself.
 LANGUAGES = {"en": "English", "zh": "中文"}
 
-#: The part of a catalogue with sentences that are made before anybody asks for a language.
+#: The part of a catalogue with sentences that are made before a language is chosen.
 MADE_BEFORE = "made before"
 
 _spoken: ContextVar[str] = ContextVar("language", default="en")

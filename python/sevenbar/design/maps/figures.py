@@ -17,7 +17,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
-from sevenbar.design.maps.lettering import LINE, RASTER, names, take
+from sevenbar.design.maps.lettering import LINE, RASTER, is_free, names, take
 from sevenbar.design.maps.plane import Kind
 from sevenbar.drawing.asked import asked_style
 from sevenbar.drawing.figure import new_figure
@@ -64,6 +64,9 @@ ONE, SEVERAL, STAGGER = 0.45, (0.25, 0.7), 0.1
 
 #: No value is written nearer to the window's edge [share].
 ROOM = 0.015
+
+#: How far a value is moved along its contour where something is written already [share of the contour].
+MOVED = (0.0, 0.07, -0.07, 0.14, -0.14, 0.21, -0.21)
 
 #: Room that the value on a contour takes, to each side [share].
 LABEL = (0.03, 0.02)
@@ -181,12 +184,15 @@ def _contours(axes: Axes, heights: Heights, of: Map, scale: float, taken: np.nda
         level = heights.levels.index(line.level)
         for part in (ONE,) if along[-1] < LONG else SEVERAL:
             # neighbours one step apart, so that their values do not overlap
-            at = (part + STAGGER * (level % 2)) * along[-1]
-            ends = [[np.interp(at + d, along, line.places[:, i]) for i in (0, 1)] for d in (-0.01, 0.01)]
-            (x0, y0), (x1, y1) = of.values(np.array(ends)).tolist()
-            middle = np.mean(ends, axis=0)
-            if not ROOM < middle.min() <= middle.max() < 1 - ROOM:
+            for moved in MOVED:
+                at = (part + STAGGER * (level % 2) + moved) * along[-1]
+                ends = [[np.interp(at + d, along, line.places[:, i]) for i in (0, 1)] for d in (-0.01, 0.01)]
+                middle = np.mean(ends, axis=0)
+                if ROOM < middle.min() <= middle.max() < 1 - ROOM and is_free(taken, middle, LABEL):
+                    break
+            else:
                 continue
+            (x0, y0), (x1, y1) = of.values(np.array(ends)).tolist()
             turn = np.degrees(np.arctan2(y1 - y0, x1 - x0))
             label = axes.text(
                 (x0 + x1) / 2,

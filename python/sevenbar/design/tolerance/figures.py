@@ -10,8 +10,9 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words
-from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.figure import key_below, page_figure
 from sevenbar.drawing.names import quantity_label, short
+from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.kinematics.circuits import Integers
@@ -45,6 +46,9 @@ def shares_figure(linear: Linear) -> Figure:
         axes.set_xlabel(
             say("share in the variance over the cycle, {output} [%]", output=output_words(linear))
         )
+        label = axes.xaxis.label
+        if label.get_window_extent(measuring(figure)).width > 0.9 * figure.bbox.width:
+            label.set_text(label.get_text().replace(", ", ",\n", 1))
         axes.grid(axis="x", lw=0.6)
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
@@ -72,8 +76,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
         grid[0].set_ylabel(
             say("deviation, {output} [{unit}]", output=output_words(linear), unit=output_unit(linear))
         )
-        handles, labels = grid[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
+        key_below(figure, grid[0].get_legend_handles_labels()[0])
         what = say("what the tolerances do, circuit {number}", number=linear.found.circuit.index)
         figure.suptitle(f"{short(linear.found.linkage.heading, 60)}\n{what}")
     return figure
