@@ -10,7 +10,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words
-from sevenbar.drawing.figure import key_below, page_figure
+from sevenbar.drawing.figure import key_below, page_figure, tidy
 from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
@@ -79,6 +79,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
         key_below(figure, grid[0].get_legend_handles_labels()[0])
         what = say("what the tolerances do, circuit {number}", number=linear.found.circuit.index)
         figure.suptitle(f"{short(linear.found.linkage.heading, 60)}\n{what}")
+        tidy(figure)
     return figure
 
 
