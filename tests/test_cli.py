@@ -295,6 +295,9 @@ def test_the_modes_of_a_loop_are_a_table():
         ("30deg", math.pi / 6),
         ("-0.25 rad", -0.25),
         ("1e1", math.pi / 18),
+        ("pi/6", math.pi / 6),
+        ("2*15", math.pi / 6),
+        ("60deg - pi/6", math.pi / 6),
     ],
 )
 def test_an_angle_is_given_in_degrees_or_with_its_unit(at, value):
@@ -306,7 +309,9 @@ def test_an_angle_is_given_in_degrees_or_with_its_unit(at, value):
     )
 
 
-@pytest.mark.parametrize(("at", "value"), [("-20", -20.0), ("-2cm", -20.0), ("-20mm", -20.0)])
+@pytest.mark.parametrize(
+    ("at", "value"), [("-20", -20.0), ("-2cm", -20.0), ("-20mm", -20.0), ("-40*sin(30deg)", -20.0)]
+)
 def test_a_slide_is_given_in_lengths(at, value):
     report = json.loads(sevenbar("modes", "rssp", "--json", "--input", "slider", f"--at={at}").stdout)
     assert report["input"] == {"joint": "slider", "value": pytest.approx(value, rel=1e-14)}

@@ -138,7 +138,7 @@ def test_a_file_is_replaced_by_force_only(motion, tmp_path):
         (("jso", "m.csv", {}), "to: 'jso' is not a format; did you mean 'json'? allowed"),
         (("json", "m.csv", {}), "m.csv: its ending '.csv' is not that of json; give .json"),
         (("exel", "m.csv", {}), "to: 'exel' is not a format; did you mean 'excel'? allowed: csv, xlsx,"),
-        ((None, "m.txt", {}), "m.txt: '.txt' tells no format; give one of .csv, .xlsx, .parquet,"),
+        ((None, "m.txt", {}), "m.txt: '.txt' is the ending of no format; give one of .csv, .xlsx, .parquet,"),
         (("step", "m", {}), "m: has no ending; give .step or .stp"),
         (("csv", "m.csv", {"circuit": 0}), "circuit: csv holds all rows of all circuits; leave it out"),
         (("csv", "m.csv", {"at": 0.1}), "at: csv holds all rows of all circuits; leave it out"),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
+from sevenbar.commands.given import angles
 from sevenbar.description.draft import Draft
 from sevenbar.description.formulas import KINDS_OF_NUMBERS
 from sevenbar.description.schema import TABLES
@@ -88,6 +89,8 @@ def test_neighbours_of_right_angles_are_not_taken_for_them_beyond_rounding(off):
     [
         ("2*L1", "length", "'2*L1': no 'L1' is known; give a length, as in 250, '25 cm' or '50*sin(30deg)'"),
         ("30deg", "length", "'30deg': is an angle where a length belongs; give a length"),
+        ("0x10", "length", "'0x10': '0x1' begins no decimal number; write one, as in 16 or 1000"),
+        ("1_000", "length", "'1_000': '1_0' begins no decimal number; write one, as in 16 or 1000"),
         ("5 mm", "angle", "'5 mm': is a length where an angle belongs; give an angle"),
         ("5mm*2cm", "length", "is an area where a length belongs"),
         ("5mm + 2", "length", "it adds a length and a number without a unit; give each its unit"),
@@ -136,7 +139,19 @@ def test_a_bennett_loop_by_its_formula_moves_and_by_six_digits_does_not():
 
 
 def test_every_number_of_a_file_may_be_a_formula_and_the_kinds_are_the_schema_s():
-    units = {"length": "length", "length per turn": "pitch", "angle_unit": "angle"}
+    units = {
+        "length": "length",
+        "length per turn": "pitch",
+        "angle_unit": "angle",
+        "mass_unit": "mass",
+        "mass_unit length_unit^2": "inertia",
+        "m/s^2": "acceleration",
+        "N": "force",
+        "N m": "torque",
+        "angle_unit, or length": "angle",
+        "N/length_unit; in a joint that turns N m/rad": "stiffness",
+        "N s/length_unit; in a joint that turns N m s/rad": "damping",
+    }
     for head, form in TABLES.items():
         told = {
             name: units[field.json_schema_extra["unit"]]
@@ -211,3 +226,35 @@ def test_a_file_that_is_written_again_keeps_its_formulas_but_for_the_changed_num
     assert 'M = "70 cm"' in changed
     assert tomllib.loads(changed)["rssr"]["L1"] == 260
     assert "# the crank" in changed
+
+
+def test_calls_take_the_angles_that_constructors_take():
+    linkage = sb.load("rssr")
+    for text in ("pi/6", "30 deg", "acos(sqrt(3)/2)", "90deg - pi/3"):
+        modes = linkage.assembly_modes(text)
+        assert modes.input == pytest.approx(math.pi / 6, rel=1e-15)
+        np.testing.assert_array_equal(modes.q, linkage.assembly_modes(modes.input).q)
+        assert sb.universal_joint(text, 10).description == sb.universal_joint("30 deg", 10).description
+    np.testing.assert_array_equal(
+        linkage.output(["pi/6", 0.3, "-pi/2"]).position,
+        linkage.output([math.pi / 6, 0.3, -math.pi / 2]).position,
+    )
+
+
+@pytest.mark.parametrize("text", ["2*15", "30", "60*sin(30deg)"])
+def test_in_python_an_angle_without_a_unit_is_in_nothing(text):
+    for call in (
+        lambda: sb.load("rssr").assembly_modes(text),
+        lambda: sb.universal_joint(text, 10),
+        lambda: sb.from_dh("RRRR", length=[1] * 4, twist=[text] * 4),
+    ):
+        with pytest.raises(RequestError, match="give one as in '30 deg', or a number in radians"):
+            call()
+
+
+@pytest.mark.parametrize(
+    ("text", "ends"),
+    [("0:pi/6", (0, 30)), ("2*5:40deg", (10, 40)), ("-pi/6:2*20deg", (-30, 40)), ("10:2*20 deg", (10, 40))],
+)
+def test_the_ends_of_a_range_may_be_formulas(text, ends):
+    assert np.degrees(angles("--input-range", text)) == pytest.approx(ends, rel=1e-15)

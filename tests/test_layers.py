@@ -17,7 +17,10 @@ CORE_FILES = sorted((CORE / "src").rglob("*.rs"))
 
 CORE_IMPORTERS = {
     "__init__",
-    *(f"kinematics/{name}" for name in ("batches", "closed_form", "from_core", "general", "sensitivity")),
+    *(
+        f"kinematics/{name}"
+        for name in ("batches", "closed_form", "forces", "from_core", "general", "sensitivity")
+    ),
 }
 
 NOT_IN_THE_CORE = re.compile(

@@ -21,6 +21,7 @@ loops::equation: dense rotations flat screws chain kinds lanes complex_frame clo
 loops::rates: velocities turns points
 loops::mobility: rank idle singular_place
 loops::numbers: twists numbered_loop slopes
+loops::forces: acting stations reactions
 loops::description: spun spin_axis reduce described_loop joint_values
 loops::modes: phases continuation straight circle poles geometry starts chain_closure polish many_starts finder assembly
 loops::branch_points: locating other_input afar survey sectors counting

@@ -171,7 +171,7 @@ def test_a_bend_of_the_output_is_told_though_all_samples_go_round():
 def test_too_few_samples_tell_nothing():
     exact = monte_carlo(near_a_change_point(970), {"L2": 6.0}, 4, seed=3, distribution="uniform")
     assert (exact.lost, exact.holds) == (0, None)
-    assert exact.verdict == "whether the linear estimate holds cannot be told with 4 samples; take more"
+    assert exact.verdict == "whether the linear estimate holds cannot be decided with 4 samples; take more"
 
 
 def test_the_same_seed_gives_the_same_samples():

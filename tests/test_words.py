@@ -34,18 +34,18 @@ MADE = ("accuracy.md", "benchmarks.md", "hard-use.md", "changelog.md")
 
 #: How often each word may still be in the sources. A smaller number is always right; none may grow.
 ALLOWED = {
-    "told": 407,
-    "comes to": 33,
-    "misfit": 67,
-    "established": 3,
-    "stands": 92,
-    "beside": 170,
-    "but for": 11,
-    "parts of": 93,
-    "looks": 103,
+    "told": 119,
+    "comes to": 23,
+    "misfit": 57,
+    "established": 0,
+    "stands": 89,
+    "beside": 162,
+    "but for": 4,
+    "parts of": 85,
+    "looks": 99,
     "hard use": 8,
-    "asks of": 43,
-    "is said": 4,
+    "asks of": 40,
+    "is said": 0,
 }
 
 

@@ -84,15 +84,15 @@ def _metavar(argument: Any) -> str:
 
 
 def _row(param: Any, kind: Any) -> tuple[str, str, str]:
-    told = param.help or ""
+    words = param.help or ""
     if param.param_type_name == "argument":
-        return code(_metavar(param)), "", told
+        return code(_metavar(param)), "", words
     if param.required:
-        told += " Required."
+        words += " Required."
     elif not param.is_flag and param.default is not None:
-        told += f" Left out: {code(str(param.default))}."
+        words += f" Left out: {code(str(param.default))}."
     names = ", ".join(code(name) for name in (*param.opts, *param.secondary_opts))
-    return names, "" if param.is_flag else code(param.metavar or _kind(kind)), told
+    return names, "" if param.is_flag else code(param.metavar or _kind(kind)), words
 
 
 def _kind(kind: Any) -> str:

@@ -1,4 +1,4 @@
-"""Docstrings as this project writes them, told to Sphinx."""
+"""Docstrings as this project writes them, for Sphinx."""
 
 import dataclasses
 import inspect
@@ -55,8 +55,10 @@ def _signature(_app: Sphinx, what: str, _name: str, obj: Any, *_: Any) -> tuple[
         for name, parameter in signature.parameters.items()
         if name != "self"
     ]
-    told = inspect.Signature(parameters, return_annotation=_linked(signature.return_annotation, known))
-    arguments, _, result = stringify_signature(told).rpartition(" -> ")
+    shown_signature = inspect.Signature(
+        parameters, return_annotation=_linked(signature.return_annotation, known)
+    )
+    arguments, _, result = stringify_signature(shown_signature).rpartition(" -> ")
     return arguments, result
 
 

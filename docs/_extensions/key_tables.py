@@ -11,7 +11,7 @@ from sevenbar.description.schema import TABLES, LinkageForm, json_schema
 SCHEMA = "_made/sevenbar.description.schema.json"
 
 #: What JSON calls the values, in words.
-KINDS = {"number": "number", "integer": "whole number", "string": "text", "object": "table"}
+KINDS = {"number": "number", "integer": "whole number", "string": "text", "object": "table", "array": "rows"}
 
 
 def keys_of(_pages: Path, head: str) -> str:

@@ -20,6 +20,7 @@ from sevenbar.description.forms import from_axes, from_dh, rssr
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
 from sevenbar.kinematics.geometry import Drive, Joint, Point
 from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.link_bodies import DRAWN_IN
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere
@@ -44,10 +45,13 @@ if TYPE_CHECKING:
     from sevenbar.description.law_file import load_law
     from sevenbar.description.step_axes import PartAxis, axes_of_step
     from sevenbar.description.tables import from_table
+    from sevenbar.forces.bodies import Body
+    from sevenbar.forces.loading import Load, Loading, Spring
     from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
     from sevenbar.kinematics.screw_axes import ScrewAxes
 
 __all__ = [
+    "Body",
     "ChangePoint",
     "Circuit",
     "Count",
@@ -60,6 +64,8 @@ __all__ = [
     "Joint",
     "Law",
     "Linkage",
+    "Load",
+    "Loading",
     "Modes",
     "Motion",
     "MotionPlane",
@@ -70,6 +76,7 @@ __all__ = [
     "Point",
     "ScrewAxes",
     "Search",
+    "Spring",
     "Trace",
     "__version__",
     "axes_of_step",
@@ -110,10 +117,14 @@ _ON_DEMAND = {
 
 #: Names that many programs do without, and the modules that have them.
 _NAMES_ON_DEMAND = {
+    "Body": "sevenbar.forces.bodies",
     "InstantCentre": "sevenbar.kinematics.instant_centres",
     "InstantCentres": "sevenbar.kinematics.instant_centres",
+    "Load": "sevenbar.forces.loading",
+    "Loading": "sevenbar.forces.loading",
     "PartAxis": "sevenbar.description.step_axes",
     "ScrewAxes": "sevenbar.kinematics.screw_axes",
+    "Spring": "sevenbar.forces.loading",
     "axes_of_step": "sevenbar.description.step_axes",
     "from_table": "sevenbar.description.tables",
     "load_law": "sevenbar.description.law_file",
@@ -135,10 +146,12 @@ _NAMES_ON_DEMAND = {
     "sevenbar.description.families",
 )
 
-# what results print is said where the reports' words are, which a program that prints none does without
+# what results print is written where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
 for _folder in ("design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"
+# bodies that are given as drawn are those of exports, which stand above the kinematics
+DRAWN_IN["bodies"] = "sevenbar.export.drawn_bodies"
 
 
 def __dir__() -> list[str]:

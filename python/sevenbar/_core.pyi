@@ -107,7 +107,7 @@ class Loop:
 
 @final
 class Numbers:
-    """A loop that knows what its numbers move; lengths in parts of the size."""
+    """A loop that knows what its numbers move; lengths relative to the size."""
 
     def __new__(
         cls,
@@ -132,6 +132,32 @@ class Numbers:
         advances: _Floats,
         steps: _Floats | None = None,
     ) -> tuple[_Floats, _Floats]: ...
+
+_Place = tuple[int, _Floats, Sequence[tuple[int, _Floats]]]
+
+@final
+class Acting:
+    """What acts on a loop; lengths relative to the size, forces in kg size/s^2."""
+
+    def __new__(
+        cls,
+        gravity: _Floats,
+        bodies: Sequence[tuple[int, float, _Floats, _Floats, Sequence[tuple[int, _Floats]]]],
+        loads: Sequence[tuple[_Place, _Floats, _Floats, bool]],
+        springs: Sequence[tuple[_Place, _Place, _Floats]],
+        joint_springs: Sequence[tuple[int, _Floats]],
+    ) -> Acting: ...
+
+def reactions(
+    numbers: Numbers,
+    acting: Acting,
+    values: _Floats,
+    speeds: _Floats,
+    factors: _Floats,
+    joints: Sequence[int],
+    frames: _Floats,
+    with_numbers: bool,
+) -> list[_Floats]: ...
 
 @final
 class Rows:

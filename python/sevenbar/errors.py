@@ -93,6 +93,11 @@ class DescriptionError(SevenbarError):
             lines.append(f"{prefix}and {more} more mistake{'s' * (more > 1)}; mend these first")
         super().__init__("\n".join(lines))
 
+    @classmethod
+    def of_all(cls, source: str, message: str) -> DescriptionError:
+        """The error of a source as a whole, not of a place in it."""
+        return cls([Problem("", message)], source)
+
 
 def shown(value: object, longest: int = 60) -> str:
     """A value as it is quoted in a message: its repr, a date or time as a file has it; cut short."""

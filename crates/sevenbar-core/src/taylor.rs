@@ -3,7 +3,8 @@
 //! `Taylor([x0, x1, x2, ..])` stands for `x(t + h) = x0 + x1 h + x2 h^2 + ..`; the k-th derivative is
 //! `k! xk`. Every operation is the exact rule for the truncated series, so no step size appears anywhere.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use crate::number::Number;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A power series cut off after `N` coefficients (derivatives up to order `N - 1`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,6 +151,40 @@ impl<const N: usize> Mul for Taylor<N> {
         Self(std::array::from_fn(|k| {
             (0..=k).map(|i| self.0[i] * other.0[k - i]).sum()
         }))
+    }
+}
+
+impl<const N: usize> Div for Taylor<N> {
+    type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl)]
+    fn div(self, other: Self) -> Self {
+        self * other.recip()
+    }
+}
+
+impl<const N: usize> Number for Taylor<N> {
+    fn splat(x: f64) -> Self {
+        Self::constant(x)
+    }
+
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        self + a * b
+    }
+
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        self - a * b
+    }
+
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    fn if_greater(self, b: Self, yes: Self, no: Self) -> Self {
+        if self.value() > b.value() { yes } else { no }
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
     }
 }
 

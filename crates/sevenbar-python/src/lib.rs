@@ -1,6 +1,7 @@
 //! The only crate that knows Python: arrays in, values of arrays out, the interpreter free while the core works.
 
 mod batches;
+mod forces;
 mod loops;
 mod numbers;
 mod rows;
@@ -63,6 +64,8 @@ fn simd_level() -> &'static str {
 mod _core {
     #[pymodule_export]
     use super::batches::{LoopBatch, RawMeasures, RssrBatch, classify_rssr, measure_loops, measure_rssr};
+    #[pymodule_export]
+    use super::forces::{Acting, reactions};
     #[pymodule_export]
     use super::loops::Loop;
     #[pymodule_export]

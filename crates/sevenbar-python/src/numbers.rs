@@ -11,14 +11,14 @@ use sevenbar_core::loops::{Advance, Design, Move, NumberedLoop, NumberedPoint, s
 
 /// A loop that knows what its numbers move; lengths relative to the size.
 #[pyclass(frozen, module = "sevenbar._core")]
-pub(crate) struct Numbers(NumberedLoop);
+pub(crate) struct Numbers(pub NumberedLoop);
 
 /// How many joints are before it, its place, and what one of each number moves it by.
 type Point = (usize, [f64; 3], Vec<(usize, [f64; 3])>);
 
-type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+pub(crate) type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-fn shaped<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<Array<'py>> {
+pub(crate) fn shaped<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<Array<'py>> {
     values.into_pyarray(py).reshape(shape.to_vec())
 }
 

@@ -81,7 +81,7 @@ _ELSEWHERE = {
 
 
 class _Commands(typer.core.TyperGroup):
-    """The commands; a linkage in the place of one is told what is missing."""
+    """The commands; a linkage in the place of one gets a message."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         return [*super().list_commands(ctx), *_ELSEWHERE]

@@ -183,7 +183,7 @@ def calibrate(
             progress=progress,
         )
         # read again before anything of it is reported
-        written = "" if out is None else calibrated_toml(text, found)
+        written = "" if out is None else calibrated_toml(text, found, source=linkage)
     deliver(found, calibration_report(lambda _: written, formats), out, json=json, force=force)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import sevenbar as sb
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.linkage import closure_tolerance
+from sevenbar.text.amounts import amount_in
 from sevenbar.text.expression import constant_of
 from sevenbar.text.ranges import Place, split_list, split_range, three_numbers, with_common_unit
 from sevenbar.text.units import amount, examples_of, sizes_of
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def check_law(law: Path | None, speed: str | None) -> None:
-    """Refuses a speed beside a law."""
+    """Refuses a speed where there is a law."""
     if law is not None and speed is not None:
         raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
 
@@ -125,7 +125,7 @@ def film_of(fps: float | None, seconds: float | None, film: Path | None) -> dict
 
 def angle(option: str, text: str) -> float:
     """The angle [rad] of a text; a plain number is in degrees."""
-    value = amount(text, sizes_of("rad"), "deg")
+    value = amount_in(text, "rad", "deg")
     if value is None:
         raise RequestError(f"{option}: {shown(text)} is not an angle; give one as in {examples_of('rad')}")
     return value
@@ -133,12 +133,12 @@ def angle(option: str, text: str) -> float:
 
 def angles(option: str, text: str) -> tuple[float, float]:
     """The two angles [rad] of a range like 0:90deg, whose unit may stand at the end only."""
-    return _ends(option, text, sizes_of("rad"), "deg", "0:90deg or 30deg:-60deg")
+    return _ends(option, text, "rad", "deg", "0:90deg or 30deg:-60deg")
 
 
 def lengths(option: str, text: str, unit: str) -> tuple[float, float]:
     """The two lengths [unit] of a range like 50:1000 or 5cm:1m, whose unit may stand at the end only."""
-    return _ends(option, text, sizes_of(unit), unit, "50:1000 or 5cm:1m")
+    return _ends(option, text, unit, unit, "50:1000 or 5cm:1m")
 
 
 def numbers(option: str, text: str) -> tuple[float, float]:
@@ -160,11 +160,9 @@ def limits_of(transmission: str, size: str | None, motion_type: str | None, unit
     return Limits(angle("--transmission", transmission), ends, motion_type)
 
 
-def _ends(
-    option: str, text: str, sizes: Mapping[str, float], plain: str, example: str
-) -> tuple[float, float]:
+def _ends(option: str, text: str, unit: str, plain: str, example: str) -> tuple[float, float]:
     if ends := split_range(text):
-        low, high = (amount(end, sizes, plain) for end in ends)
+        low, high = (amount_in(end, unit, plain) for end in ends)
         if low is not None and high is not None:
             return low, high
     raise RequestError(f"{option}: {shown(text)} is not a range; give two values, as in {example}")

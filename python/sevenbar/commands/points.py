@@ -24,8 +24,9 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
+from sevenbar.text.amounts import amount_in
 from sevenbar.text.ranges import split_list, split_named, split_range, three_numbers
-from sevenbar.text.units import amount, sizes_of
+from sevenbar.text.units import amount
 
 if TYPE_CHECKING:
     from sevenbar.design.points.least import LeastPoint, Rate
@@ -85,7 +86,7 @@ def point(
 
     def toml(found: LeastPoint | NearestPath) -> str:
         longer = draft.with_point(called, link, found.at.tolist())
-        # a name that no file may have is told here
+        # a name that no file may have is refused here
         _ = longer.linkage
         return longer.toml()
 
@@ -151,10 +152,7 @@ def inertia(
 
 def parsed_box(text: str, unit: str) -> list[tuple[float, float]]:
     """The sides [unit] of a box like '-200:200,0:5cm,7'; a length alone is given. Raises `RequestError`."""
-    sizes = sizes_of(unit)
-    ends = [
-        amount(end, sizes, unit) for side in split_list(text) for end in split_range(side) or (side, side)
-    ]
+    ends = [amount_in(end, unit) for side in split_list(text) for end in split_range(side) or (side, side)]
     if len(ends) != 6 or None in ends:
         raise RequestError(
             f"--box: {shown(text)} is no box; give three sides low:high, as in '-200:200,-200:200,0:50'"

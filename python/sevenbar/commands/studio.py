@@ -14,7 +14,7 @@ from sevenbar.commands.options import Agree
 from sevenbar.description.files import toml_text
 from sevenbar.errors import MissingExtraError, RequestError
 
-#: Where the studio is served unless told otherwise.
+#: Where the studio is served by default.
 HOST, PORT = "127.0.0.1", 8077
 
 

@@ -24,7 +24,7 @@ from sevenbar.commands.options import (
 )
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError, shown
-from sevenbar.text.units import amount, sizes_of
+from sevenbar.text.amounts import amount_in
 
 
 def tolerance(
@@ -40,7 +40,7 @@ def tolerance(
     wanted: Annotated[
         str | None,
         typer.Option(
-            help="In place of --tolerance: the error allowed of what is told, as in 0.5deg; finds tolerances."
+            help="In place of --tolerance: the error allowed of the output, as in 0.5deg; finds tolerances."
         ),
     ] = None,
     circuit: Annotated[int, typer.Option(help="The circuit.")] = 0,
@@ -53,11 +53,12 @@ def tolerance(
     of: Annotated[
         str | None,
         typer.Option(
-            "--of", help="What is told: a joint or a point's coordinate, as in P.x; the output by default."
+            "--of",
+            help="The joint or point's coordinate that deviates, as in P.x; the output by default.",
         ),
     ] = None,
     quantity: Annotated[
-        str, typer.Option(help="What is told of it: position, velocity or acceleration.")
+        str, typer.Option(help="What of it: position, velocity or acceleration.")
     ] = "position",
     input_joint: InputJoint = None,
     output: OutputJoint = None,
@@ -120,7 +121,7 @@ def tolerance(
 def _wanted(text: str, unit: str) -> float:
     """An error [the output's unit] as a person wrote it; an angle alone is in degrees."""
     plain = "deg" if unit == "rad" else unit
-    value = amount(text, sizes_of(unit), plain)
+    value = amount_in(text, unit, plain)
     if value is None or value <= 0:
         raise RequestError(
             f"--wanted: {shown(text)} is not an error; give one greater than 0, as in "

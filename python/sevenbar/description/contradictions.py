@@ -32,11 +32,11 @@ def contradictions(raw: Mapping[str, Any]) -> list[Problem]:
     if key == "joint":
         tables = [(i, t) for i, t in enumerate(entries(raw, key), 1) if t.get("kind") in JOINT_KINDS]
         problems = [
-            Problem(f"joint[{i}].{name}", message) for i, t in tables for name, message in _misfits(t)
+            Problem(f"joint[{i}].{name}", message) for i, t in tables for name, message in _wrong_keys(t)
         ]
     elif key == "link":
         tables = [(i, t) for i, t in enumerate(entries(raw, key), 1) if t.get("joint", "R") in ROW_KINDS]
-        problems = [Problem(f"link[{i}].{name}", m) for i, t in tables for name, m in _row_misfits(t)]
+        problems = [Problem(f"link[{i}].{name}", m) for i, t in tables for name, m in _wrong_row_keys(t)]
     countable = FEWEST_JOINTS <= len(joints) <= MOST_JOINTS
     if isinstance(raw[key], list) and not countable:
         count = f"a loop of {len(joints)} joint{'' if len(joints) == 1 else 's'}"
@@ -60,7 +60,7 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
         if isinstance(link, int) and not isinstance(link, bool) and link > len(joints) > 0:
             last = f"give 1 to {len(joints)}, the last is the ground"
             problems.append(Problem(f"point[{i}].link", f"{shown(link)} is not a link; {last}"))
-        # no name at all is told of elsewhere
+        # no name at all is reported elsewhere
         if isinstance(name, str) and name.strip() and name.strip() in taken:
             problems.append(
                 Problem(f"point[{i}].name", f"{shown(name)} is taken already; give each point its own name")
@@ -69,7 +69,7 @@ def _misplaced_points(raw: Mapping[str, Any], joints: Sequence[Written]) -> list
     return problems
 
 
-def _misfits(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
+def _wrong_keys(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Keys that a joint of this kind needs and has not, or has and cannot use."""
     kind = joint["kind"]
     needs = set(KINDS[kind].drawn_keys)
@@ -80,18 +80,18 @@ def _misfits(joint: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _row_misfits(row: Mapping[str, Any]) -> list[tuple[str, str]]:
+def _wrong_row_keys(row: Mapping[str, Any]) -> list[tuple[str, str]]:
     """The same for a Denavit-Hartenberg row, where one number is the variable and is not written."""
     kind = row.get("joint", "R")
     moving, has_pitch = KINDS[kind].moving_key, "pitch" in KINDS[kind].row_keys
-    misfits = []
+    wrong = []
     if has_pitch and "pitch" not in row:
-        misfits.append(("pitch", f"is missing; a joint of kind {kind} needs it"))
+        wrong.append(("pitch", f"is missing; a joint of kind {kind} needs it"))
     if moving in row:
-        misfits.append((moving, f"is what moves in a joint of kind {kind}; leave it out"))
+        wrong.append((moving, f"is what moves in a joint of kind {kind}; leave it out"))
     if not has_pitch and "pitch" in row:
-        misfits.append(("pitch", f"does not belong to a joint of kind {kind}; leave it out"))
-    return misfits
+        wrong.append(("pitch", f"does not belong to a joint of kind {kind}; leave it out"))
+    return wrong
 
 
 def grounds(raw: Mapping[str, Any]) -> dict[tuple[int | str, ...], str]:

@@ -15,10 +15,10 @@ import numpy as np
 from sevenbar.arrays import finite_number
 from sevenbar.description.forms import from_description
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.joint_text import check_own_unit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.amounts import value_of
 from sevenbar.text.expression import cosd, sind
-from sevenbar.text.table import number
 
 #: A length or an angle as a caller gives it.
 Given = float | str
@@ -428,10 +428,7 @@ def _length(name: str, value: Given, others: Mapping[str, Any]) -> float:
 def _angle(name: str, value: Given) -> float:
     """An angle [deg], of a number in radians or of a text."""
     if isinstance(value, str):
-        if number(value) is not None:
-            raise RequestError(
-                f"{name}: {shown(value)} has no unit; give one as in '30 deg', or a number in radians"
-            )
+        check_own_unit(name, value)
         return _number(name, value, "angle", {})
     radians = finite_number(name, value)
     if abs(radians) > math.tau:

@@ -11,15 +11,17 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.angle_doubts import warn_of_angles
+from sevenbar.description.loads import loading_of
 from sevenbar.description.proportions import disproportions
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
+from sevenbar.kinematics.joint_text import check_own_unit
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import unit
 from sevenbar.kinematics.word import Place, Values, between, word_of
 from sevenbar.text.grid import listed
-from sevenbar.text.table import name_and_unit, number
+from sevenbar.text.table import name_and_unit
 from sevenbar.text.units import LENGTHS, measured_unit
 
 if TYPE_CHECKING:
@@ -227,10 +229,8 @@ def _in_unit(key: str, values: Any, length_unit: str) -> Any:
     written = name_and_unit(name)[1] if isinstance(name, str) else ""
     if isinstance(plain, list) and key in ("twist", "angle"):
         for i, value in enumerate(plain):
-            if isinstance(value, str) and number(value) is not None:
-                raise RequestError(
-                    f"{key}[{i}]: {shown(value)} has no unit; give one as in '30 deg', or a number in radians"
-                )
+            if isinstance(value, str):
+                check_own_unit(f"{key}[{i}]", value)
     if not written or not isinstance(plain, list):
         return plain
     unit = measured_unit(written)
@@ -292,7 +292,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     """
     from sevenbar.description import formulas, schema
 
-    raw = formulas.with_numbers(raw)
+    raw = formulas.with_numbers(raw, source)
     form = schema.check(raw, source=source)
     if problems := disproportions(form):
         raise DescriptionError(problems, source)
@@ -309,6 +309,14 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
         points=linkage.points + tuple(Point(p.name, p.link, p.at) for p in form.point),
         drive=Drive(*form.driven, form.drive.speed),
         description=raw,
+        loading=loading_of(
+            form.forces,
+            form.body,
+            form.load,
+            form.spring,
+            length_unit=form.length_unit,
+            columns=form.first_columns,
+        ),
     )
 
 

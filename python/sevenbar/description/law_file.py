@@ -22,7 +22,7 @@ DEGREE = 5
 #: they differ by pi / 180 or 2 pi / 60 then, while a coarse table differs by its curvature only.
 UNIT_SLIP = 0.5
 
-#: What a table can hold beside the time, in the order of derivatives.
+#: What a table can hold besides the time, in the order of derivatives.
 QUANTITIES = ("value", "velocity", "acceleration", "jerk")
 
 
@@ -71,7 +71,7 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
 
 
 def _places(table: TextTable, linkage: Linkage, column: int) -> dict[str, int]:
-    """The column of each quantity, told by its unit; by its name, too, where several have such a unit."""
+    """The column of each quantity, known by its unit; by its name, too, where several have such a unit."""
     name, kind = linkage.columns[column], linkage.column_kinds[column]
     owners = [joint.name for joint in linkage.joints for _ in joint.columns]
     heads = [table.name_and_unit(place) for place in range(len(table.names))]
@@ -140,9 +140,9 @@ def _refuse_other_rates(
     if np.abs(moved - expected).sum() > UNIT_SLIP * scale:
         makes, changes = np.abs(expected).sum(), np.abs(moved).sum()
         rests = changes <= np.finfo(float).eps * makes
-        told = "those values rest" if rests else f"it makes for {makes / changes:.3g} times its changes"
+        why = "those values rest" if rests else f"it makes for {makes / changes:.3g} times its changes"
         raise table.wrong(
-            f"is no velocity of {table.labels[places['value']]}: {told}; check both units",
+            f"is no velocity of {table.labels[places['value']]}: {why}; check both units",
             column=places["velocity"],
         )
 

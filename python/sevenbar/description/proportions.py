@@ -1,4 +1,4 @@
-"""Whether the lengths of one loop can be seen beside each other in double precision."""
+"""Whether the lengths of one loop can be seen together in double precision."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ MEANT = 1e-9
 
 
 def disproportions(form: LinkageForm) -> list[Problem]:
-    """What is wrong where lengths as meant are mostly lost beside the greatest: the number that is too great.
+    """What is wrong where most lengths are lost next to the greatest: the number that is too great.
 
-    A loop is closed to a part of its size, so beside 1e15 a length of 1 is nothing, and circuits that differ
+    A loop is closed to a part of its size, so next to 1e15 a length of 1 is nothing, and circuits that differ
     by it are one. A few lengths that are lost do no harm, as zeros that a program computed; where they are
     half of all, it is the great one that is wrong. An RSSR is solved in closed form, without a size.
     """
@@ -46,11 +46,11 @@ def _of_drawing(drawn: Sequence[JointForm], unit: str) -> list[Problem]:
         return []
     if pitches[steepest] > ahead.max():
         message = f"{pitches[steepest]:.3g} {unit} is too long"
-        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {_told(lost, unit)}")]
+        return [Problem(f"joint[{steepest + 1}].pitch", f"{message}, {_loss_text(lost, unit)}")]
     away = np.linalg.norm(places - np.median(places, axis=0), axis=1)
     far = int(away.argmax())
     message = f"{shown(list(drawn[far].at))} is {away[far]:.3g} {unit} from most of the others"
-    return [Problem(f"joint[{far + 1}].at", f"{message}, {_told(lost, unit)}")]
+    return [Problem(f"joint[{far + 1}].at", f"{message}, {_loss_text(lost, unit)}")]
 
 
 def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
@@ -64,17 +64,19 @@ def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
         return []
     place = max(numbers, key=lambda place: abs(numbers[place]))
     lost = _lost([abs(value) for value in numbers.values()], abs(numbers[place]))
-    return [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {_told(lost, unit)}")] if lost else []
+    return (
+        [Problem(place, f"{numbers[place]:.3g} {unit} is too long, {_loss_text(lost, unit)}")] if lost else []
+    )
 
 
 def _lost(lengths: Sequence[float], greatest: float) -> list[float]:
-    """The lengths that are lost beside the greatest, where they are at least half of those that are meant."""
+    """The lengths lost next to the greatest, where they are at least half of those that are meant."""
     meant = [length for length in lengths if length >= MEANT]
     lost = [length for length in meant if length < LEAST_SHARE * greatest]
     return lost if 2 * len(lost) >= len(meant) else []
 
 
-def _told(lost: Sequence[float], unit: str) -> str:
+def _loss_text(lost: Sequence[float], unit: str) -> str:
     return (
         f"and {max(lost):.3g} {unit} is lost in rounding beside that; give lengths of which the greatest is "
         f"at most {1 / LEAST_SHARE:.0e} times the others"

@@ -10,9 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     ValidationError,
     WithJsonSchema,
@@ -21,6 +19,10 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import ErrorDetails, core_schema
 
 from sevenbar.description.contradictions import contradictions, grounds
+from sevenbar.description.load_contradictions import load_contradictions
+from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
+from sevenbar.description.load_tables import folder_of
+from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import (
     EXAMPLE_OF_AXES,
     Angle,
@@ -47,7 +49,7 @@ from sevenbar.description.written import (
 from sevenbar.errors import DescriptionError, Problem, bare, shown, suggestion
 from sevenbar.kinematics.geometry import following_coupler
 from sevenbar.kinematics.joints import JOINT_KINDS, KINDS, ROW_KINDS, letters_with
-from sevenbar.text.units import ANGLES, LENGTHS
+from sevenbar.text.units import ANGLES, LENGTHS, MASSES
 
 
 def _row_kind(value: object) -> object:
@@ -58,26 +60,17 @@ def _row_kind(value: object) -> object:
     return value
 
 
-class _Form(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-def _key(meaning: str, unit: str = "") -> Any:
-    """What a key means, and the unit of its numbers in words: for the JSON schema and the page."""
-    return Field(description=meaning, json_schema_extra={"unit": unit} if unit else None)
-
-
-class RssrForm(_Form):
+class RssrForm(TableForm):
     """The layout of Sun and Zhou, Figure 2; L2 left out is `|A1 B1|` as in eq. (7)."""
 
-    M: Annotated[Number, _key("the rocker's axis goes along x through (M, D, 0)", "length")]
-    N: Annotated[Number, _key("height of the crank's circle, which is about z", "length")]
-    L1: Annotated[Length, _key("crank", "length")]
-    L3: Annotated[Length, _key("rocker", "length")]
-    D: Annotated[Number, _key("the rocker's axis goes along x through (M, D, 0)", "length")]
+    M: Annotated[Number, key("the rocker's axis goes along x through (M, D, 0)", "length")]
+    N: Annotated[Number, key("height of the crank's circle, which is about z", "length")]
+    L1: Annotated[Length, key("crank", "length")]
+    L3: Annotated[Length, key("rocker", "length")]
+    D: Annotated[Number, key("the rocker's axis goes along x through (M, D, 0)", "length")]
     L2: Annotated[
         Length | None,
-        _key("coupler; left out, that which closes with both joints at zero", "length"),
+        key("coupler; left out, that which closes with both joints at zero", "length"),
     ] = None
 
     @property
@@ -88,38 +81,38 @@ class RssrForm(_Form):
         return float(following_coupler(self.M, self.N, self.L1, self.L3))
 
 
-class JointForm(_Form):
+class JointForm(TableForm):
     """A joint as drawn in one assembled pose, in ground coordinates."""
 
     kind: Annotated[
         str,
         one_of("joint kind", JOINT_KINDS),
         WithJsonSchema({"enum": list(JOINT_KINDS)}),
-        _key("what the joint lets move"),
+        key("what the joint lets move"),
     ]
-    at: Annotated[Vector, _key("any point of the axis; of U and S the centre", "length")]
-    name: Annotated[Text | None, _key("left out, theta_1, theta_2 .. by its place")] = None
+    at: Annotated[Vector, key("any point of the axis; of U and S the centre", "length")]
+    name: Annotated[Text | None, key("left out, theta_1, theta_2 .. by its place")] = None
     axis: Annotated[
         Direction | None,
-        _key(f"of {letters_with('axis')}, which need it: any length but 0"),
+        key(f"of {letters_with('axis')}, which need it: any length but 0"),
     ] = None
     axes: Annotated[
         Annotated[tuple[Direction, Direction], AfterValidator(crossing)] | None,
-        _key(
+        key(
             f"of {letters_with('axes')}, which needs them: held by the link before, by that after; "
             "not parallel"
         ),
     ] = None
     pitch: Annotated[
         Pitch | None,
-        _key(
+        key(
             f"of {letters_with('pitch')}, which needs it: right-handed, left-hand if negative",
             "length per turn",
         ),
     ] = None
 
 
-class LinkForm(_Form):
+class LinkForm(TableForm):
     """A Denavit-Hartenberg row: a joint and the link after it, `Rz(theta) Tz(offset) Tx(length) Rx(twist)`.
 
     Angles are in radians here, whatever unit the file has. The variable of the row is theta of R and H,
@@ -131,78 +124,82 @@ class LinkForm(_Form):
         one_of("joint kind", ROW_KINDS),
         BeforeValidator(_row_kind),
         WithJsonSchema({"enum": list(ROW_KINDS)}),
-        _key("the joint before this link"),
+        key("the joint before this link"),
     ] = "R"
-    name: Annotated[Text | None, _key("of the joint; left out, theta_1, theta_2 ..")] = None
-    length: Annotated[Number, _key("of the link, along x; may be negative", "length")] = 0.0
-    twist: Annotated[Angle, _key("of the link, about x", "angle_unit")] = 0.0
-    offset: Annotated[Number, _key("of R and H, along the joint's axis (H: at theta = 0)", "length")] = 0.0
-    angle: Annotated[Angle, _key("of P: its fixed theta", "angle_unit")] = 0.0
+    name: Annotated[Text | None, key("of the joint; left out, theta_1, theta_2 ..")] = None
+    length: Annotated[Number, key("of the link, along x; may be negative", "length")] = 0.0
+    twist: Annotated[Angle, key("of the link, about x", "angle_unit")] = 0.0
+    offset: Annotated[Number, key("of R and H, along the joint's axis (H: at theta = 0)", "length")] = 0.0
+    angle: Annotated[Angle, key("of P: its fixed theta", "angle_unit")] = 0.0
     pitch: Annotated[
         Pitch,
-        _key(
+        key(
             f"of {letters_with('pitch')}, which needs it: right-handed, left-hand if negative",
             "length per turn",
         ),
     ] = 0.0
 
 
-class PointForm(_Form):
+class PointForm(TableForm):
     """A named point carried by a link."""
 
-    name: Annotated[Text, _key("its own among the points")]
-    link: Annotated[int, Field(strict=True, ge=1), _key("the link that carries it, counted from 1")]
-    at: Annotated[Vector, _key("its place, in the coordinates of the form", "length")]
+    name: Annotated[Text, key("its own among the points")]
+    link: Annotated[int, Field(strict=True, ge=1), key("the link that carries it, counted from 1")]
+    at: Annotated[Vector, key("its place, in the coordinates of the form", "length")]
 
 
-class DriveForm(_Form):
+class DriveForm(TableForm):
     """The input and its speed."""
 
     speed: Annotated[
         Speed,
-        _key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
+        key("of the input, as in 10 or '60 rpm'; not 0", "rad/s, or length/s"),
     ] = 1.0
     joint: Annotated[
         Text | None,
         BeforeValidator(one_word("input")),
-        _key("the input; left out, the first joint that is no ball"),
+        key("the input; left out, the first joint that is no ball"),
     ] = None
     output: Annotated[
         Text | None,
         BeforeValidator(one_word("output")),
-        _key("the output; left out, the last joint that is neither a ball nor the input"),
+        key("the output; left out, the last joint that is neither a ball nor the input"),
     ] = None
 
 
-class LinkageForm(_Form):
+class LinkageForm(TableForm):
     """A whole file of format 1."""
 
-    format: Annotated[Literal[1], _key("of this file")]
-    name: Annotated[Text, _key("of the linkage, for reports and figures")] = "linkage"
+    format: Annotated[Literal[1], key("of this file")]
+    name: Annotated[Text, key("of the linkage, for reports and figures")] = "linkage"
     length_unit: Annotated[
         str,
         one_of("unit", LENGTHS),
         WithJsonSchema({"enum": list(LENGTHS)}),
-        _key("of all lengths; carried into every header, never converted"),
+        key("of all lengths; carried into every header, never converted"),
     ] = "mm"
     angle_unit: Annotated[
         str,
         one_of("unit", ANGLES),
         WithJsonSchema({"enum": list(ANGLES)}),
-        _key("of the angles written in this file"),
+        key("of the angles written in this file"),
     ] = "deg"
-    drive: Annotated[DriveForm, _key("the input, the output, the speed")] = DriveForm()
-    rssr: Annotated[RssrForm | None, _key("the RSSR paper's dimensions")] = None
-    joint: Annotated[tuple[JointForm, ...] | None, _key("joints as drawn, in loop order")] = None
+    drive: Annotated[DriveForm, key("the input, the output, the speed")] = DriveForm()
+    rssr: Annotated[RssrForm | None, key("the RSSR paper's dimensions")] = None
+    joint: Annotated[tuple[JointForm, ...] | None, key("joints as drawn, in loop order")] = None
     link: Annotated[
         tuple[LinkForm, ...] | None,
-        _key("Denavit-Hartenberg rows in loop order, the last is the ground"),
+        key("Denavit-Hartenberg rows in loop order, the last is the ground"),
     ] = None
     layout: Annotated[
         Literal["dh", "planar"],
-        _key("of [[link]] rows: where the frame lies and angles begin"),
+        key("of [[link]] rows: where the frame lies and angles begin"),
     ] = "dh"
-    point: Annotated[tuple[PointForm, ...], _key("points to be traced")] = ()
+    point: Annotated[tuple[PointForm, ...], key("points to be traced")] = ()
+    forces: Annotated[ForcesForm, key("gravity, and the unit of masses")] = ForcesForm()
+    body: Annotated[tuple[BodyForm, ...], key("masses on links")] = ()
+    load: Annotated[tuple[LoadForm, ...], key("forces and torques on links")] = ()
+    spring: Annotated[tuple[SpringForm, ...], key("springs and dampers")] = ()
 
     @property
     def joints(self) -> tuple[tuple[str, str], ...]:
@@ -212,6 +209,11 @@ class LinkageForm(_Form):
         drawn = [(joint.name, joint.kind) for joint in self.joint or ()]
         rows = [(row.name, row.joint) for row in self.link or ()]
         return tuple((name or f"theta_{i}", kind) for i, (name, kind) in enumerate(drawn + rows, 1))
+
+    @property
+    def first_columns(self) -> dict[str, str]:
+        """The column that the name of a joint means, its first one."""
+        return {name: next(iter(Written("", name, kind).columns)) for name, kind in self.joints}
 
     @property
     def driven(self) -> tuple[str, str]:
@@ -239,7 +241,7 @@ class _TomlSchema(GenerateJsonSchema):
 def json_schema() -> dict[str, Any]:
     """The JSON schema (draft 2020-12) of a file of format 1, for editors that complete and check TOML.
 
-    It tells keys, kinds of values and allowed words. What belongs together is told by `load` alone.
+    It has keys, kinds of values and allowed words. What belongs together is checked by `load` alone.
 
         >>> json_schema()["properties"]["length_unit"]["enum"]
         ['um', 'mm', 'cm', 'm', 'in', 'ft']
@@ -252,27 +254,30 @@ def json_schema() -> dict[str, Any]:
 def check(raw: object, *, source: str = "") -> LinkageForm:
     """The checked form, or `DescriptionError` with every problem in it; `source` is the file it came from."""
     ground_places = grounds(raw) if isinstance(raw, Mapping) else {}
+    context = context_of(raw, source) if isinstance(raw, Mapping) else None
     try:
-        form = LinkageForm.model_validate(raw, context=context_of(raw) if isinstance(raw, Mapping) else None)
+        form = LinkageForm.model_validate(raw, context=context)
         problems = []
     except ValidationError as error:
         details = [(tuple(detail["loc"]), detail) for detail in error.errors(include_url=False)]
         problems = [
             Problem(_path(place), ground_places[place]) if place in ground_places else _problem(detail)
             for place, detail in details
-            # an entry that is nothing but a second ground is told of once
+            # an entry that is nothing but a second ground is reported once
             if place in ground_places or place[:2] not in ground_places
         ]
-    if isinstance(raw, Mapping):
-        problems += contradictions(raw)
+    if isinstance(raw, Mapping) and context is not None:
+        problems += contradictions(raw) + load_contradictions(raw, joints_of(raw), context)
     if problems:
         raise DescriptionError(problems, source)
     return form
 
 
-def context_of(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """What a number of the file needs to know of the rest: the units, and how the input moves."""
+def context_of(raw: Mapping[str, Any], source: str = "") -> dict[str, Any]:
+    """What a number of the file needs to know of the rest: units, how joints move, the folder of `source`."""
     angle_unit, length_unit = raw.get("angle_unit"), raw.get("length_unit")
+    forces = raw.get("forces")
+    mass_unit = forces.get("mass_unit") if isinstance(forces, Mapping) else None
     joints = joints_of(raw)
     column, _, _ = driven(joints, drive_of(raw))
     slides = any(joint.columns.get(column) == "slide" for joint in joints)
@@ -280,7 +285,15 @@ def context_of(raw: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "length_unit": unit,
         "angle_unit": angle_unit if isinstance(angle_unit, str) and angle_unit in ANGLES else "deg",
+        "mass_unit": mass_unit if isinstance(mass_unit, str) and mass_unit in MASSES else "kg",
         "slides": unit if slides else None,
+        "freedoms": {
+            name: freedom
+            for joint in joints
+            for column, freedom in reversed(joint.columns.items())
+            for name in (joint.name, column)
+        },
+        "folder": folder_of(source),
     }
 
 
@@ -318,7 +331,7 @@ def _path(location: Sequence[int | str]) -> str:
     return path.lstrip(".")
 
 
-def _missing(location: list[int | str], owner: type[_Form] | None) -> str:
+def _missing(location: list[int | str], owner: type[TableForm] | None) -> str:
     if location[-1] == "format":
         return "is missing; give format = 1"
     if isinstance(location[-1], int):
@@ -334,16 +347,20 @@ def _array_hint(location: list[int | str]) -> str:
 
 
 #: The form of each table, by its head without brackets.
-TABLES: dict[str, type[_Form]] = {
+TABLES: dict[str, type[TableForm]] = {
     "rssr": RssrForm,
     "joint": JointForm,
     "link": LinkForm,
     "point": PointForm,
     "drive": DriveForm,
+    "forces": ForcesForm,
+    "body": BodyForm,
+    "load": LoadForm,
+    "spring": SpringForm,
 }
 
 
-def _form_at(location: list[int | str]) -> type[_Form] | None:
+def _form_at(location: list[int | str]) -> type[TableForm] | None:
     """The form that owns a place: the file's own, or that of the table that the path enters."""
     words = [part for part in location if isinstance(part, str)]
     if not words:
@@ -359,5 +376,5 @@ def _home(key: str) -> str:
     if len(homes) != 1 or key in LinkageForm.model_fields:
         return ""
     (table,) = homes
-    head = f"[{table}]" if table in ("rssr", "drive") else f"[[{table}]]"
+    head = f"[{table}]" if table in ("rssr", "drive", "forces") else f"[[{table}]]"
     return f"is a key of {head}; write it below that head"

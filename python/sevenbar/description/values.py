@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from sevenbar.description.written import meant_kind
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.text.amounts import Kind, plain_speed, value_of
+from sevenbar.text.quantities import QUANTITY_KINDS, QuantityKind, quantity_of
 from sevenbar.text.units import ANGLES, sliding_speed, turning_speed, unknown_unit
 
 #: Dimensions outside this range are slips of the pen, and their powers would overflow.
@@ -23,19 +24,27 @@ EXAMPLE_OF_AXES = "as in [[1, 0, 0], [0, 1, 0]]"
 PARALLEL = 1e-9
 
 
+#: What a number of a file may be.
+NumberKind = Kind | QuantityKind
+
+
 def refuse(message: str) -> PydanticCustomError:
-    """The error that tells a person this of a value."""
+    """The error that says this of a value."""
     # pydantic reads braces in a message as a template
     return PydanticCustomError("sevenbar", "{message}", {"message": message})
 
 
-def value_in_file(text: str, kind: Kind, context: Mapping[str, Any]) -> float:
-    """The number of a formula in the units of its file: `length_unit` and `angle_unit` of the context."""
-    units = {key: str(context[key]) for key in ("length_unit", "angle_unit") if key in context}
-    return value_of(text, kind, **units)
+def value_in_file(text: str, kind: NumberKind, context: Mapping[str, Any]) -> float:
+    """The number of a formula in the units of its file, which the context has by their keys."""
+    own = ("length_unit", "mass_unit" if kind in QUANTITY_KINDS else "angle_unit")
+    units = {key: str(context[key]) for key in own if key in context}
+    if kind in QUANTITY_KINDS:
+        return quantity_of(text, cast(QuantityKind, kind), **units)
+    return value_of(text, cast(Kind, kind), **units)
 
 
-def _number(value: object, info: ValidationInfo, kind: Kind = "number") -> float:
+def number_for(value: object, info: ValidationInfo, kind: NumberKind = "number") -> float:
+    """A finite number that is not beyond all sense, or the number of a text; in the file's own unit."""
     if isinstance(value, str):
         try:
             value = value_in_file(value, kind, info.context or {})
@@ -51,11 +60,11 @@ def _number(value: object, info: ValidationInfo, kind: Kind = "number") -> float
 
 
 def _signed_length(value: object, info: ValidationInfo) -> float:
-    return _number(value, info, "length")
+    return number_for(value, info, "length")
 
 
 def _pitch(value: object, info: ValidationInfo) -> float:
-    return _number(value, info, "pitch")
+    return number_for(value, info, "pitch")
 
 
 def _length(value: object, info: ValidationInfo) -> float:
@@ -67,19 +76,20 @@ def _length(value: object, info: ValidationInfo) -> float:
     return number
 
 
-def _three(value: object, info: ValidationInfo, kind: Kind) -> tuple[float, float, float]:
+def three(value: object, info: ValidationInfo, kind: NumberKind) -> tuple[float, float, float]:
+    """Three numbers of a kind."""
     if not isinstance(value, (list, tuple)) or len(value) != 3:
         raise refuse(f"{shown(value)} is not a point or direction; give three numbers, as in [0, 0, 1]")
-    x, y, z = (_number(v, info, kind) for v in value)
+    x, y, z = (number_for(v, info, kind) for v in value)
     return x, y, z
 
 
 def _vector(value: object, info: ValidationInfo) -> tuple[float, float, float]:
-    return _three(value, info, "length")
+    return three(value, info, "length")
 
 
 def _direction(value: object, info: ValidationInfo) -> tuple[float, float, float]:
-    vector = _three(value, info, "number")
+    vector = three(value, info, "number")
     if math.hypot(*vector) < 1 / LARGEST_DIMENSION:
         raise refuse(f"{shown(value)} has no direction; give three numbers, not all 0")
     return vector
@@ -88,7 +98,7 @@ def _direction(value: object, info: ValidationInfo) -> tuple[float, float, float
 def _angle(value: object, info: ValidationInfo) -> float:
     """An angle [rad], written in the file's unit."""
     context = info.context or {}
-    return _number(value, info, "angle") * ANGLES[context.get("angle_unit", "rad")]
+    return number_for(value, info, "angle") * ANGLES[context.get("angle_unit", "rad")]
 
 
 def crossing(axes: tuple[Vector, Vector]) -> tuple[Vector, Vector]:
@@ -152,16 +162,16 @@ def _speed(value: object, info: ValidationInfo) -> float:
 
 
 #: In a file a number may be a formula in quotes.
-_FORMULA = {"type": ["number", "string"], "pattern": "[0-9]|pi|\u03c0"}
-_OR_TEXT = WithJsonSchema(_FORMULA)
-_POSITIVE = WithJsonSchema({**_FORMULA, "exclusiveMinimum": 0})
+FORMULA = {"type": ["number", "string"], "pattern": "[0-9]|pi|\u03c0"}
+_OR_TEXT = WithJsonSchema(FORMULA)
+POSITIVE = WithJsonSchema({**FORMULA, "exclusiveMinimum": 0})
 
 Number = Annotated[float, BeforeValidator(_signed_length), _OR_TEXT]
 Pitch = Annotated[float, BeforeValidator(_pitch), _OR_TEXT]
 Angle = Annotated[float, BeforeValidator(_angle), _OR_TEXT]
-Length = Annotated[float, BeforeValidator(_length), _POSITIVE]
-_Component = Annotated[float, _OR_TEXT]
-Vector = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_vector)]
-Direction = Annotated[tuple[_Component, _Component, _Component], BeforeValidator(_direction)]
+Length = Annotated[float, BeforeValidator(_length), POSITIVE]
+Component = Annotated[float, _OR_TEXT]
+Vector = Annotated[tuple[Component, Component, Component], BeforeValidator(_vector)]
+Direction = Annotated[tuple[Component, Component, Component], BeforeValidator(_direction)]
 Text = Annotated[str, BeforeValidator(_text)]
 Speed = Annotated[float, BeforeValidator(_speed), WithJsonSchema({"type": ["number", "string"]})]

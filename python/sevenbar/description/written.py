@@ -85,27 +85,22 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         message = f"a loop {loop} has {count} outside its balls; an input and an output need two"
         known_kinds = all(joint.kind for joint in joints)
         return "", "", [Problem("joint", message)] if known_kinds else []
-    # two joints of one name are told of elsewhere; to choose from they are one
+    # two joints of one name are reported elsewhere; to choose from they are one
     choices = list(dict.fromkeys(free))
-    known = list(dict.fromkeys(name for j in joints for name in ([j.name] if j.is_ball else j.columns)))
     problems = []
     chosen: dict[str, str] = {}
     for key in ("joint", "output"):
         name = drive.get(key)
         if not isinstance(name, str):
             continue
-        name = name.strip()
-        owner = next((joint for joint in joints if name == joint.name or name in joint.columns), None)
-        if owner is None:
-            problems.append(Problem(f"drive.{key}", no_joint(name, known)))
-        elif owner.is_ball:
-            ball = f"joint {shown(owner.name)} is a ball; give a joint with one freedom: {', '.join(choices)}"
-            problems.append(Problem(f"drive.{key}", ball))
+        column, wrong = named_column(name, joints)
+        if wrong:
+            problems.append(Problem(f"drive.{key}", wrong))
         else:
-            chosen[key] = next(iter(owner.columns)) if name == owner.name else name
+            chosen[key] = column
     first = chosen.get("joint", firsts[0])
     others = [column for column in choices if column != first]
-    # `first` where one name stands for every joint, which is told of elsewhere
+    # `first` where one name stands for every joint, which is reported elsewhere
     last = chosen.get(
         "output", next((c for c in [*reversed(firsts), *reversed(others)] if c != first), first)
     )
@@ -115,6 +110,19 @@ def driven(joints: Sequence[Written], drive: Mapping[str, Any]) -> tuple[str, st
         rest = f"the output is the other one, {others[0]}" if one else f"give another: {', '.join(others)}"
         problems.append(Problem("drive.output", f"joint {shown(first)} is the input; {rest}"))
     return first, last, problems
+
+
+def named_column(name: str, joints: Sequence[Written]) -> tuple[str, str]:
+    """The column that a name means, the first one of a joint's name, and what is wrong with the name."""
+    name = name.strip()
+    owner = next((joint for joint in joints if name == joint.name or name in joint.columns), None)
+    if owner is None:
+        known = (name for j in joints for name in ([j.name] if j.is_ball else j.columns))
+        return "", no_joint(name, list(dict.fromkeys(known)))
+    if owner.is_ball:
+        free = dict.fromkeys(column for joint in joints if not joint.is_ball for column in joint.columns)
+        return "", f"joint {shown(owner.name)} is a ball; give a joint with one freedom: {', '.join(free)}"
+    return next(iter(owner.columns)) if name == owner.name else name, ""
 
 
 def entries(raw: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:

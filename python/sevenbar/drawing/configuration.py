@@ -16,6 +16,7 @@ from sevenbar.drawing.names import short, shown_name
 from sevenbar.drawing.page import (
     EDGE,
     own_axes,
+    page_of_one,
     picture_height,
     prepare,
     prepare_given,
@@ -88,21 +89,19 @@ def configuration(
             (ax,) = given_axes(ax, 1, "or none")
         seen = view_of(view, motion.linkage, shown_places(frame), ax)
         if ax is None:
-            figure = new_figure(*page_size(style, figsize, (WIDTH, WIDTH), wide=False))
+            page = page_size(style, figsize, (WIDTH, WIDTH), wide=False)
             which = say(
                 "circuit {number}, {count} position{s}",
                 number=chosen.index, count=len(poses), s="s" * (len(poses) > 1),
             )  # fmt: skip
-            top = write_title(figure, title_text(title, f"{title_of(motion)}\n{which}"))
-            foot = write_legend(figure, keys(frame, ends, seen) if legend else [])
-            width, height = figure.get_size_inches()
-            if figsize is None:
-                height = top + foot + picture_height(seen, frame_box(frame, seen), width)
-                set_height(figure, height)
-            space = ViewAxes(own_axes(figure, seen), seen)
-            prepare(space, frame, (0.0, foot, width, height - top - foot))
+            heading = title_text(title, f"{title_of(motion)}\n{which}")
+            shown_keys = keys(frame, ends, seen) if legend else []
+            box = frame_box(frame, seen)
+            figure, space, room = page_of_one(page, seen, box, heading, shown_keys, fixed=figsize is not None)
+            prepare(space, frame, room)
+            _, foot, _, tall = room
             within: Bbox | None = Bbox.from_extents(
-                0, foot * figure.dpi, figure.bbox.width, (height - top) * figure.dpi
+                0, foot * figure.dpi, figure.bbox.width, (foot + tall) * figure.dpi
             )
         else:
             figure, space, within = ax.figure.figure, ViewAxes(ax, seen), None

@@ -59,16 +59,21 @@ def column_label(motion: Motion, column: str) -> str:
     return quantity_label(column, "angle", "deg")
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """An empty white figure [inch] with a canvas of its own, outside pyplot's register."""
+def new_figure(width: float, height: float, *, pads: tuple[float, float] | None = None) -> Figure:
+    """An empty white figure [inch] with a canvas of its own, outside pyplot's register.
+
+    With `pads` its panels are laid out by matplotlib, with this room [inch] above and at the sides of each.
+    """
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
+    if pads is not None:
+        figure.set_layout_engine("constrained", h_pad=pads[0], w_pad=pads[1])
     return figure
 
 
-def page_figure(width: float, height: float) -> Figure:
-    """An empty figure of a usual size [inch], or of the style's width: both columns where it is wide."""
-    return new_figure(*page_size(None, None, (width, height), wide=width > BOTH_COLUMNS))
+def page_figure(width: float, height: float, *, pads: tuple[float, float] | None = None) -> Figure:
+    """`new_figure` of a usual size [inch], or of the style's width: both columns where it is wide."""
+    return new_figure(*page_size(None, None, (width, height), wide=width > BOTH_COLUMNS), pads=pads)
 
 
 def title_of(motion: Motion) -> str:
@@ -131,7 +136,7 @@ def tidy(figure: Figure) -> None:
     figure.align_ylabels()
 
 
-def told_range(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
+def range_drawn(circuit: Circuit, values: Floats, quantity: str) -> tuple[float, float] | None:
     """The ends of drawn values (n,), of rates that grow without bound those of `CUT`; `None` without any."""
     finite = values[np.isfinite(values)]
     if not finite.size:

@@ -71,8 +71,7 @@ def joints(
             across = _across(len(drawn))
             down = math.ceil(len(drawn) / across)
             usual = 3.4 * across + 0.4, 2.0 * down + 1.0
-            figure = new_figure(*page_size(style, figsize, usual, wide=across > 1))
-            figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+            figure = new_figure(*page_size(style, figsize, usual, wide=across > 1), pads=(0.05, 0.06))
             grid = figure.subplots(down, across, sharex=True, squeeze=False)
             panels = list(grid.flat)[: len(drawn)]
             for axes in list(grid.flat)[len(drawn) :]:

@@ -24,14 +24,7 @@ from sevenbar.drawing.figure import (
     title_of,
     title_text,
 )
-from sevenbar.drawing.page import (
-    own_axes,
-    picture_height,
-    prepare_box,
-    set_height,
-    write_legend,
-    write_title,
-)
+from sevenbar.drawing.page import page_of_one, prepare_box
 from sevenbar.drawing.scene import bars, put, shown_places, stage
 from sevenbar.drawing.skeleton import skeleton
 from sevenbar.drawing.space import ViewAxes, box_round
@@ -98,8 +91,7 @@ def transmission(
         )
     with styled(style):
         if ax is None:
-            figure = new_figure(*page_size(style, figsize, (6.4, 3.6), wide=False))
-            figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+            figure = new_figure(*page_size(style, figsize, (6.4, 3.6), wide=False), pads=(0.05, 0.06))
             axes: Axes = figure.subplots()
         else:
             (axes,) = given_axes(ax, 1, "or none")
@@ -194,21 +186,16 @@ def axodes(
         if seen.planar:
             handles[2] = Line2D([], [], color="black", ls="", marker="o", ms=5, label=say("instant centre"))
         if given is None:
-            figure = new_figure(*page_size(style, figsize, (6.4, 6.4), wide=False))
+            page = page_size(style, figsize, (6.4, 6.4), wide=False)
             which = (
                 say("centrodes of link {link}, circuit {number}", link=link, number=chosen.index)
                 if seen.planar
                 else say("axodes of link {link}, circuit {number}", link=link, number=chosen.index)
             )
-            heading = f"{title_of(motion)}\n{which}"
-            top = write_title(figure, title_text(title, heading))
-            foot = write_legend(figure, handles if legend else [])
-            width, height = figure.get_size_inches()
-            if figsize is None:
-                height = top + foot + picture_height(seen, box, width)
-                set_height(figure, height)
-            space = ViewAxes(own_axes(figure, seen), seen)
-            prepare_box(space, box, motion.linkage.length_unit, (0.0, foot, width, height - top - foot))
+            heading = title_text(title, f"{title_of(motion)}\n{which}")
+            shown = handles if legend else []
+            figure, space, room = page_of_one(page, seen, box, heading, shown, fixed=figsize is not None)
+            prepare_box(space, box, motion.linkage.length_unit, room)
         else:
             figure, space = given.figure.figure, ViewAxes(given, seen)
             prepare_box(space, box, motion.linkage.length_unit, None)

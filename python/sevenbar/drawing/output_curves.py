@@ -22,11 +22,11 @@ from sevenbar.drawing.figure import (
     key_below,
     new_figure,
     note,
+    range_drawn,
     shown_value,
     slides,
     tidy,
     title_of,
-    told_range,
 )
 from sevenbar.drawing.names import handy_unit, quantity_label
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_size, stroke, styled
@@ -179,8 +179,9 @@ def curves(
         if ax is None:
             tall = 0.6 + 2.4 * len(quantities)
             wide = 6.4 if len(columns) == 1 else 9.8
-            figure = new_figure(*page_size(style, figsize, (wide, tall), wide=len(columns) > 1))
-            figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+            figure = new_figure(
+                *page_size(style, figsize, (wide, tall), wide=len(columns) > 1), pads=(0.05, 0.06)
+            )
             grid = figure.subplots(len(quantities), len(columns), sharex="col", sharey="row", squeeze=False)
         else:
             found = given_axes(ax, len(quantities), "one for each of the quantities")
@@ -267,7 +268,7 @@ def _unit_of(motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> tuple
     unit = motion.linkage.length_unit
     if quantity == "angle" or not slides(motion, motion.output):
         return 1.0, unit
-    ranges = [told_range(line.circuit, getattr(line, quantity), quantity) for line in drawn]
+    ranges = [range_drawn(line.circuit, getattr(line, quantity), quantity) for line in drawn]
     return handy_unit(unit, max((abs(end) for ends in ranges if ends for end in ends), default=0.0))
 
 
@@ -307,7 +308,7 @@ def place_of(lines: Iterable[tuple[Floats, Floats, Floats]], value: float, at: f
 
 def _cut(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str) -> bool:
     """Cuts the range of rates that grow without bound at input dead centres; returns whether it did."""
-    ranges = [(line, told_range(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
+    ranges = [(line, range_drawn(line.circuit, getattr(line, quantity), quantity)) for line in drawn]
     spans = [span for _, span in ranges if span is not None]
     if quantity == "angle" or not any(span is not None and line.circuit.turns_back for line, span in ranges):
         return False

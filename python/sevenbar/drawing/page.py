@@ -11,6 +11,7 @@ from matplotlib.legend import Legend
 
 from sevenbar.arrays import Floats
 from sevenbar.drawing import style
+from sevenbar.drawing.figure import new_figure
 from sevenbar.drawing.scene import draw_box, frame_box
 from sevenbar.drawing.skeleton import Skeleton
 from sevenbar.drawing.space import Box, ViewAxes, box_round, draw_frame, fit, measuring, seen_size, set_limits
@@ -101,6 +102,28 @@ def picture_height(view: Projection, box: Box, width: float) -> float:
     wide, tall = seen_size(view, box)
     inner = width - left - right
     return float(np.clip(inner * tall / (wide or 1.0), LOWEST * inner, HIGHEST * inner) + below + above)
+
+
+def page_of_one(
+    size: tuple[float, float],
+    view: Projection,
+    box: Box,
+    heading: str,
+    handles: Sequence[Any],
+    *,
+    fixed: bool,
+) -> tuple[Figure, ViewAxes, Rectangle]:
+    """A page [inch] with a title, one picture and a legend; its axes, and the room of the picture.
+
+    Unless its height is `fixed`, it is what the picture needs.
+    """
+    figure = new_figure(*size)
+    top, foot = write_title(figure, heading), write_legend(figure, handles)
+    width, height = figure.get_size_inches()
+    if not fixed:
+        height = top + foot + picture_height(view, box, width)
+        set_height(figure, height)
+    return figure, ViewAxes(own_axes(figure, view), view), (0.0, foot, width, height - top - foot)
 
 
 def fit_picture(space: ViewAxes, box: Box, room: Rectangle, *, bare: bool = False) -> None:

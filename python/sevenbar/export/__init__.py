@@ -255,7 +255,7 @@ def format_of(path: Path, to: str | None) -> str:
         if path.suffix.lower() in form.endings:
             return word
     endings = ", ".join(ending for form in FORMATS.values() for ending in form.endings)
-    raise RequestError(f"{path}: {shown(path.suffix)} tells no format; give one of {endings}")
+    raise RequestError(f"{path}: {shown(path.suffix)} is the ending of no format; give one of {endings}")
 
 
 def ending_of(to: str) -> str:

@@ -129,7 +129,7 @@ def hub_height(pose: Pose) -> float:
 
 
 def assemble(pose: Pose, seats: tuple[Seat, ...], unit: float) -> Assembly:
-    """All parts in a pose, each joint seated as told."""
+    """All parts in a pose, each joint at its seat."""
     linkage = pose.linkage
     count = len(linkage.joints)
     colours = _link_colours(pose)
@@ -399,7 +399,7 @@ def _moved(part: Part, frame: Floats) -> Part:
 
 
 def _link_colours(pose: Pose) -> list[str]:
-    """The figures' colours of the moving links; neighbours of one colour are told apart by a lighter one."""
+    """The figures' colours of the moving links; of neighbours of one colour one is lighter."""
     colours, _ = link_colours(pose.linkage, (pose.motion.input, pose.motion.output))
     for k in range(1, len(colours)):
         if colours[k] == colours[k - 1]:

@@ -121,18 +121,18 @@ def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:
     turns = linkage.column_kinds[circuit.input_column] == "turn"
     name = linkage.columns[circuit.input_column]
 
-    def told(value: float) -> str:
+    def written(value: float) -> str:
         return f"{math.degrees(value):.6g} deg" if turns else f"{value:.6g} {linkage.length_unit}"
 
     if circuit.input_range is None:
         allowed = "another value"
     else:
         low, high = circuit.input_range
-        allowed = f"a value from {told(low)} to {told(high)}"
+        allowed = f"a value from {written(low)} to {written(high)}"
     if len(motion.circuits) > 1:
         allowed += ", or another circuit"
     return RequestError(
-        f"at: circuit {circuit.index} has no pose of definite joint values at {name} = {told(at)}; "
+        f"at: circuit {circuit.index} has no pose of definite joint values at {name} = {written(at)}; "
         f"give {allowed}"
     )
 

@@ -119,7 +119,7 @@ def write_json(motion: Motion, path: Path, units: Units) -> None:
 def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
     """What the numbers mean: the linkage, the drive, the columns and the units.
 
-    In a `flat` table each column's name tells its unit, and angles are in degrees with units "file".
+    In a `flat` table each column's name has its unit, and angles are in degrees with units "file".
     """
     linkage = motion.linkage
     length = "m" if units == "si" else linkage.length_unit

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.forces.counterweights import Balance
+from sevenbar.forces.result import Forces
 from sevenbar.kinematics.circuits import Circuit, Extremes, Law
 from sevenbar.kinematics.geometry import Point
+from sevenbar.kinematics.loaded import loading_with
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.plane_and_sphere import plane_of
 from sevenbar.kinematics.transmission import best_row, transmission_angle, transmission_extremes
@@ -68,6 +73,21 @@ class LinkageAnswers:
         if circuit.input_turns and circuit.input_range is None:
             low_at, high_at = low_at % math.tau, high_at % math.tau
         return Extremes(low, low_at, high, high_at)
+
+    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+        """The forces on a circuit's rows, with what is given in place of what the linkage has."""
+        # the engine by numbers is for those who ask
+        from sevenbar.kinematics.forces import forces_of
+
+        return forces_of(self.linkage, circuit, loading_with(self.linkage, **given))
+
+    def counterweights(
+        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
+    ) -> Balance:
+        """Counterweights on links for the least shaking, with what is given in place of what is written."""
+        from sevenbar.kinematics.balance import balance_of
+
+        return balance_of(self.linkage, circuit, self.forces(circuit, given), links, how)
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar import _core
+import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.general import expanded, merged, size_of
@@ -56,9 +56,9 @@ def rssr_rows(own: Mapping[str, Floats | float], count: int, *, follows: bool) -
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Motions(Printed):
-    """What the motions of n linkages come to.
+    """The results of the motions of n linkages.
 
-    `clear` (n,) tells which are told here; of the others, that have a reason to give or must be followed
+    `clear` (n,) says which are classified here; of the others, that have a reason to give or must be followed
     further, nothing else means anything. `types` (n,) are words; `limits` (n, m) [rad, or length] rise, NaN
     after the last. `linkage` (c,) has the linkage of each circuit, `circuit` (c,) its number there; `columns`
     (c,) its measures by name as `measures.MEASURES` has them, NaN where there is none.
@@ -89,7 +89,7 @@ def rssr_types(dimensions: Floats, side: str, threads: int) -> tuple[npt.NDArray
 
 
 def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> Motions:
-    """What the motions of RSSRs come to, the input of each moving at its `speed` (n,) [rad/s].
+    """Measures of the motions of RSSRs, the input of each moving at its `speed` (n,) [rad/s].
 
     The output range of a change point is not among it: that takes following. As `rssr_types` for the rest.
     """
@@ -105,7 +105,7 @@ def rssr_motions(dimensions: Floats, side: str, speed: Floats, threads: int) -> 
 
 
 def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int, threads: int) -> Motions:
-    """What the motions of loops of one pattern of joints come to, each at the speed of its drive.
+    """Measures of the motions of loops of one pattern of joints, each at the speed of its drive.
 
     `input` and `output` are places of columns, `samples` inputs in a turn. Not clear are loops that the input
     does not drive, and those without a circuit, whose reason must be looked for.

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
+from sevenbar.forces.bodies import Body
+from sevenbar.forces.counterweights import Balance
+from sevenbar.forces.loading import Load, Spring
+from sevenbar.forces.result import Forces
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.rigid import axial, pose
@@ -82,7 +86,7 @@ class Sensitivity(Printed):
     `names` and `units` (k,) are those of the numbers, as in the file. `position` (n, columns, k) [rad, or
     length, by the number's unit], `velocity` and `acceleration` by time at the circuit's own input, which
     stays as it is; of a ball's turns there is the position only. `points` has each named point's derivative
-    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` tells why), for
+    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` says why), for
     numbers that open the loop if they change alone (`opening`), and for what spins idly.
     """
 
@@ -191,8 +195,18 @@ class Answers(Protocol):
         """The lowest and the highest mechanical advantage."""
         ...
 
+    def counterweights(
+        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
+    ) -> Balance:
+        """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
+        ...
+
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) in the plane of a planar loop (..., 2)."""
+        ...
+
+    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+        """The forces on its rows, with what is given in place of what the linkage has."""
         ...
 
 
@@ -402,6 +416,68 @@ class Circuit(Printed):
             (('M', 'N', 'L1', 'L2', 'L3', 'D'), (12, 8, 6))
         """
         return self._sensitivity(self)
+
+    @ends_here
+    def forces(
+        self,
+        *,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: tuple[float, float, float] | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+    ) -> Forces:
+        """What the input has to give, and what every joint bears, on each row.
+
+        Bodies (by their link), gravity [m/s^2], loads and springs are those of the linkage's file, or the
+        given ones. Rates are those of the circuit: for statics, ask a motion with a law that rests. Raises
+        `RequestError` where nothing has a mass and nothing acts.
+
+            >>> import sevenbar as sb
+            >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
+            >>> found = sb.load("rssr").motion().circuits[0].forces(bodies={1: crank}, gravity=(0, 0, -9.81))
+            >>> round(float(found.reactions["crank"].force[0, 2]), 6)  # the ground lifts 2 kg
+            19.62
+
+        Source: docs/theory_forces.md, (1) to (7).
+        """
+        given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
+        return self._answers.forces(self, {key: value for key, value in given.items() if value is not None})
+
+    @ends_here
+    def counterweights(
+        self,
+        links: Sequence[int],
+        *,
+        radius: float | Mapping[int, float] | None = None,
+        most_mass: float | Mapping[int, float] | None = None,
+        measure: Literal["rms", "greatest"] = "rms",
+        force: float = 1.0,
+        moment: float = 0.0,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+    ) -> Balance:
+        """Counterweights on some links for the least shaking of all bodies, the linkage's or those given.
+
+        Least squares over the cycle give mass times radius for each link, and the mass at a `radius` [length]
+        from its joint at the ground, or from the joint before it. With `most_mass` [kg] no mass is above and
+        none farther than `radius`, each a number or one by link; then the `measure` "rms" over the cycle or
+        the "greatest" of the rows is the least there is, with its proof. What counts is the size of `force`
+        times the force and `moment` [1/m] times the moment about the report's origin, without that of the
+        counterweights' own inertia.
+
+        Raises `RequestError` for arguments that do not fit, and where the shaking has no bound.
+
+            >>> import sevenbar as sb
+            >>> rod = {2: sb.Body(mass=1.3, solid="rod")}
+            >>> found = sb.load("rssr").motion().circuits[0].counterweights([1, 3], bodies=rod)
+            >>> found.rank, found.unknowns, bool(found.after < 1e-12 * found.before)
+            (4, 6, True)
+            >>> [round(one.product, 6) for one in found.counterweights]  # half of 1.3 kg at 250 and 550 mm
+            [162.5, 357.5]
+
+        Source: docs/theory_forces.md, (27) to (33).
+        """
+        how = {"radius": radius, "most_mass": most_mass, "measure": measure, "force": force, "moment": moment}
+        return self._answers.counterweights(self, links, {} if bodies is None else {"bodies": bodies}, how)
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

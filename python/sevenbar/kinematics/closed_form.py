@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar import _core
+import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import SPIN_UNDEFINED, Circuit, Integers, Law, Trace, Words

@@ -10,7 +10,7 @@ from typing import Any, Literal
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Joint, Loop
 from sevenbar.kinematics.word import Place
-from sevenbar.text.units import ANGLES, amount, examples_of, sizes_of
+from sevenbar.text.units import ANGLES, examples_of
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,10 @@ class Dimension:
 
         Raises `RequestError` for a text that is no finite number with a unit that fits.
         """
-        value = amount(text, sizes_of(self.unit), self.unit)
+        # `import sevenbar` needs no reader of formulas
+        from sevenbar.text.amounts import amount_in
+
+        value = amount_in(text, self.unit)
         if value is None:
             comma = " (a decimal point, not a comma)" if "," in text else ""
             given = shown(text.strip())

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from sevenbar import _core
+import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits import (
     STATUSES,
@@ -40,7 +40,7 @@ def change_points_from(raw: _core.RawMotion, column: int) -> tuple[ChangePoint, 
 
 
 def search_from(raw: _core.RawSearch, columns: Sequence[str]) -> Search:
-    """What a search came to, with the names of the columns."""
+    """What a search found, with the names of the columns."""
     found, count = raw.found, raw.count
     return Search(
         completeness=raw.completeness,

@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar import _core
+import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit, Integers, Law, Trace, Words
@@ -37,7 +37,7 @@ STILL = np.eye(4)
 #: An angle [rad] short of a full turn by less is zero.
 ROUNDING = 1e-12
 
-#: Limits [rad, or parts of the size] nearer than this are one.
+#: Limits [rad, or relative to the size] nearer than this are one.
 SAME_LIMIT = 1e-6
 
 
@@ -65,7 +65,7 @@ class GeneralLoop:
         """Freedoms that move one link only, in words."""
         names = [joint.name for joint in self._linkage.joints]
 
-        def told(word: str, link: int, held: int, other: int) -> str:
+        def text(word: str, link: int, held: int, other: int) -> str:
             first, second = names[held], names[other]
             match word:
                 case "between-balls" if self._linkage.kind == "RSSR":
@@ -74,8 +74,8 @@ class GeneralLoop:
                     return f"spin of link {link} about the line of {first} and {second}"
                 case "chain-between-balls":
                     links = [str(i) for i in range(held + 1, other + 1)]
-                    told = f"{', '.join(links[:-1])} and {links[-1]}"
-                    return f"spin of links {told} together about the line of {first} and {second}"
+                    listed = f"{', '.join(links[:-1])} and {links[-1]}"
+                    return f"spin of links {listed} together about the line of {first} and {second}"
                 case "ball-on-axis":
                     return f"spin of link {link} about the axis of {first}, on which {second} lies"
                 case "one-axis":
@@ -83,7 +83,7 @@ class GeneralLoop:
                 case _:
                     return f"slide of link {link} along the common direction of {second} and {first}"
 
-        return tuple(told(*freedom) for freedom in self._idle())
+        return tuple(text(*freedom) for freedom in self._idle())
 
     def held(self) -> tuple[frozenset[int], list[int], int]:
         """How idle freedoms are held: balls as two turns, columns at zero, and how many spins otherwise.
@@ -345,7 +345,7 @@ def size_of(linkage: Loop) -> float:
 def merged(limits: npt.ArrayLike, *, turns: bool, size: float) -> Floats:
     """Limits of all circuits [rad in [0, 2 pi), or length], rising, equal ones once.
 
-    `size` [length] is that of the loop, by which a slide tells what is equal.
+    `size` [length] is that of the loop, by which slides are compared.
     """
     values: Floats = np.asarray(limits, dtype=np.float64)
     same = SAME_LIMIT if turns else SAME_LIMIT * size

@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
-from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z
+from sevenbar.forces.loading import UNLOADED, Loading
+from sevenbar.kinematics.joints import Freedom, JointKind, Step, X, Z, kind_row
 from sevenbar.kinematics.rigid import about, inverse, pose
 from sevenbar.text.printing import Drawable
 
@@ -44,7 +45,7 @@ class Joint:
     @cached_property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
+        return kind_row(self.kind, backwards=self.backwards)
 
     @cached_property
     def columns(self) -> tuple[str, ...]:
@@ -121,7 +122,8 @@ class Loop(Drawable):
     to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
-    up to a closure error [rad, or relative to the size], the usual one where it is `None`.
+    up to a closure error [rad, or relative to the size], the usual one where it is `None`;
+    `loading` is what acts on it.
 
     Source: docs/theory.md, (1).
     """
@@ -138,6 +140,7 @@ class Loop(Drawable):
     dimensions: Mapping[str, float] = field(default_factory=dict)
     form: Form = "drawn"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    loading: Loading = field(default=UNLOADED, repr=False)
     agree: float | None = None
 
     def __post_init__(self) -> None:

@@ -3,7 +3,7 @@
 An extreme of y(x, p) over x changes with p as y itself does at that place, dy*/dp = partial y/partial p (the
 envelope theorem); where a symmetric linkage has it at two places, this is true of one of them. The place
 changes by `dx*/dp = -(partial y'/partial p) / y''`. A dead centre of the input is an
-extreme of the input over the output, so the loop driven by its output tells how it moves.
+extreme of the input over the output, so the loop driven by its output shows how it moves.
 
 Source: docs/theory_design.md, (6).
 """
@@ -78,7 +78,7 @@ def _apart(values: Floats, turns: bool) -> Floats:
 def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[MeasureSlopes]:
     """Extremes of the output and its rates, swing and time ratio."""
     column, numbers = circuit.output_column, loop.numbers
-    unit, told = _angle_or_length(numbers, column)
+    unit, scale = _angle_or_length(numbers, column)
     ends = []
     if circuit.angle is not None:
         for end in ("lowest", "highest"):
@@ -87,11 +87,11 @@ def _extremes(loop: NumberedLoop, circuit: Circuit, speed: float) -> Iterator[Me
             if here is None:
                 continue
             ends.append(here)
-            yield MeasureSlopes(f"angle_{end}", unit, value * told, here.slopes[0] * told, 1 / told)
+            yield MeasureSlopes(f"angle_{end}", unit, value * scale, here.slopes[0] * scale, 1 / scale)
     if len(ends) == 2 and circuit.swing is not None:
         low, high = ends
         yield MeasureSlopes(
-            "swing", unit, circuit.swing * told, (high.slopes[0] - low.slopes[0]) * told, 1 / told
+            "swing", unit, circuit.swing * scale, (high.slopes[0] - low.slopes[0]) * scale, 1 / scale
         )
         ratio = circuit.time_ratio
         if ratio is not None and circuit.angle is not None:
@@ -148,7 +148,7 @@ def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
     """Dead centres of the input, each once."""
     back = numbers.loop(circuit.output_column)
     place = circuit.input_column
-    unit, told = _angle_or_length(numbers, place)
+    unit, scale = _angle_or_length(numbers, place)
     centres = [centre for centre in circuit.dead_centres if centre.kind == "input"]
     for number, centre in enumerate(sorted(centres, key=lambda c: c.input), 1):
         slopes = np.full(len(numbers.names), np.nan)
@@ -156,8 +156,8 @@ def _limits(numbers: Numbers, circuit: Circuit) -> Iterator[MeasureSlopes]:
         apart = np.abs(_apart(q[:, place] - centre.input, bool(numbers.turns[place])))
         if len(q) and apart.min() < SAME_VALUE * numbers.scales[place]:
             best = int(np.argmin(apart))
-            slopes = back.slopes(q[best : best + 1], 0).by_number[0, 0, :, place] * told
-        yield MeasureSlopes(f"limit_{number}", unit, centre.input * told, slopes, 1 / told)
+            slopes = back.slopes(q[best : best + 1], 0).by_number[0, 0, :, place] * scale
+        yield MeasureSlopes(f"limit_{number}", unit, centre.input * scale, slopes, 1 / scale)
 
 
 def poses_at(loop: NumberedLoop, circuit: Circuit, value: float) -> Floats:

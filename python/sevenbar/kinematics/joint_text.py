@@ -7,7 +7,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.units import amount, examples_of, number_in, sizes_of
+from sevenbar.text.units import examples_of
 
 
 def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
@@ -17,7 +17,10 @@ def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
     """
     slides = linkage.column_kinds[column] == "slide"
     unit, plain = (linkage.length_unit,) * 2 if slides else ("rad", "deg")
-    value = amount(text, sizes_of(unit), plain)
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import amount_in
+
+    value = amount_in(text, unit, plain)
     if value is None:
         kind = "slides" if slides else "turns"
         raise RequestError(
@@ -34,7 +37,10 @@ def given_number(key: str, value: object, unit: str) -> object:
     """
     if not isinstance(value, str):
         return value
-    number = number_in(unit, value)
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import amount_in, lacks_unit
+
+    number = None if lacks_unit(value, "angle" if unit == "rad" else "length") else amount_in(value, unit)
     if number is None:
         example = "one as in '30 deg'" if unit == "rad" else f"one as in '12 {unit}'"
         plain = "radians" if unit == "rad" else unit
@@ -43,6 +49,17 @@ def given_number(key: str, value: object, unit: str) -> object:
             f"or a number in {plain}"
         )
     return number
+
+
+def check_own_unit(key: str, angle: str) -> None:
+    """Refuses the text of an angle without a unit, as in Python a number alone is in radians."""
+    # `import sevenbar` needs no reader of formulas
+    from sevenbar.text.amounts import lacks_unit
+
+    if lacks_unit(angle, "angle"):
+        raise RequestError(
+            f"{key}: {shown(angle)} has no unit; give one as in '30 deg', or a number in radians"
+        )
 
 
 def joint_number(key: str, value: npt.ArrayLike, linkage: Loop, column: int) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
@@ -11,6 +12,8 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
+from sevenbar.forces.bodies import Body
+from sevenbar.forces.loading import Load, Spring
 from sevenbar.kinematics.answers import LinkageAnswers
 from sevenbar.kinematics.circuits import Circuit, Law
 from sevenbar.kinematics.closed_form import ClosedForm
@@ -18,6 +21,7 @@ from sevenbar.kinematics.four_bar import four_bar_of
 from sevenbar.kinematics.general import AGREE, GeneralLoop
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.joint_text import joint_number, joint_numbers, pose_numbers
+from sevenbar.kinematics.loaded import loaded
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
@@ -35,6 +39,27 @@ class Linkage(Solvable):
 
     Source: docs/theory.md, (1).
     """
+
+    @ends_here
+    def loaded(
+        self,
+        *,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: npt.ArrayLike | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+    ) -> Linkage:
+        """The linkage with other bodies by their link, gravity (3,) [m/s^2], loads and springs.
+
+        What is left out stays as it is. Raises `RequestError` for a link or a joint that does not exist.
+
+            >>> import sevenbar as sb
+            >>> crank = sb.Body(mass=1.2, centre=(125, 0, 0))
+            >>> linkage = sb.load("rssr").loaded(bodies={1: crank}, gravity=(0, 0, -9.80665))
+            >>> linkage.loading.bodies[1][0].mass
+            1.2
+        """
+        return loaded(self, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
 
     @property
     def lengths(self) -> tuple[float, float, float]:
@@ -226,13 +251,13 @@ class Linkage(Solvable):
         return LinkageAnswers(self)
 
     @ends_here
-    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+    def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule, driven and read as the drive has it or as given.
 
         `None` for a loop that is no planar or spherical four-bar and no slider-crank.
 
             >>> import sevenbar as sb
-            >>> bar = sb.load("planar_4r").four_bar()
+            >>> bar = sb.load("planar_4r").as_four_bar()
             >>> bar.excess, bar.grashof
             (-30.0, 'crank-rocker')
 

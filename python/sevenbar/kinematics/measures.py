@@ -144,8 +144,8 @@ def _measure(given: object) -> Measure:
         return MEASURES[given]
     if callable(given):
         name = getattr(given, "__name__", "measure").strip("<>")
-        told = (getattr(given, "__doc__", None) or name).splitlines()[0]
-        return Measure(name, "linkage", "ratio", given, told)
+        about = (getattr(given, "__doc__", None) or name).splitlines()[0]
+        return Measure(name, "linkage", "ratio", given, about)
     raise RequestError(
         f"measure: {shown(given)} is not a measure; {suggestion(str(given), list(MEASURES))}"
         f"give some of {', '.join(MEASURES)}, or a function of the Motion"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.forces.directions import ROUNDING, direction_text, tidied
 
 
 @dataclass(frozen=True)
@@ -38,10 +39,6 @@ class Mobility:
         return ", ".join(parts)
 
 
-#: Below this share of a wrench's length a part of it is rounding.
-_ZERO = 1e-7
-
-
 def redundant_constraints(wrenches: Floats, base: Floats) -> tuple[str, ...]:
     """One line for each redundant constraint.
 
@@ -53,35 +50,12 @@ def redundant_constraints(wrenches: Floats, base: Floats) -> tuple[str, ...]:
     forces, moments = wrenches[:, :3] @ base[:3, :3].T, wrenches[:, 3:] @ base[:3, :3].T
     # pure moments first: combinations without a force
     _, values, rows = np.linalg.svd(forces.T, full_matrices=True)
-    rank = int((values > _ZERO).sum())
+    rank = int((values > ROUNDING).sum())
     couples = rows[rank:] @ moments
-    lines = [f"a moment about {_direction(c)}" for c in _tidied(couples)]
+    lines = [f"a moment about {direction_text(c)}" for c in tidied(couples)]
     carriers = rows[:rank]
     for force, moment in zip(carriers @ forces, carriers @ moments, strict=True):
         pitch = float(force @ moment) / float(force @ force)
-        kind = "a force along" if abs(pitch) < _ZERO or len(couples) else "a wrench along"
-        lines.append(f"{kind} {_direction(force)}")
+        kind = "a force along" if abs(pitch) < ROUNDING or len(couples) else "a wrench along"
+        lines.append(f"{kind} {direction_text(force)}")
     return tuple(lines)
-
-
-def _tidied(vectors: Floats) -> Floats:
-    """A basis of the same space, along coordinate axes where these lie in it."""
-    if len(vectors) == 0:
-        return vectors
-    basis = np.linalg.qr(vectors.T)[0].T
-    kept = [axis for axis in np.eye(3) if np.linalg.norm(axis - basis.T @ (basis @ axis)) < _ZERO]
-    for vector in basis:
-        rest = vector - sum((float(vector @ k) * k for k in kept), np.zeros(3))
-        if len(kept) < len(basis) and np.linalg.norm(rest) > 0.1:
-            kept.append(rest / np.linalg.norm(rest))
-    return np.array(kept[: len(basis)])
-
-
-def _direction(vector: Floats) -> str:
-    unit = vector / np.linalg.norm(vector)
-    for axis, name in zip(np.eye(3), "xyz", strict=True):
-        if abs(abs(float(unit @ axis)) - 1) < _ZERO:
-            return name
-    if unit[np.argmax(np.abs(unit))] < 0:
-        unit = -unit
-    return "(" + ", ".join(f"{x:.4f}" for x in np.where(np.abs(unit) < _ZERO, 0.0, unit)) + ")"

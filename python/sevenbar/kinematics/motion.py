@@ -74,7 +74,7 @@ class Output(Printed):
     """Both branches of the closed form on n inputs; arrays (2, n), `None` above the order asked for.
 
     `position` [rad], `velocity` [rad/s], `acceleration` [rad/s^2], `jerk` [rad/s^3]. An input without
-    solution keeps its place as NaN; so do the rates at an input dead centre. `status` tells which.
+    solution keeps its place as NaN; so do the rates at an input dead centre. `status` says which.
     """
 
     position: Floats
@@ -100,7 +100,7 @@ def _none() -> Floats:
 class Modes(Printed):
     """All assembly modes at one input: joint values (m, columns), angles in (-pi, pi].
 
-    Turns of a ball that have no direction are NaN; `status` tells of such modes.
+    Turns of a ball that have no direction are NaN; `status` says which.
     """
 
     q: Floats
@@ -108,7 +108,7 @@ class Modes(Printed):
     completeness: Literal["closed-form", "algebraic", "searched"]
     columns: tuple[str, ...]
     input: float
-    #: Other poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.
     misfits: Floats = field(default_factory=_none)
     #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
     agree: float = math.nan
@@ -152,7 +152,7 @@ class Count:
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What a search for the circuits came to; of the closed form no more than that.
+    """What a search for the circuits found; of the closed form no more than that.
 
     All modes were found at so many `values` of each of the `columns`; from `unfollowed` of them no motion
     could be followed. `rank` is that of the joints' screws in these poses and `freedoms` those of the
@@ -165,7 +165,7 @@ class Search:
     unfollowed: int = 0
     rank: int | None = None
     freedoms: int | None = None
-    #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.
     misfits: Floats = field(default_factory=_none)
     #: How the circuits were counted; `None` where they were not.
     count: Count | None = None
@@ -226,7 +226,7 @@ class Solvable(Loop, ABC):
         """Whether it can only move in a plane."""
 
     @abstractmethod
-    def four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
+    def as_four_bar(self, input: str | None = None, output: str | None = None) -> FourBar | None:
         """The links by Grashof's rule; `None` for a loop that is no four-bar or slider-crank."""
 
     @abstractmethod
@@ -356,7 +356,7 @@ class Motion(Drawable):
         >>> sb.load("planar_4r").motion().four_bar.grashof
         'crank-rocker'
         """
-        return self.linkage.four_bar(self.input, self.output)
+        return self.linkage.as_four_bar(self.input, self.output)
 
     def __iter__(self) -> Iterator[Circuit]:
         return iter(self.circuits)

@@ -23,15 +23,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar import _core
+import sevenbar._core as _core
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits import Circuit, Sensitivity
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import about, cross
-from sevenbar.kinematics.word import Carried, Place, Values, holding_axis, points_of, vector, word_of
+from sevenbar.kinematics.rigid import about, adjoint, cross
+from sevenbar.kinematics.word import Carried, Place, Product, Values, holding_axis, points_of, vector, word_of
 
-#: Part of what one of a number moves [rad, or parts of the size, for a radian or the size of it] that no
+#: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
 OPENING = 1e-9
 
@@ -181,7 +181,7 @@ class NumberedLoop:
         self.numbers, self.input, self.p = numbers, input, p
         word, values = numbers.word, numbers.values(p)
         self.only = range(len(p)) if only is None else only
-        own = {numbers.dimensions[k].place: i for i, k in enumerate(self.only)}
+        own = self._places = {numbers.dimensions[k].place: i for i, k in enumerate(self.only)}
         scale = np.array([1.0, 1.0, 1.0, numbers.size, numbers.size, numbers.size])
         factors = [numbers.dimensions[k].scale for k in self.only]
         moves, twists = [], []
@@ -199,7 +199,8 @@ class NumberedLoop:
             count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
             points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
         self._own = fixed, advances = self._design(values)
-        self._core = _core.Numbers(
+        #: What the core knows of it.
+        self.core = _core.Numbers(
             "".join(step.letter for step in word.steps),
             advances,
             fixed,
@@ -240,6 +241,16 @@ class NumberedLoop:
         ready = [(i, scales[i] * way / size) for i, way in sorted(ways.items())]
         return point.steps, (matrix[:3, :3] @ at + matrix[:3, 3]) / size, ready
 
+    def twists_of(self, frame: Product) -> list[tuple[int, Floats]]:
+        """By number, the twist (6,) of a link's frame against the steps before it, as the core takes it."""
+        values, dimensions = self.numbers.values(self.p), self.numbers.dimensions
+        matrix = adjoint(frame.pose(values))
+        scale = np.repeat([1.0, self.numbers.size], 3)
+        return [
+            (self._places[key], dimensions[self.only[self._places[key]]].scale * (matrix @ twist) / scale)
+            for key, twist in frame.moves(values, self._places).items()
+        ]
+
     def followed(
         self, x: npt.ArrayLike, q: Floats, designs: Floats | None = None, steps: Floats | None = None
     ) -> tuple[Floats, Floats]:
@@ -257,7 +268,7 @@ class NumberedLoop:
         scaled = None if steps is None else np.ascontiguousarray(steps / scales)
         start = np.ascontiguousarray(q / scales)
         start[:, self.numbers.held] = 0.0
-        found, sides = self._core.follow(start, inputs, fixed, advances, scaled)
+        found, sides = self.core.follow(start, inputs, fixed, advances, scaled)
         return found * scales, sides
 
     def opening(self, circuit: Circuit) -> npt.NDArray[np.bool_]:
@@ -297,7 +308,7 @@ class NumberedLoop:
         """Rates and derivatives up to an order (0 to 3) at closed poses q (n, columns)."""
         numbers, own = self.numbers, self.numbers.scales[self.input]
         scales, size = numbers.scales, numbers.size
-        rates, by, points, points_by, aside, idle, points_idle = self._core.slopes(
+        rates, by, points, points_by, aside, idle, points_idle = self.core.slopes(
             np.ascontiguousarray(q / scales), order
         )
         by_time = own ** -np.arange(4.0)

@@ -23,9 +23,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.polynomial import Chebyshev
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.stationary import curve_through, nodes, real_roots
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.axes import Axes, axes_along
 from sevenbar.kinematics.circuits import Circuit, Extremes, Law
@@ -37,13 +37,6 @@ from sevenbar.kinematics.poses import Walk, walk
 
 #: Rows in a turn between which extremes are searched, whatever the samples of the motion.
 SAMPLES = 360
-
-#: Poses from which the curve of sin(mu) between three rows is made: the next term of its series is rounding.
-NODES = 16
-
-#: A root with a smaller imaginary part counts as real: rounding makes two complex ones of a double root. One
-#: too many does no harm, as each is a pose on the circuit.
-NEARLY_REAL = 1e-4
 
 #: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
 AT_DEAD_CENTRE = 1e-7
@@ -243,17 +236,16 @@ class _Search:
             brackets += [(number, stretch, u[i], u[i + 2]) for i in np.flatnonzero(peaks)]
         if not brackets:
             return []
-        nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
-        inputs = [stretch.input((a + b) / 2 + (b - a) / 2 * nodes) for _, stretch, a, b in brackets]
+        inputs = [stretch.input((a + b) / 2 + (b - a) / 2 * nodes()) for _, stretch, a, b in brackets]
         values = self.at([number for number, *_ in brackets], inputs)
         flat: list[tuple[int, float]] = []
         for (number, stretch, a, b), (sines, cosines) in zip(brackets, values, strict=True):
             if np.isfinite(sines).all():
                 # a right angle is a double zero of the sine's derivative, or a zero of the cosine
                 angle = np.unwrap(np.arctan2(sines, cosines))
-                curves = [_curve(nodes, values) for values in (sines, angle, cosines)]
+                curves = [curve_through(values) for values in (sines, angle, cosines)]
                 for curve in (curves[0].deriv(), curves[1].deriv(), curves[2]):
-                    places = [(a + b) / 2 + (b - a) / 2 * root for root in _real_roots(curve)]
+                    places = [(a + b) / 2 + (b - a) / 2 * root for root in real_roots(curve)]
                     flat += [(number, float(stretch.input(place))) for place in places]
         if not flat:
             return []
@@ -289,17 +281,6 @@ class _Search:
     def sine_and_cosine(self, rows: Circuit) -> tuple[Floats, Floats]:
         """Sine and cosine of the angle on rows (n,)."""
         return sine_and_cosine(self.coupling, axes_along(self.linkage, rows))
-
-
-def _curve(nodes: Floats, values: Floats) -> Chebyshev:
-    """The polynomial through values at nodes (n,) from -1 to 1."""
-    return Chebyshev.fit(nodes, values, NODES - 1, domain=[-1, 1])
-
-
-def _real_roots(curve: Chebyshev) -> Floats:
-    """The real roots of a polynomial from -1 to 1; double ones may be a pair with small imaginary parts."""
-    roots = curve.roots()
-    return np.asarray(roots.real[(np.abs(roots.imag) < NEARLY_REAL) & (np.abs(roots.real) <= 1)])
 
 
 @dataclass(frozen=True)

@@ -376,14 +376,18 @@ class Word:
             found += [*parts[1:-1], parts[-1] + behind]
         return tuple(found)
 
-    def point(self, link: int, place: Place) -> Carried:
-        """A point of a link, counted from 1, as it is written at a place."""
+    def carrier(self, link: int) -> tuple[int, Product]:
+        """The steps before a link, counted from 1, and the frame there in which its points are written."""
         frame = self.frames[link - 1]
         if link == len(self.freedoms):
             # the ground's own frame is that of the report
-            return Carried(0, frame, place)
+            return 0, frame
         behind = self.inner[link - 1][-1:] or (Product(()),)
-        return Carried(sum(map(len, self.freedoms[:link])), behind[0] + frame, place)
+        return sum(map(len, self.freedoms[:link])), behind[0] + frame
+
+    def point(self, link: int, place: Place) -> Carried:
+        """A point of a link, counted from 1, as it is written at a place."""
+        return Carried(*self.carrier(link), place)
 
 
 def _seen(frame: Floats, moves: Moves) -> Moves:

@@ -107,8 +107,7 @@ def calibration_figure(calibration: Calibration) -> Figure:
 
 
 def _grid(columns: int, heights: tuple[float, ...]) -> tuple[Figure, Any]:
-    figure = page_figure(WIDE if columns == 1 else NARROW * columns, TALL)
-    figure.set_layout_engine("constrained", h_pad=0.04, w_pad=0.06)
+    figure = page_figure(WIDE if columns == 1 else NARROW * columns, TALL, pads=(0.04, 0.06))
     grid = figure.subplots(
         len(heights), columns, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights}
     )

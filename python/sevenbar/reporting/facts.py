@@ -71,8 +71,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         )  # fmt: skip
         facts.append(("law", law))
     facts.append(("motion type", say(motion.motion_type)))
-    if told := meaning(motion):
-        facts.append(("", told))
+    if sentence := meaning(motion):
+        facts.append(("", sentence))
     if near := nearly_moves(motion):
         facts.append(("nearly moves", near))
     facts.append(("circuits", _circuit_count(motion)))
@@ -114,8 +114,8 @@ def joints_text(linkage: Loop) -> str:
 def dimensions_text(linkage: Solvable) -> str:
     """The dimensions by name; nothing of Denavit-Hartenberg rows, which want a table."""
     numbers = {} if linkage.in_rows else dict(linkage.dimensions) or side_lengths(linkage)
-    told = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
-    return f"{told}  [{linkage.length_unit}]" if told else ""
+    listed = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
+    return f"{listed}  [{linkage.length_unit}]" if listed else ""
 
 
 def _change_points(motion: Motion) -> list[tuple[str, str]]:

@@ -22,8 +22,8 @@ _UNCOUNTED = {
     "still": "circuits are not counted, since there may be motions with the joint at rest",
 }
 
-#: Ranges that do not balance told in one sentence.
-MOST_RANGES_TOLD = 4
+#: Ranges that do not balance listed in one sentence.
+MOST_RANGES = 4
 
 #: A range narrower than this [deg] is given by its middle, as one about a change point.
 NARROW_RANGE_DEG = 0.01
@@ -71,7 +71,7 @@ def how_found(motion: Motion) -> str:
 
 
 def _counted(search: Search) -> str:
-    """What the count of branch points tells; empty where nothing was counted."""
+    """What the count of branch points shows; empty where nothing was counted."""
     count = search.count
     if count is None:
         return say(_UNCOUNTED[search.uncounted]) if search.uncounted in _UNCOUNTED else ""
@@ -82,15 +82,15 @@ def _counted(search: Search) -> str:
         if others := count.complex_branch_points:
             many = say("{dead_centres} and {count} complex", dead_centres=many, count=others)
         return say("branch points of {joint} are all accounted for: {points}", joint=count.joint, points=many)
-    told = []
-    for each in count.open[:MOST_RANGES_TOLD]:
+    ranges_open = []
+    for each in count.open[:MOST_RANGES]:
         what = say("some") if each.missing is None else f"{each.missing}"
         if each.missing is not None and each.missing < 0:
             what = say("{count} too many", count=-each.missing)
         start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
         if wide < NARROW_RANGE_DEG:
             middle = (start + wide / 2) % 360
-            told.append(
+            ranges_open.append(
                 say(
                     "{what} within {half:.1g} deg of {middle:.6g} deg",
                     what=what,
@@ -100,11 +100,11 @@ def _counted(search: Search) -> str:
             )
         else:
             low = start % 360
-            told.append(
+            ranges_open.append(
                 say("{what} between {low:.6g} and {high:.6g} deg", what=what, low=low, high=low + wide)
             )
-    ranges = say(", ").join(told)
-    if len(count.open) > MOST_RANGES_TOLD:
+    ranges = say(", ").join(ranges_open)
+    if len(count.open) > MOST_RANGES:
         ranges = say("{ranges} and elsewhere", ranges=ranges)
     return say(
         "branch points of {joint} are not all accounted for: {ranges}", joint=count.joint, ranges=ranges

@@ -56,7 +56,7 @@ def speed_text(speed: float, unit: str, written: str = "") -> str:
 
 
 def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: Sequence[int] = ()) -> Table:
-    """A table with names in its first column and numbers, flush right, in the others but for `words`."""
+    """A table with names in its first column and numbers, flush right, in the others except `words`."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for place, head in enumerate(heads):
         right = place > 0 and place not in words
@@ -70,8 +70,8 @@ def opening(kind: str, page: RenderableType) -> str:
     """What a result of this kind prints of itself: the title of its page, and the facts below it."""
     parts = page.renderables[:2] if isinstance(page, Group) else [page]
     console = Console(file=StringIO(), width=WIDTH, color_system=None)
-    with console.capture() as told:
+    with console.capture() as printed:
         for part in parts:
             console.print(part)
-    title, *facts = told.get().splitlines()
+    title, *facts = printed.get().splitlines()
     return "\n".join([f"{kind} of '{title.strip()}'", *(f"  {line}".rstrip() for line in facts)])

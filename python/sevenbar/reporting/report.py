@@ -49,11 +49,11 @@ __all__ = [
 def as_dict(motion: Motion) -> dict[str, Any]:
     """The report as plain values: angles in radians, lengths in the linkage's unit, null beside a status.
 
-    Values of a sliding input or output are lengths; `linkage.columns` tells which slide.
+    Values of a sliding input or output are lengths; `linkage.columns` says which slide.
 
         >>> import sevenbar as sb
-        >>> told = as_dict(sb.load("rssr").motion())
-        >>> told["motion_type"], len(told["circuits"])
+        >>> found = as_dict(sb.load("rssr").motion())
+        >>> found["motion_type"], len(found["circuits"])
         ('crank-rocker', 2)
     """
     linkage = motion.linkage
@@ -163,13 +163,13 @@ def text(motion: Motion) -> RenderableType:
     """The report for people, to be printed by rich; angles in degrees."""
 
     def parts(width: int) -> Iterator[RenderableType]:
-        told = summary(motion, width)
+        page = summary(motion, width)
         facts = Facts()
-        for name, fact in told.facts:
+        for name, fact in page.facts:
             facts.add(name, fact, style="bold" if name == say("motion type") else "")
-        yield Text(told.title, style="bold underline")
+        yield Text(page.title, style="bold underline")
         yield facts.grid
-        for sheet in told.sheets:
+        for sheet in page.sheets:
             yield Text()
             yield _table(sheet)
             if sheet.note:
@@ -190,12 +190,12 @@ def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
     >>> markdown(sb.load("rssr").motion()).splitlines()[0]
     '# RSSR of Sun and Zhou'
     """
-    told = summary(motion)
-    parts = [f"# {escaped(told.title)}"]
+    page = summary(motion)
+    parts = [f"# {escaped(page.title)}"]
     parts.append(
-        "\n".join(f"- {name}: {escaped(fact)}" if name else f"  {escaped(fact)}" for name, fact in told.facts)
+        "\n".join(f"- {name}: {escaped(fact)}" if name else f"  {escaped(fact)}" for name, fact in page.facts)
     )
-    for sheet in told.sheets:
+    for sheet in page.sheets:
         heads, *rows = ([escaped(cell.strip()) for cell in line] for line in (sheet.heads, *sheet.rows))
         parts.append(table(heads, rows, right=sheet.right))
         parts += [sheet.note] if sheet.note else []
@@ -263,7 +263,7 @@ def write(
 ) -> list[Path]:
     """Writes report.md, report.json, motion.csv and the figures into a folder; returns their paths.
 
-    The folder is made if need be. The figures are configuration and motion; but for an RSSR, whose curves
+    The folder is made if need be. The figures are configuration and motion; except for an RSSR, whose curves
     tell all, also joints, and path_<name> for each named point. All files are finished in a folder beside it
     before the first is put in place. Raises `OutputError` where that cannot be done, and where one of them
     exists and `force` is not given.

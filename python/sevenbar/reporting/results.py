@@ -98,17 +98,17 @@ def _(motion: Motion) -> str:
 
 def _circuits(motion: Motion) -> list[tuple[str, str]]:
     """A line for each circuit: its type where they differ, its ranges; one line where all agree."""
-    told = []
+    rows = []
     for circuit in motion.circuits[:MOST_CIRCUITS]:
         facts = circuit_facts(motion, circuit, ("motion type", "range of "))
         texts = [text for label, text in facts if label == "motion type"]
         ranges = [(label, text) for label, text in facts if label.startswith("range of ")]
         texts += [f"{label.removeprefix('range of ')} {text}" for label, text in ranges]
-        told.append((f"  {circuit.index}", ", ".join(texts)))
-    if len({text for _, text in told}) == 1:
-        return [("", told[0][1])]
-    more = len(motion.circuits) - len(told)
-    return told + [("", f"and {more} more")] * (more > 0)
+        rows.append((f"  {circuit.index}", ", ".join(texts)))
+    if len({text for _, text in rows}) == 1:
+        return [("", rows[0][1])]
+    more = len(motion.circuits) - len(rows)
+    return rows + [("", f"and {more} more")] * (more > 0)
 
 
 @text_of.register(Circuit)

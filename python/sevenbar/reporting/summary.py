@@ -20,7 +20,7 @@ from sevenbar.text.words import say
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
 
-#: Dead centres told in one cell; an output that rests has no end of them.
+#: Dead centres listed in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
 
 #: Values below this share of what the linkage's size and its drive make are rounding.
@@ -55,7 +55,7 @@ class Summary:
 
 
 def summary(motion: Motion, room: int = 100) -> Summary:
-    """All that the report tells people of a motion, in lines of `room` characters if that can be.
+    """All that the report says of a motion, in lines of `room` characters if that can be.
 
     Angles are in degrees, rates in radians.
     """
@@ -134,7 +134,7 @@ def _every_digit(number: float) -> str:
 
 @dataclass(frozen=True)
 class _Quantity:
-    """What is told of each circuit: one text or more.
+    """What is reported of each circuit: one text or more.
 
     `name`, in English, is what it is called here, `words` and `unit` are its label in a list, `head` is above
     its column. Two texts that are the `ends`
@@ -157,7 +157,7 @@ class _Quantity:
 
 
 def _quantities(motion: Motion) -> list[_Quantity]:
-    """All that is told of circuits, in order."""
+    """All that is reported of circuits, in order."""
     first, second = motion.input, motion.output
     in_unit, out_unit = (motion.linkage.unit_of(end) for end in (first, second))
     place, result = (Shown("rad" if unit == "rad" else "") for unit in (in_unit, out_unit))
@@ -325,7 +325,7 @@ def way_round(circuit: Circuit) -> str:
     return turns_text(circuit.turns) if circuit.turns else say("to and fro")
 
 
-def _telling(
+def _reported(
     motion: Motion, form: Literal["list", "table"], labels: tuple[str, ...] = ("",)
 ) -> list[tuple[_Quantity, list[Texts]]]:
     """Each quantity with its cells, without those that say nothing, or that the facts hold already.
@@ -338,12 +338,12 @@ def _telling(
         if quantity.only in ("", form) and quantity.name.startswith(labels)
     ]
     found = [(quantity, [quantity.cells(circuit) for circuit in motion]) for quantity in quantities]
-    told = f"range of {motion.input}"
+    full = f"range of {motion.input}"
     return [
         (quantity, cells)
         for quantity, cells in found
         if any(cell[0] not in _nothing() for cell in cells)
-        and not (quantity.name == told and set(cells) == {(say("full turns"),)})
+        and not (quantity.name == full and set(cells) == {(say("full turns"),)})
     ]
 
 
@@ -357,14 +357,14 @@ def circuit_facts(motion: Motion, circuit: Circuit, labels: tuple[str, ...] = ("
 
     Of all, those whose names begin with one of the `labels`.
     """
-    told = [(quantity, [cells[circuit.index]]) for quantity, cells in _telling(motion, "list", labels)]
-    return [(label, cells[0]) for label, cells in _lines(told) if cells[0] not in _nothing()]
+    reported = [(quantity, [cells[circuit.index]]) for quantity, cells in _reported(motion, "list", labels)]
+    return [(label, cells[0]) for label, cells in _lines(reported) if cells[0] not in _nothing()]
 
 
-def _lines(told: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Texts]]:
+def _lines(reported: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Texts]]:
     """Quantities as lines of a list, those with two ends as two lines."""
     lines: list[tuple[str, Texts]] = []
-    for quantity, cells in told:
+    for quantity, cells in reported:
         if quantity.ends and any(len(cell) == 2 for cell in cells):
             lines.append((quantity.label(say("min")), tuple(cell[0] for cell in cells)))
             lines.append((quantity.label(say("max")), tuple(cell[-1] for cell in cells)))
@@ -375,7 +375,7 @@ def _lines(told: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Tex
 
 def _side_by_side(motion: Motion) -> list[Sheet]:
     """A line for each quantity: first those that circuits share, then with a column for each circuit."""
-    lines = _lines(_telling(motion, "list"))
+    lines = _lines(_reported(motion, "list"))
     if len(motion.circuits) == 1:
         return [_list(motion, [say("circuit {number}", number=0)], lines)]
     shared = [(label, cells[:1]) for label, cells in lines if len(set(cells)) == 1]
@@ -388,11 +388,11 @@ def _side_by_side(motion: Motion) -> list[Sheet]:
 
 def _compared(motion: Motion, room: int) -> list[Sheet]:
     """What all circuits share, then one table: a row for each circuit, those that agree in one row."""
-    told = _telling(motion, "table")
+    reported = _reported(motion, "table")
     shared = [
-        (quantity.label(), (quantity.between.join(cells[0]),)) for quantity, cells in told if _same(cells)
+        (quantity.label(), (quantity.between.join(cells[0]),)) for quantity, cells in reported if _same(cells)
     ]
-    own = [(quantity, cells) for quantity, cells in told if not _same(cells)]
+    own = [(quantity, cells) for quantity, cells in reported if not _same(cells)]
     sheets = [_list(motion, [say("every circuit")], shared)] if shared else []
     if own:
         table = _comparison(motion, own)
@@ -405,15 +405,15 @@ def _compared(motion: Motion, room: int) -> list[Sheet]:
     return sheets
 
 
-def _comparison(motion: Motion, told: Sequence[tuple[_Quantity, list[Texts]]]) -> Sheet:
+def _comparison(motion: Motion, reported: Sequence[tuple[_Quantity, list[Texts]]]) -> Sheet:
     alike: dict[Texts, list[str]] = {}
     for circuit in motion:
-        row = tuple("\n".join(cells[circuit.index]) for _, cells in told)
+        row = tuple("\n".join(cells[circuit.index]) for _, cells in reported)
         alike.setdefault(row, []).append(str(circuit.index))
     rows = tuple((", ".join(indices), *row) for row, indices in alike.items())
-    heads = (say("circuit"), *(quantity.head for quantity, _ in told))
+    heads = (say("circuit"), *(quantity.head for quantity, _ in reported))
     notes = []
-    if any(quantity.name.startswith("range of") for quantity, _ in told):
+    if any(quantity.name.startswith("range of") for quantity, _ in reported):
         notes.append(say("the ends of a range are dead centres"))
     if len(rows) < len(motion.circuits):
         notes.append(say("circuits that agree in all of this share a row"))
@@ -442,7 +442,7 @@ def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts
 
 
 def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = False) -> Texts:
-    """Where the input or the output stands still; `within`: but for the ends of its range."""
+    """Where the input or the output stands still; `within`: the ends of its range left out."""
     found: Sequence[DeadCentre] = [d for d in circuit.dead_centres if d.kind == kind]
     if within:
         angle = circuit.angle

@@ -124,7 +124,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         askew = np.linalg.norm(turn - np.eye(3), axis=(-1, -2)).max() / math.sqrt(2)
         returned = (float(apart), float(askew))
     found = Simulation(course, model, record, values, theory, points, returned)
-    return replace(found, differences=tuple(_differences(found)))
+    return replace(found, differences=(*_differences(found), *_force_differences(found)))
 
 
 def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyStates:
@@ -183,6 +183,40 @@ def _differences(run: Simulation) -> Iterator[Difference]:
                 np.zeros(len(apart)),
                 float(np.nanmax(np.linalg.norm(getattr(theory_point, what), axis=1), initial=0.0)),
             )
+
+
+def _force_differences(run: Simulation) -> Iterator[Difference]:
+    """The input's torque, and in each joint what its constraints bear as far as equilibrium determines it.
+
+    What passes along a joint's own freedoms is a spring's, and at the input the torque; a ball that holds an
+    idle spin bears what the rule needs.
+    """
+    record, circuit, rows = run.record, run.course.circuit, run.course.rows
+    if record.drive is None or record.reactions is None:
+        return
+    first = len(run.course.lead)
+    forces = circuit.forces()
+    name = run.linkage.columns[circuit.input_column]
+    what = "force" if forces.slides else "torque"
+    yield _difference(run, f"{name} {what}", forces.unit, record.drive[first:], forces.torque[rows])
+    for joint, seat in zip(run.linkage.joints, run.model.seats, strict=True):
+        connection = run.model.connections[seat]
+        if connection.row.is_screw:
+            continue
+        reaction = forces.reactions[joint.name]
+        free = np.array(connection.row.free)
+        axes, found = reaction.axes[rows], record.reactions[first:, seat]
+        for word, unit, own, held, part in (
+            ("force", "N", reaction.force, reaction.determinate[3:] & ~free[:3], found[:, :3]),
+            ("moment", "N m", reaction.moment, reaction.determinate[:3] & ~free[3:], found[:, 3:]),
+        ):
+            if not held.any():
+                continue
+            engine = np.einsum("nji,nj->ni", axes, part)[:, held]
+            theory = own[rows][:, held]
+            apart = np.linalg.norm(engine - theory, axis=1)
+            scale = float(np.nanmax(np.linalg.norm(theory, axis=1), initial=0.0))
+            yield _difference(run, f"{joint.name} {word}", unit, apart, np.zeros(len(apart)), scale)
 
 
 def _difference(

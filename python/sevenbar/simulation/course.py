@@ -68,7 +68,7 @@ class Course:
             values[-1] += np.where(turns & np.isfinite(whole), whole, 0.0)
         return values
 
-    def told(self) -> str:
+    def text(self) -> str:
         """What is followed, in words."""
         if self.closes:
             turns = self.circuit.turns

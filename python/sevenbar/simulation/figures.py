@@ -39,8 +39,7 @@ def output_figure(run: Simulation) -> Figure:
         ("acceleration", unit, "/s²", run.engine.ddq, run.theory.ddq),
     )
     with styled():
-        figure = page_figure(9.2, 7.2)
-        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
+        figure = page_figure(9.2, 7.2, pads=(0.06, 0.08))
         grid = figure.subplots(3, 2, sharex=True)
         for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
             own, other = theory[:, column], engine[:, column]
@@ -60,8 +59,7 @@ def joints_figure(run: Simulation) -> Figure:
     linkage = run.linkage
     kinds = [kind for kind in ("turn", "slide") if kind in linkage.column_kinds]
     with styled():
-        figure = page_figure(9.2, 1.6 + 3.4 * len(kinds))
-        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
+        figure = page_figure(9.2, 1.6 + 3.4 * len(kinds), pads=(0.06, 0.08))
         grid = figure.subplots(len(kinds), 2, sharex=True, squeeze=False)
         for (left, right), kind in zip(grid, kinds, strict=True):
             unit = "rad" if kind == "turn" else linkage.length_unit
@@ -97,8 +95,7 @@ def points_figure(run: Simulation) -> Figure:
     unit = run.linkage.length_unit
     rows = (("position", ""), ("velocity", "/s"), ("acceleration", "/s²"))
     with styled():
-        figure = page_figure(9.2, 7.4)
-        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.08)
+        figure = page_figure(9.2, 7.4, pads=(0.06, 0.08))
         grid = figure.subplots(3, 2, sharex=True)
         for (left, right), (what, per) in zip(grid, rows, strict=True):
             for place, (name, (engine, theory)) in enumerate(run.points.items()):

@@ -177,7 +177,7 @@ def _apart(joint: Joint, turn: Floats, local: Floats, angle: Floats) -> tuple[Fl
     held = local[:, [axis for axis in range(3) if not free[axis]]]
     gap = np.linalg.norm(held, axis=1)
     if row.is_screw:
-        # up to whole turns, which the axial place tells
+        # up to whole turns, which follow from the axial place
         turns = np.round((local[:, 2] / joint.advance - angle) / math.tau) if joint.advance else 0.0
         gap = np.hypot(gap, local[:, 2] - joint.advance * (angle + math.tau * turns))
     if row.is_ball:

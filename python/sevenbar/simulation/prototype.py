@@ -14,10 +14,11 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.joints import KINDS, JointKind
+from sevenbar.kinematics.joints import JointKind, kind_row
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.poses import frames_along
 from sevenbar.kinematics.rigid import about, inverse, pose
+from sevenbar.simulation.acting import Acting, acting
 
 #: The number of the ground among the bodies.
 GROUND = -1
@@ -66,7 +67,7 @@ class Connection:
     @property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
+        return kind_row(self.kind, backwards=self.backwards)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +122,10 @@ class Prototype:
     rates: Floats
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...] = ()
+    #: Masses, loads and springs; none where the linkage has none, and any masses will do.
+    acting: Acting | None = None
+    #: The connection that has the constraints of each joint of the linkage next to the link before it.
+    seats: tuple[int, ...] = ()
 
     def frames(self, number: int) -> tuple[Floats, Floats]:
         """Both frames (4, 4) of a joint at the start, in the report frame."""
@@ -141,13 +146,15 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     Raises `NotCoveredError` for an idle freedom that is not the spin of a link between two balls.
     """
     frames = frames_along(linkage, circuit, np.array([row]))[0]
-    # rates of a row are told for the input at the motion's own speed, whatever the pass
+    # rates of a row are given for the input at the motion's own speed, whatever the pass
     share = speed / circuit.dq[row, circuit.input_column]
     bodies: list[Body] = []
     connections: list[Connection] = []
     values: list[Floats] = []
     rates: list[Floats] = []
     drive: PrescribedMotion | None = None
+    links, columns = {len(linkage.joints): GROUND}, dict[str, tuple[int, int]]()
+    seats = []
     before = GROUND
     last = len(linkage.joints) - 1
 
@@ -164,6 +171,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         paces = [share * pace[0] for _, pace in joint.steps(circuit.dq[row, own][None])]
         frame_before = linkage.base if i == 0 else linkage.links[i - 1]
         first = len(connections)
+        seats.append(first)
         if joint.row.has_cross:
             # the cross is a body of its own
             (step, q), *rest = steps
@@ -183,6 +191,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         if i < last:
             bodies.append(link_body(i))
             after, frame_after = len(bodies) - 1, np.eye(4)
+            links[i + 1] = after
         else:
             after, frame_after = GROUND, linkage.ground
         name, kind = joint.name, joint.kind
@@ -199,6 +208,8 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             number = len(connections) - 1 if step.tilted or not joint.row.has_cross else first
             if not joint.row.is_ball:
                 values[number][step.number], rates[number][step.number] = q[0], pace
+            if not step.driven:
+                columns[linkage.columns[column]] = (number, step.number)
             if column == circuit.input_column and not step.driven:
                 drive = PrescribedMotion(number, step.number, float(q[0]), speed)
             column += not step.driven
@@ -216,6 +227,8 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         np.array(values),
         np.array(rates),
         linkage.mobility().redundant,
+        acting(linkage, links, columns),
+        tuple(seats),
     )
 
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 def as_dict(run: Simulation) -> dict[str, Any]:
     """The result of a run, as plain values: angles in radians, lengths in the linkage's unit."""
     way = run.course
-    told = {
+    values = {
         "format": 1,
         "linkage": {"name": run.linkage.name, "kind": run.linkage.kind},
         "units": {"length": run.linkage.length_unit, "angle": "rad", "time": "s"},
@@ -53,7 +53,7 @@ def as_dict(run: Simulation) -> dict[str, Any]:
         "closure_error": {"length": run.gap, "angle": run.tilt},
         "returned": None if run.returned is None else {"length": run.returned[0], "angle": run.returned[1]},
     }
-    return without_nan(told)  # type: ignore[no-any-return]
+    return without_nan(values)  # type: ignore[no-any-return]
 
 
 def text(run: Simulation) -> RenderableType:
@@ -64,7 +64,7 @@ def text(run: Simulation) -> RenderableType:
     facts.add("loop", "  ".join(f"{j.kind} {j.name}" for j in linkage.joints))
     facts.add("engine", f"{record.engine} {record.version}: {record.method}")
     facts.add("drive", drive_text(motion.input, motion.speed, linkage.unit_of(motion.input), motion.output))
-    facts.add("course", way.told())
+    facts.add("course", way.text())
     lead = f", after {len(way.lead)} that are not compared" if len(way.lead) else ""
     facts.add("steps", f"{len(way.rows) - 1} of {way.step:.6g} s{lead}")
     for number, note in enumerate(record.notes):

@@ -22,7 +22,7 @@ from sevenbar.text.progress import Progress
 #: The engines by name.
 ENGINES: dict[str, Callable[..., Record]] = {"exudyn": exudyn_engine.run, "mujoco": mujoco_engine.run}
 
-#: Steps for a turn of the input where nothing is said, as in the paper's simulation.
+#: Steps for a turn of the input where none are given, as in the paper's simulation.
 STEPS = 3600
 
 

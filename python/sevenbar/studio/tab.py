@@ -71,7 +71,7 @@ class Tab:
                 self._verdict = gui.add_html("")
             left.dock_left()
             left.set_width(_width(LEFT, window))
-        self._told: tuple[object, ...] = ()
+        self._shown: tuple[object, ...] = ()
 
     def start(self) -> None:
         """Shows the session, and goes on to do so."""
@@ -83,7 +83,7 @@ class Tab:
         self._transport.tick(seconds)
 
     def _show(self) -> None:
-        """Shows what the session has come to."""
+        """Shows the session as it is."""
         self._handles.follow()
         with self._client.atomic():
             self._transport.show()
@@ -92,20 +92,20 @@ class Tab:
         # at once, without waiting for the end of viser's own interval
         self._client.flush()
         # nothing is sent while messages are grouped, so the longest work is done before that
-        told = (self.session.motion, self.session.view, self.session.problem)
-        content = self._verdict.content if told == self._told else verdict(self.session)
+        now = (self.session.motion, self.session.view, self.session.problem)
+        content = self._verdict.content if now == self._shown else verdict(self.session)
         with self._client.atomic():
             self._legend.show()
             self._handles.show()
             self._shape.show()
             self._points.show()
             self._files.show()
-            if told != self._told:
-                self._told = told
+            if now != self._shown:
+                self._shown = now
                 self._verdict.content = content
 
     def _fault(self) -> None:
-        """Tells of a fault of the studio's own, after which the tab goes on."""
+        """Reports a fault of the studio's own, after which the tab goes on."""
         traceback.print_exc(file=sys.stderr)
         self._client.add_notification("A fault", FAULT, color="red")
 

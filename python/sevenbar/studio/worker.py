@@ -74,7 +74,7 @@ class Worker(threading.Thread):
         try:
             action()
         except Exception:
-            # the page that is told may be gone
+            # the page may be gone
             with suppress(Exception):
                 self._fault()
 

@@ -164,15 +164,15 @@ def _wider(known: Range | None, numbers: Any, linkage: Any) -> Range | None:
 
 @text_of.register(Sweep)
 def _(sweep: Sweep) -> str:
-    told = sweep.description
-    sampling = told["sampling"]
+    about = sweep.description
+    sampling = about["sampling"]
     return lines(
-        f"Sweep of {told['linkages']} linkages",
+        f"Sweep of {about['linkages']} linkages",
         [
-            ("dimensions", ", ".join(axis["column"] for axis in told["dimensions"])),
+            ("dimensions", ", ".join(axis["column"] for axis in about["dimensions"])),
             ("method", sampling["method"]),
             ("seed", "" if sampling["seed"] is None else str(sampling["seed"])),
-            ("measures", ", ".join(m if isinstance(m, str) else m["name"] for m in told["measures"])),
+            ("measures", ", ".join(m if isinstance(m, str) else m["name"] for m in about["measures"])),
             ("folder", "none, in memory" if sweep.folder is None else str(sweep.folder)),
         ],
     )

@@ -28,7 +28,7 @@ from sevenbar.text.expression import (
     sind,
     tand,
 )
-from sevenbar.text.units import ANGLES, LENGTHS, TURNING_SPEEDS, length_sizes
+from sevenbar.text.units import ANGLES, LENGTHS, TURNING_SPEEDS, amount, length_sizes, sizes_of
 
 #: The functions of an angle by what they are in degrees, and those that give one.
 OF_ANGLES = {"sin": sind, "cos": cosd, "tan": tand}
@@ -53,10 +53,63 @@ def value_of(text: str, kind: Kind, *, length_unit: str = "mm", angle_unit: str 
         >>> value_of("pi/3", "angle"), value_of("1in + 2 cm", "length")
         (60.0, 45.4)
     """
-    if kind == "pitch":
-        text = _A_TURN.sub("", text)
     if len(text) > LONGEST:
         raise RequestError(f"{len(text)} characters are too long; give a formula of at most {LONGEST}")
+    own = ANGLES[angle_unit]
+    try:
+        number = _fitting(_computed(text, kind, length_unit, angle_unit), kind, own)
+    except WrongFormulaError as error:
+        remedy = "" if "; " in str(error) else f"; give {_EXAMPLES[kind]}"
+        raise RequestError(f"{shown(text)}: {error}{remedy}") from None
+    if not math.isfinite(number):
+        raise RequestError(f"{shown(text)} has no finite value; give {_EXAMPLES[kind]}")
+    return number
+
+
+def amount_in(text: str, unit: str, plain: str = "") -> float | None:
+    """The number in "rad", "mm", "mm/turn", "rad/s" or "" that a text writes down; `None` for what is none.
+
+    The text is a number with or without a unit, or a formula. Without a unit it is in `plain`, the same unit
+    where none is given; an angle of pi is in radians.
+
+        >>> amount_in("180", "rad", "deg"), amount_in("pi/6", "deg"), amount_in("2*1 in", "mm")
+        (3.141592653589793, 30.0, 50.8)
+    """
+    plain = plain or unit
+    sizes = sizes_of(unit)
+    value = amount(text, sizes, plain)
+    if value is not None:
+        return value
+    try:
+        if plain in ANGLES:
+            return value_of(text, "angle", angle_unit=plain) * sizes[plain]
+        if plain == "":
+            return value_of(text, "number")
+        length, slash, per = plain.partition("/")
+        if length in LENGTHS and per in ("", "turn"):
+            return value_of(text, "pitch" if slash else "length", length_unit=length) * sizes[plain]
+        return amount(plain_speed(text), sizes, plain)
+    except RequestError:
+        return None
+
+
+def lacks_unit(text: str, kind: Kind) -> bool:
+    """Whether an angle or a length is written without a unit; not so for pi, nor for what is no formula.
+
+    >>> [lacks_unit(text, "angle") for text in ("30", "2*15", "pi/6", "2*15deg", "wide")]
+    [True, True, False, False, False]
+    """
+    try:
+        found = _computed(text, kind, "mm", "deg")
+    except WrongFormulaError:
+        return False
+    return found.plain and not (kind == "angle" and found.turns)
+
+
+def _computed(text: str, kind: Kind, length_unit: str, angle_unit: str) -> _Amount:
+    """What a formula gives, in these units; raises `WrongFormulaError`."""
+    if kind == "pitch":
+        text = _A_TURN.sub("", text)
     sizes = length_sizes(length_unit)
     names = {name: _Amount(value, turns=name == "pi") for name, value in CONSTANTS.items()}
     names |= {CALLED[unit]: _Amount(size, length=Fraction(1)) for unit, size in sizes.items()}
@@ -65,17 +118,10 @@ def value_of(text: str, kind: Kind, *, length_unit: str = "mm", angle_unit: str 
     for unit, size in ANGLES.items():
         same = unit == angle_unit
         names[CALLED[unit]] = _Amount(1.0 if same else size / own, angle=1, turns=not same)
-    try:
-        body = parsed(text, names)
-        with np.errstate(all="ignore"):
-            found = evaluated(body, names, partial(_operated, own=own), partial(_applied, own=own))
-        number = _fitting(found, kind, own)
-    except WrongFormulaError as error:
-        remedy = "" if "; " in str(error) else f"; give {_EXAMPLES[kind]}"
-        raise RequestError(f"{shown(text)}: {error}{remedy}") from None
-    if not math.isfinite(number):
-        raise RequestError(f"{shown(text)} has no finite value; give {_EXAMPLES[kind]}")
-    return number
+    body = parsed(text, names)
+    with np.errstate(all="ignore"):
+        found = evaluated(body, names, partial(_operated, own=own), partial(_applied, own=own))
+    return found if isinstance(found, _Amount) else _Amount(float(found))
 
 
 #: What a dimension may look like, for messages.
@@ -182,23 +228,22 @@ def _applied(name: str, value: Any, *, own: float) -> _Amount:
     return _Amount(number / own, angle=1, turns=True) if name in TO_ANGLES else _Amount(number)
 
 
-def _fitting(found: Any, kind: Kind, own: float) -> float:
-    """The number of an amount that has the unit of its dimension, or none."""
-    amount = found if isinstance(found, _Amount) else _Amount(float(found))
-    number = float(amount.number)
-    if kind == "angle" and amount.plain and amount.mixed:
+def _fitting(found: _Amount, kind: Kind, own: float) -> float:
+    """The number of an found that has the unit of its dimension, or none."""
+    number = float(found.number)
+    if kind == "angle" and found.plain and found.mixed:
         raise WrongFormulaError(
             "it adds a number of pi and another; give each its unit, as in 'pi/3 rad + 5deg'"
         )
-    if kind == "angle" and amount.turns and amount.plain:
-        amount = _Amount(number / own, angle=1, turns=True)
+    if kind == "angle" and found.turns and found.plain:
+        found = _Amount(number / own, angle=1, turns=True)
     wanted = {"length": (1, 0), "pitch": (1, 0), "angle": (0, 1), "number": (0, 0)}[kind]
-    if not amount.plain and not amount.has(*wanted):
+    if not found.plain and not found.has(*wanted):
         belongs = {"angle": "an angle", "number": "a number without a unit"}.get(kind, "a length")
-        raise WrongFormulaError(f"is {amount.what} where {belongs} belongs")
+        raise WrongFormulaError(f"is {found.what} where {belongs} belongs")
     # 60, not 59.99999999999999, of pi/3
-    short = float(f"{amount.number:.13g}")
-    return short if amount.turns and abs(short - amount.number) <= 2e-15 * abs(short) else amount.number
+    short = float(f"{found.number:.13g}")
+    return short if found.turns and abs(short - found.number) <= 2e-15 * abs(short) else found.number
 
 
 _SPEED_UNITS = "|".join([*TURNING_SPEEDS, *(f"{unit}/s" for unit in LENGTHS)])

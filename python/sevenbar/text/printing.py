@@ -1,6 +1,6 @@
 """How results print themselves: what it is, then what a person asks first; arrays by their shape.
 
-What is said of a result is written where its words are: `text_of` and `picture_of` take one function for each
+What a result prints is written where its words are: `text_of` and `picture_of` take one function for each
 kind, in the module that `SAID_IN` names for its folder, imported when the first one is printed.
 """
 
@@ -82,8 +82,8 @@ def _import_words(value: object) -> None:
 @singledispatch
 def text_of(value: Any) -> str:
     """The lines that a result prints: by default its fields."""
-    told = [(f.name, brief(getattr(value, f.name))) for f in fields(value) if f.repr]
-    return lines(type(value).__name__, told)
+    listed = [(f.name, brief(getattr(value, f.name))) for f in fields(value) if f.repr]
+    return lines(type(value).__name__, listed)
 
 
 @singledispatch
@@ -102,12 +102,12 @@ def lines(head: str, facts: Iterable[tuple[str, str]]) -> str:
     """A head, and below it facts: labels and texts in two columns, long texts in several lines."""
     kept = [(label, text) for label, text in facts if text]
     left = max((len(label) for label, _ in kept), default=0)
-    told = [head]
+    printed = [head]
     for label, text in kept:
         parts = wrap(text, WIDTH - left - 4, break_long_words=False) or [""]
-        told.append(f"  {label:{left}}  {parts[0]}")
-        told += [f"  {'':{left}}  {part}" for part in parts[1:]]
-    return "\n".join(told)
+        printed.append(f"  {label:{left}}  {parts[0]}")
+        printed += [f"  {'':{left}}  {part}" for part in parts[1:]]
+    return "\n".join(printed)
 
 
 def brief(value: object) -> str:

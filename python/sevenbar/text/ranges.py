@@ -6,10 +6,15 @@ in a list each value has its own.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 from sevenbar.errors import RequestError, shown
+from sevenbar.text.amounts import lacks_unit
 from sevenbar.text.units import ANGLES, LENGTHS, amount, sizes_of, split_quantity
+
+#: A unit that ends a value: after a number or a bracket.
+_UNIT_AT_END = re.compile(rf"(?<=[\d.)\s])({'|'.join((*LENGTHS, *ANGLES))})\s*$")
 
 #: Three numbers: a place, a direction.
 Place = tuple[float, float, float]
@@ -65,15 +70,21 @@ def split_grid(text: str) -> tuple[str, str, int] | None:
 
 
 def with_common_unit(low: str, high: str) -> tuple[str, str]:
-    """The two ends of a range, the unit of the high one added to a low one that has none.
+    """The two ends of a range, the unit at the end of the high one added to a low one that has none.
 
     >>> with_common_unit("0", "90 deg"), with_common_unit("5cm", "1m"), with_common_unit("1", "2")
     (('0deg', '90 deg'), ('5cm', '1m'), ('1', '2'))
+    >>> with_common_unit("2*5", "40cm"), with_common_unit("-pi/2", "90 deg")
+    (('(2*5)cm', '40cm'), ('-pi/2', '90 deg'))
     """
-    first, second = split_quantity(low), split_quantity(high)
-    if first and second and second[1] in (*ANGLES, *LENGTHS) and not first[1]:
-        return f"{low}{second[1]}", high
-    return low, high
+    at_end = _UNIT_AT_END.search(high.replace("\u00b0", "deg"))
+    if at_end is None:
+        return low, high
+    unit = at_end[1]
+    first = split_quantity(low)
+    if first is not None and not first[1]:
+        return f"{low}{unit}", high
+    return (f"({low}){unit}" if lacks_unit(low, "angle" if unit in ANGLES else "length") else low), high
 
 
 def split_list(text: str) -> list[str]:

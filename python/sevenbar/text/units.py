@@ -1,4 +1,4 @@
-"""Units that people write: lengths, angles, and the speed of a drive."""
+"""Units that people write: lengths, angles, masses, forces, and the speed of a drive."""
 
 from __future__ import annotations
 
@@ -17,6 +17,10 @@ ANGLES = {"rad": 1.0, "deg": math.pi / 180}
 
 #: Units of turning speed and their size in rad/s.
 TURNING_SPEEDS = {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.tau / 60, "rev/s": math.tau}
+
+#: Units of mass and their size in kilograms, and those of force in newtons.
+MASSES = {"g": 1e-3, "kg": 1.0, "t": 1e3, "oz": 0.028349523125, "lb": 0.45359237}
+FORCES = {"mN": 1e-3, "N": 1.0, "kN": 1e3, "lbf": 4.4482216152605}
 
 #: The least and the greatest speed [rad/s, or length/s]; the cubes of others, which jerks have as a factor,
 #: come near the ends of what a float holds.
@@ -75,18 +79,6 @@ def amount(text: str, sizes: Mapping[str, float], plain: str) -> float | None:
     number, unit = parts
     value = float(number) * sizes.get(unit or plain, math.nan)
     return value if math.isfinite(value) else None
-
-
-def number_in(unit: str, value: object) -> float | None:
-    """The number in a unit that a text with a unit of its own gives: "12 mm", "80deg".
-
-    `None` for anything else, also for a text without a unit, as in Python a number alone is in radians.
-
-    >>> number_in("mm", "1 in"), number_in("rad", "180deg"), number_in("rad", "180")
-    (25.4, 3.141592653589793, None)
-    """
-    parts = split_quantity(value) if isinstance(value, str) else None
-    return None if parts is None or not parts[1] else amount(str(value), sizes_of(unit), unit)
 
 
 def sizes_of(unit: str) -> dict[str, float]:

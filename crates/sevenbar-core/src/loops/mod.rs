@@ -1,6 +1,6 @@
 //! Any single closed loop as one equation `e(q, p) = 0`, q its joints and p its numbers, `A = de/dq`: a folder for each question to it.
 //!
-//! From below: `equation`, `rates`, `mobility`, `numbers`, `description`, `modes`, `branch_points`, `circuits`, `motions`.
+//! From below: `equation`, `rates`, `mobility`, `numbers`, `forces`, `description`, `modes`, `branch_points`, `circuits`, `motions`.
 
 // indices of columns and rows run as in the formulas
 #![allow(clippy::needless_range_loop)]
@@ -9,6 +9,7 @@ mod branch_points;
 mod circuits;
 mod description;
 mod equation;
+mod forces;
 mod mobility;
 mod modes;
 mod motions;
@@ -22,6 +23,8 @@ pub use circuits::found::{Found, Search};
 pub use description::described_loop::Loop;
 pub use equation::chain::AGREE;
 pub use equation::kinds::Kind;
+pub use forces::acting::{Acting, Body, JointSpring, Load, Place, PointSpring};
+pub use forces::reactions::{Reactions, Seat, reactions};
 pub use mobility::idle::Idle;
 pub use modes::assembly::{Modes, modes};
 pub use modes::finder::Completeness;

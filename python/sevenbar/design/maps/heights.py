@@ -58,7 +58,7 @@ class Contour:
 class Heights(Printed):
     """A measure over a map.
 
-    `take` tells which circuit counts; `unit` is that of the values, "" without one. `nodes` (n, 2) [shares]
+    `take` is the circuit that counts; `unit` is that of the values, "" without one. `nodes` (n, 2) [shares]
     are the places where it was taken and `values` (n,) what was found, NaN where there is none; `here` is
     the design's.
     """

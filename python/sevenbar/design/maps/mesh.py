@@ -21,10 +21,10 @@ Corner = tuple[int, int]
 #: The piece of a side between two neighbouring corners, the lesser one first.
 Edge = tuple[Corner, Corner]
 
-#: Where a chord ends: on an edge, or in the middle of a square, told by one corner twice as large.
+#: Where a chord ends: on an edge, or in the middle of a square, marked by one corner twice as large.
 Node = tuple[Corner, ...]
 
-#: More squares of one width in which boundaries are not distinct are not halved; their width is told.
+#: More squares of one width in which boundaries are not distinct are not halved; their width is reported.
 MOST_HIDING = 10_000
 
 #: More squares than this are not kept, whatever their boundaries look like.
@@ -36,8 +36,8 @@ class Scheme:
     """How finely a map is checked.
 
     `cells` squares along each range to begin with; those with a boundary are halved `regular` times, those in
-    which boundaries meet or cannot be told apart `finest` times. A chord is within `tolerance` [share of the
-    ranges] of the boundary.
+    which boundaries meet or cannot be distinguished `finest` times. A chord is within `tolerance` [share of
+    the ranges] of the boundary.
     """
 
     cells: int
@@ -154,12 +154,12 @@ class _Making:
 
     def _split(self, squares: Iterable[Square]) -> list[Square]:
         children = [child for square in squares for child in _quarters(square)]
-        # even those that nothing is in: sides are told to be halved by the corner in their middle
+        # even those that nothing is in: sides are known to be halved by the corner in their middle
         self._know(corner for child in children for corner in _corners(child))
         return children
 
     def _refined(self, squares: list[Square]) -> list[Square]:
-        """Of squares and their parts those with a boundary, or that cannot be told to have none."""
+        """Of squares and their parts those with a boundary, or that may have one."""
         scheme, plane = self.scheme, self.plane
         kept: list[Square] = []
         while squares:

@@ -20,13 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import MissingExtraError
-
-#: What is required of Clarabel, relative and absolute, in scaled variables; below, rounding is in its way.
-TOLERANCE = 1e-9
-
-#: Most steps of the interior-point method; some 15 are usual.
-MOST_STEPS = 200
+from sevenbar.forces.cones import Bounds, least_greatest_size
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,51 +48,21 @@ def least_greatest(constant: Floats, gradient: Floats, low: Floats, high: Floats
 
     Source: Boyd and Vandenberghe, Convex Optimization, 4.4.2 and 5.9.1.
     """
-    try:
-        import clarabel
-        from scipy import sparse
-    except ImportError:
-        raise MissingExtraError(
-            "the least point needs clarabel and scipy; install them with: pip install 'sevenbar[design]'"
-        ) from None
-    count = len(constant)
     centre, half = (low + high) / 2, (high - low) / 2
     # x = centre + half y, sizes relative to the greatest at the centre
     middle, slopes = constant + gradient @ centre, gradient * half
     scale = float(np.linalg.norm(middle, axis=1).max() + np.abs(slopes).max()) or 1.0
-    # rows of (t, c + G y) in the cone, then the box; slack = right - matrix @ (y, t)
-    cones = np.zeros((count, 4, 4))
-    cones[:, 0, 3] = -1.0
-    cones[:, 1:, :3] = -slopes / scale
-    sides = np.hstack([np.vstack([np.eye(3), -np.eye(3)]), np.zeros((6, 1))])
-    matrix = np.vstack([cones.reshape(-1, 4), sides])
-    right = np.concatenate([np.hstack([np.zeros((count, 1)), middle / scale]).ravel(), np.ones(6)])
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_iter = MOST_STEPS
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = TOLERANCE
-    solver = clarabel.DefaultSolver(
-        sparse.csc_matrix((4, 4)),
-        np.array([0.0, 0.0, 0.0, 1.0]),
-        sparse.csc_matrix(matrix),
-        right,
-        [clarabel.SecondOrderConeT(4)] * count + [clarabel.NonnegativeConeT(6)],
-        settings,
-    )
-    found = solver.solve()
-    at = np.clip(centre + half * np.array(found.x)[:3], low, high)
-    dual = -np.array(found.z)[: 4 * count].reshape(count, 4)[:, 1:]
-    sizes = np.linalg.norm(dual, axis=1)
-    total = float(sizes.sum()) or 1.0
+    box = Bounds(np.vstack([np.eye(3), -np.eye(3)]), np.ones(6), 6)
+    found = least_greatest_size(middle / scale, slopes / scale, box, who="the least point")
     return ConeSolution(
-        at=at,
-        bound=lower_bound(constant, gradient, low, high, dual / total),
-        weights=sizes / total,
-        status=str(found.status),
-        steps=int(found.iterations),
-        primal=float(found.obj_val) * scale,
-        dual=float(found.obj_val_dual) * scale,
-        residual=max(float(found.r_prim), float(found.r_dual)),
+        at=np.clip(centre + half * found.x, low, high),
+        bound=lower_bound(constant, gradient, low, high, found.duals),
+        weights=np.linalg.norm(found.duals, axis=1),
+        status=found.status,
+        steps=found.steps,
+        primal=found.primal * scale,
+        dual=found.dual * scale,
+        residual=found.residual,
     )
 
 

@@ -9,8 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
+from sevenbar.curves.stationary import highest_between
+from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Law, Trace
+from sevenbar.kinematics.circuits import Circuit, Trace
+from sevenbar.kinematics.driven import driven as driven_circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
@@ -19,10 +22,6 @@ ORDERS = ("position", "velocity", "acceleration", "jerk")
 #: Rows in a turn of the input, at least: two greatest values of a rate nearer than a degree would count as
 #: one.
 LEAST_ROWS = 720
-
-#: Zooms of `Cycle.peaks`, each to a quarter: from half a degree to 2e-6 rad, where a greatest value is right
-#: to 1e-12.
-ZOOMS = 6
 
 #: A row lower than this part of the greatest is not followed between rows: rows half a degree apart differ by
 #: less.
@@ -101,12 +100,9 @@ class Cycle:
     @property
     def shares(self) -> Floats:
         """The share of each row (n,) in a mean by time: alike in a closed cycle, by trapezoids over a law."""
-        count = len(self.rates.input)
-        if self.closed or count < 2:
-            return np.full(count, 1 / count)
-        steps = np.diff(self.rates.time, prepend=self.rates.time[0], append=self.rates.time[-1])
-        shares: Floats = (steps[:-1] + steps[1:]) / (2 * self.period)
-        return shares
+        if self.closed:
+            return np.full(len(self.rates.input), 1 / len(self.rates.input))
+        return shares_of(self.rates.time)
 
     def mean(self, values: Floats) -> float:
         """The mean by time of values (n,); over a closed cycle exact to rounding."""
@@ -126,15 +122,12 @@ class Cycle:
         tops &= sizes >= NEAR_GREATEST * sizes.max()
         if not tops.any():
             tops[int(np.argmax(sizes))] = True
-        centres, half = self.rates.input[tops], self.step
-        offsets, rows = np.linspace(-1.0, 1.0, 9), np.arange(len(centres))
-        for _ in range(ZOOMS):
-            grid = centres[:, None] + half * offsets
-            found = np.linalg.norm(self.at(grid.ravel()).of(order, at), axis=1).reshape(grid.shape)
-            best = found.argmax(axis=1)
-            centres, values = grid[rows, best], found[rows, best]
-            half /= 4
-        return centres, values
+        centres = self.rates.input[tops]
+        return highest_between(
+            lambda inputs: np.linalg.norm(self.at(inputs).of(order, at), axis=1),
+            centres - self.step,
+            centres + self.step,
+        )
 
 
 def cycle_of(
@@ -174,19 +167,10 @@ def driven(
     motion: Motion, circuit: Circuit, branch: int, inputs: Floats, *, speed: float | None = None
 ) -> tuple[Circuit, npt.NDArray[np.bool_]]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
-    law = Law.of(np.arange(float(len(inputs))), inputs, motion.speed if speed is None else speed, 0.0)
-    if not circuit.goes_round or circuit.turns > 1:
-        # a pose alone distinguishes neither passes nor turns
-        all_of_them = motion.linkage.motion(
-            input=motion.input, output=motion.output, law=law, agree=motion.agree
-        )
-        again = all_of_them.circuits[circuit.index]
-        return again, again.branch == branch
-    pose = circuit.q[np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0]]
-    again = motion.linkage.circuit(
-        pose, input=motion.input, output=motion.output, law=law, agree=motion.agree
+    again = driven_circuit(
+        motion.linkage, circuit, inputs, speed=motion.speed if speed is None else speed, agree=motion.agree
     )
-    return again, np.ones(len(inputs), dtype=bool)
+    return again, again.branch == branch
 
 
 def shown_inputs(cycle: Cycle, inputs: Floats) -> Floats:

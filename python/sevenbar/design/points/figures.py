@@ -105,16 +105,7 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
         where = say("in the link: the box; {count} of {all} poles near the box", **counts)
     middle = (room[0] + room[2] / 2) / width
     figure.text(middle, 0.845, f"(b) {where}", fontsize=letters() + 1, ha="center", va="bottom")
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        frameon=False,
-        fontsize=letters() - 0.5,
-        loc="lower center",
-        bbox_to_anchor=(middle, 0.0),
-        ncols=3,
-    )
+    _legend_below(figure, axes, middle, 3)
 
 
 def nearest_figure(found: NearestPath, name: str) -> Figure:
@@ -132,16 +123,7 @@ def nearest_figure(found: NearestPath, name: str) -> Figure:
             _closed(path, cycle), color=FOUND, lw=1.4, label=say("path of {name}", name=short(name, 24))
         )
         space.line(found.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label=say("wanted"))
-        handles, labels = space.axes.get_legend_handles_labels()
-        figure.legend(
-            handles,
-            labels,
-            frameon=False,
-            fontsize=letters() - 0.5,
-            loc="lower center",
-            bbox_to_anchor=(0.27, 0.0),
-            ncols=2,
-        )
+        _legend_below(figure, space.axes, 0.27, 2)
         where = "(a) " + (say("in its plane") if view.flat else say("in space"))
         figure.text(0.27, 0.835, where, fontsize=letters() + 1, ha="center", va="bottom")
         below = figure.add_axes((0.59, 0.12, 0.39, 0.70))
@@ -164,8 +146,7 @@ def inertia_figure(found: Inertia) -> Figure:
     """The torque of the input over the cycle, and the sizes of the inertia forces."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
     with styled():
-        figure = page_figure(7.0, 6.6)
-        figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+        figure = page_figure(7.0, 6.6, pads=(0.05, 0.06))
         torque, force = figure.subplots(2, 1, sharex=True)
         across = shown_inputs(cycle, found.input)
         torque.axhline(0, color=BOUND, lw=0.8)
@@ -220,6 +201,15 @@ def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:
     if not slides(cycle.motion, cycle.motion.input):
         axes.xaxis.set_major_locator(DegreeLocator(9))
     axes.set_xlabel(input_label(cycle.motion))
+
+
+def _legend_below(figure: Figure, axes: Any, middle: float, columns: int) -> None:
+    """The legend of axes at the foot of the page, about a place across it [share]."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(
+        handles, labels, frameon=False, fontsize=8.5, loc="lower center", bbox_to_anchor=(middle, 0.0),
+        ncols=columns,
+    )  # fmt: skip
 
 
 def _closed(path: Floats, cycle: Cycle) -> Floats:

@@ -68,8 +68,8 @@ def write_summary(found: DesignSet, path: Path) -> None:
 
 def toml_of(candidate: Candidate, head: Sequence[str]) -> str:
     """The design as TOML: comments with what was wanted and what it does, then the description."""
-    told = [f"{name} = {_plain(value)}" for name, value in candidate.columns.items() if value is not None]
-    measured = told[: len(told) - sum(d.kind != "speed" for d in candidate.draft.dimensions)]
+    values = [f"{name} = {_plain(value)}" for name, value in candidate.columns.items() if value is not None]
+    measured = values[: len(values) - sum(d.kind != "speed" for d in candidate.draft.dimensions)]
     # a name or a command may hold what would end a comment
     clean = ("".join(c if c.isprintable() else " " for c in line) for line in (*head, "", *measured))
     lines = [f"# {line}" if line else "#" for line in clean]

@@ -34,8 +34,7 @@ def shares_figure(linear: Linear) -> Figure:
         labels = [*labels[: MOST_BARS - 1], say("{count} others together", count=rest)]
         shares = [*shares[: MOST_BARS - 1], sum(shares[MOST_BARS - 1 :])]
     with styled():
-        figure = page_figure(6.4, 1.5 + BAR * len(labels))
-        figure.set_layout_engine("constrained", h_pad=0.06, w_pad=0.06)
+        figure = page_figure(6.4, 1.5 + BAR * len(labels), pads=(0.06, 0.06))
         axes = figure.subplots()
         axes.barh(range(len(labels)), shares, color=LINEAR, height=0.62)
         axes.set_yticks(range(len(labels)), labels)
@@ -60,8 +59,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
     """How far the output may deviate along the cycle: worst case, 3 sigma, and what samples do."""
     passes = _passes(linear)
     with styled():
-        figure = page_figure(6.4 if len(passes) == 1 else 8.4, 4.6)
-        figure.set_layout_engine("constrained", h_pad=0.04, w_pad=0.06)
+        figure = page_figure(6.4 if len(passes) == 1 else 8.4, 4.6, pads=(0.04, 0.06))
         grid = figure.subplots(1, len(passes), sharey=True, squeeze=False)[0]
         for axes, (name, rows) in zip(grid, passes, strict=True):
             _band(axes, linear, exact, rows)

@@ -20,7 +20,7 @@ from sevenbar.kinematics.linkage import Linkage
 #: By which sum the wanted error is met.
 SUMS = ("worst", "statistical")
 
-#: An effect of a small change relative to the greatest one that is none: such a dimension is not told.
+#: An effect of a small change relative to the greatest one that is none: such a dimension is left out.
 NO_EFFECT = 1e-9
 
 #: Rounds in which rows that the tolerances found bring too near to a dead centre are left out.

@@ -1,4 +1,4 @@
-"""What tolerances come to by the linear estimate, along the cycle and of each measure.
+"""What tolerances do by the linear estimate, along the cycle and of each measure.
 
 With s the derivatives of an output, t the half widths and sigma the standard deviations of the errors,
 
@@ -114,12 +114,12 @@ class Linear:
         return float(np.abs(slopes) @ self.tolerances.widths), float(np.sqrt(slopes**2 @ deviations**2))
 
     def left_out(self) -> tuple[str, ...]:
-        """What is not told, in words: rows, and dimensions."""
-        told = list(self.tolerances.left_out)
+        """What is left out, in words: rows, and dimensions."""
+        remarks = list(self.tolerances.left_out)
         words, counts = np.unique(self.status[self.status != "ok"], return_counts=True)
         for word, count in zip(words, counts, strict=True):
-            told.append(f"{count} of {len(self.status)} rows left out: {_WHY.get(str(word), str(word))}")
-        return tuple(told)
+            remarks.append(f"{count} of {len(self.status)} rows left out: {_WHY.get(str(word), str(word))}")
+        return tuple(remarks)
 
 
 _WHY = {
@@ -141,7 +141,7 @@ def linear_estimate(
     """The linear estimate of what tolerances do to an output along the cycle.
 
     `given` are half widths by name or pattern, `distribution` normal, uniform or triangular, `output` a
-    joint or a point's coordinate, of which `quantity` position, velocity or acceleration is told. Raises
+    joint or a point's coordinate, of which `quantity` position, velocity or acceleration is estimated. Raises
     `RequestError` for arguments that do not fit, and where no row is left.
 
         >>> import sevenbar as sb

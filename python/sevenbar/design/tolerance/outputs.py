@@ -67,7 +67,7 @@ def values_of(outputs: tuple[Output, ...], q: Floats, here: Slopes, speed: float
 def slopes_of(numbers: Numbers, outputs: tuple[Output, ...], q: Floats, here: Slopes, speed: float) -> Floats:
     """The derivatives (n, outputs, numbers) at rows q (n, columns) of the analysis.
 
-    What takes part in an idle motion, of which nothing can be told, is NaN.
+    What takes part in an idle motion, of which nothing is known, is NaN.
     """
     joints, idle = numbers.by_columns(q, here)
     slopes = np.stack(

@@ -1,4 +1,4 @@
-"""What tolerances come to: a page for people, an object for programs, a folder."""
+"""What tolerances do: a page for people, an object for programs, a folder."""
 
 from __future__ import annotations
 
@@ -47,7 +47,9 @@ def text(findings: Findings) -> RenderableType:
     linear, worst, exact = findings.linear, findings.worst, findings.exact
     found = linear.found
     facts = Facts()
-    facts.add("told", f"{output_words(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})")
+    facts.add(
+        "output", f"{output_words(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})"
+    )
     unit = found.linkage.unit_of(found.input_name)
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
     spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
@@ -79,7 +81,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
     """The findings as plain values: outputs in rad and length, dimensions in the units of the file."""
     linear, worst, exact = findings.linear, findings.worst, findings.exact
     found = linear.found
-    told: dict[str, Any] = {
+    plain_values: dict[str, Any] = {
         "format": 1,
         "linkage": found.linkage.name,
         "drive": {"input": found.input_name, "output": found.output_name, "speed": found.speed},
@@ -125,7 +127,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         "notes": list(linear.left_out()),
     }
     if exact is not None:
-        told["monte_carlo"] = {
+        plain_values["monte_carlo"] = {
             "count": exact.count,
             "seed": exact.seed,
             "lost": exact.lost,
@@ -139,7 +141,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
             "linear_estimate_holds": exact.holds,
             "verdict": exact.verdict,
         }
-    return told
+    return plain_values
 
 
 def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:

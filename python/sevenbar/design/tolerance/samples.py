@@ -103,7 +103,7 @@ class MonteCarlo(Printed):
                 f"{100 * RATIO_HOLDS:g} %, the mean is off by less than {BIAS_HOLDS:g} of one"
             )
         if self.holds is None:
-            return f"whether the linear estimate holds cannot be told with {self.count} samples; take more"
+            return f"whether the linear estimate holds cannot be decided with {self.count} samples; take more"
         because = []
         if self.lost:
             because.append(
@@ -218,7 +218,7 @@ def _gaps(determinants: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Which samples have inputs between two rows at which their loop does not close.
 
     The determinant goes as the root of the distance from a dead centre, so its square is smooth and would be
-    negative in a gap: the parabola through the lowest three of it tells.
+    negative in a gap: as the parabola through the lowest three of it shows.
     """
     squares = determinants**2
     place = np.argmin(squares, axis=1)

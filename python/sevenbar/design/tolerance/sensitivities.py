@@ -29,8 +29,8 @@ SMALL = 1e-3
 #: the root of what is left, sqrt(1 - 1/3), differs by a tenth from its tangent, 1 - 1/6 .. in its change.
 CLEAR = 3.0
 
-#: The quantities of a joint that are told.
-TOLD = QUANTITIES[:3]
+#: The quantities of a joint that are estimated.
+ESTIMATED = QUANTITIES[:3]
 
 #: The status of a row that is nearer.
 NEAR = "near-dead-centre"
@@ -41,7 +41,7 @@ class Sensitivities(Printed):
     """The outputs of a circuit, and their derivatives by all dimensions.
 
     `values` (rows, outputs) and `slopes` (rows, outputs, dimensions) are in the outputs' units (angles in
-    rad), and by the dimensions' units, which are the file's. NaN in rows whose `status` tells why, in columns
+    rad), and by the dimensions' units, which are the file's. NaN in rows whose `status` says why, in columns
     of dimensions that open the loop (`opening`), and in outputs of what spins idly. `input` (rows,) [rad, or
     length]; rates are at `speed`. `poses` (n, columns) are those of the `loop` on some `rows` (n,). A coupler
     that is `following` has no derivatives of its own.
@@ -84,8 +84,8 @@ class Sensitivities(Printed):
 
         Raises `RequestError` for one that does not exist.
         """
-        if quantity not in TOLD:
-            raise RequestError(f"quantity: {shown(quantity)} is not offered; give {', '.join(TOLD)}")
+        if quantity not in ESTIMATED:
+            raise RequestError(f"quantity: {shown(quantity)} is not offered; give {', '.join(ESTIMATED)}")
         name = self.output_name if output is None else output
         for k, one in enumerate(self.outputs):
             if name == one.name and quantity in ("position", one.quantity):
@@ -204,7 +204,7 @@ def sensitivities(
     here = loop.slopes(poses)
     good = np.isfinite(here.rates[:, 0]).all(axis=1)
     if not good.any():
-        raise NotCoveredError("tolerance: no joint follows the input, so there is nothing to be told")
+        raise NotCoveredError("tolerance: no joint follows the input, so there is nothing to estimate")
     rows, poses = rows[good], poses[good]
     here = loop.slopes(poses)
     outputs = outputs_of(numbers, loop.input)

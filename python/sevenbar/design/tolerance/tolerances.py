@@ -200,13 +200,13 @@ def in_class(dimension: Dimension, letter: str, length_unit: str) -> float | Non
 
 def _width(pattern: str, value: float | str, dimension: Dimension, length_unit: str) -> float | None:
     """The half width that a value gives a dimension; `None` where a class has none for it."""
-    told = f"tolerance: {pattern}={value}"
+    place = f"tolerance: {pattern}={value}"
     match = _CLASS.fullmatch(value) if isinstance(value, str) else None
     if match is not None:
         letter = match[1].lower()
         if letter not in CLASSES:
             raise RequestError(
-                f"{told}: {shown(match[1])} is no class of ISO 2768-1; give one of {', '.join(CLASSES)}"
+                f"{place}: {shown(match[1])} is no class of ISO 2768-1; give one of {', '.join(CLASSES)}"
             )
         return in_class(dimension, letter, length_unit)
     try:
@@ -214,13 +214,16 @@ def _width(pattern: str, value: float | str, dimension: Dimension, length_unit: 
     except RequestError:
         unit = dimension.unit
         raise RequestError(
-            f"{told}: not a half width for {dimension.name}; give one as in '0.1' or '0.1{unit}', "
+            f"{place}: not a half width for {dimension.name}; give one as in '0.1' or '0.1{unit}', "
             "or a class of ISO 2768-1 as in 'ISO 2768-m'"
         ) from None
     if not (math.isfinite(width) and width >= 0):
-        raise RequestError(f"{told}: a half width of {width:g} is not allowed; give one that is not negative")
+        raise RequestError(
+            f"{place}: a half width of {width:g} is not allowed; give one that is not negative"
+        )
     if dimension.positive and width >= dimension.value:
         raise RequestError(
-            f"{told}: as great as the length itself, {dimension.value:g} {dimension.unit}; give a smaller one"
+            f"{place}: as great as the length itself, {dimension.value:g} {dimension.unit}; "
+            "give a smaller one"
         )
     return width

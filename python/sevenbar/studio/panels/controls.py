@@ -1,4 +1,4 @@
-"""What the panels share: how a control is set, and how a mistake is told below it."""
+"""What the panels share: how a control is set, and how a mistake is shown below it."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Alert:
         self._line = gui.add_html("", visible=False)
 
     def tried(self, action: Callable[[], object]) -> bool:
-        """Whether an action went well; a mistake in what it was given is told here until the next try."""
+        """Whether an action went well; a mistake in what it was given is shown here until the next try."""
         try:
             action()
         except SevenbarError as error:

@@ -122,13 +122,13 @@ class FilesPanel:
             name, content = DOWNLOADS[kind](scene)
         except SevenbarError as error:
             message = str(error)
-            self._worker.ask("told", lambda: self._unsaved.tell(message))
+            self._worker.ask("shown", lambda: self._unsaved.tell(message))
         except Exception:
             traceback.print_exc()
             fault = f"{kind}: this is a fault of Sevenbar; please report the lines in the terminal"
-            self._worker.ask("told", lambda: self._unsaved.tell(fault))
+            self._worker.ask("shown", lambda: self._unsaved.tell(fault))
         else:
             self._client.send_file_download(name, content, save_immediately=True)
-            self._worker.ask("told", self._unsaved.clear)
+            self._worker.ask("shown", self._unsaved.clear)
         finally:
             waiting.remove()

@@ -45,7 +45,7 @@ iframe {{ flex: 1; border: 0; height: 100%; min-width: 0; }}
 
 def _scene(view: View) -> str:
     """The page of viser's player, with the scene and its motion in it."""
-    # a recording is made of a server's scene; nobody is told of this one
+    # a recording is made of a server's scene; nobody hears of this one
     server = LocalServer("127.0.0.1", 0)
     try:
         stage = Stage(server.scene)

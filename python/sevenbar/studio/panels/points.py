@@ -25,7 +25,7 @@ class PointsPanel:
             self._at = gui.add_text("at", "0, 0, 0", hint=_HINT)
             self._alert = Alert(gui)
             add = gui.add_button("Add point", icon=viser.Icon.PLUS)
-        self._told = gui.add_html("")
+        self._speeds = gui.add_html("")
         self._list = DimensionList(gui, worker, session, lambda d: d.place[0] == "point")
         self._removed = gui.add_dropdown("remove", (NONE,))
         self._remove = gui.add_button("Remove point", color="gray", icon=viser.Icon.TRASH)
@@ -55,7 +55,7 @@ class PointsPanel:
         view, draft = self._session.view, self._session.draft
         if view is not self._view:
             self._view = view
-            self._told.content = "" if view is None else "".join(_speeds(view, i) for i in own_points(view))
+            self._speeds.content = "" if view is None else "".join(_speeds(view, i) for i in own_points(view))
         if self._shown is draft:
             return
         self._shown = draft
@@ -85,8 +85,8 @@ def _speeds(view: View, index: int) -> str:
     ]
     if not parts:
         return ""
-    told = escape(f"{point.name} on link {point.link}: {', '.join(parts)}")
-    return f'<div style="padding:2px 12px 6px;font-size:12.5px">{told}</div>'
+    line = escape(f"{point.name} on link {point.link}: {', '.join(parts)}")
+    return f'<div style="padding:2px 12px 6px;font-size:12.5px">{line}</div>'
 
 
 #: What the list of points says where there is none.

@@ -12,7 +12,7 @@ from sevenbar.studio.panels.controls import Alert, Asked, by_person, put
 from sevenbar.studio.panels.dimension_rows import DimensionRow, largest_length
 from sevenbar.studio.state.session import Session
 
-#: More groups of dimensions than these are folded at first, but for the first one.
+#: More groups of dimensions than these are folded at first, except the first one.
 MOST_OPEN = 2
 
 
@@ -71,7 +71,7 @@ class ShapePanel:
         self._worker, self._session = worker, session
         self._history = gui.add_button_group("history", ("undo", "redo", "reset"))
         self._input = gui.add_dropdown("input", ("-",), hint="the joint that drives")
-        self._output = gui.add_dropdown("output", ("-",), hint="the joint whose motion is told")
+        self._output = gui.add_dropdown("output", ("-",), hint="the joint whose motion is shown")
         self._alert = Alert(gui)
         self.handles = gui.add_folder(None)
         self._list = DimensionList(gui, worker, session, lambda d: d.place[0] != "point")

@@ -110,7 +110,7 @@ class Transport:
             self._worker.ask("circuit", lambda: self._session.choose(index))
 
     def show(self) -> None:
-        """Shows what the session has come to."""
+        """Shows the session as it is."""
         session, view = self._session, self._session.view
         shown = (view, session.draft, session.problem)
         if any(a is not b for a, b in zip(shown, self._shown, strict=False)) or not self._shown:
@@ -169,5 +169,5 @@ def _reading(session: Session, view: View) -> str:
     ]
     if modes:
         lines.append(f"mode {session.mode(modes) + 1} of {len(modes)} at this input")
-    told = " &nbsp; ".join(escape(line) for line in lines)
-    return f'<div style="padding:2px 12px 8px;font-size:12.5px;color:#333">{told}</div>'
+    text = " &nbsp; ".join(escape(line) for line in lines)
+    return f'<div style="padding:2px 12px 8px;font-size:12.5px;color:#333">{text}</div>'

@@ -230,7 +230,7 @@ def _add_slide(
     if guide == NOWHERE:
         low, high = -max(-low, high), max(-low, high)
     rail_roll, roll = (_best(solids.layout.rigid(link), to_rail, every, along=False) for link in carriers)
-    # where a link has nothing off the axis, the other's turn tells its own
+    # where a link has nothing off the axis, the other's turn gives its own
     rate = math.tau / joint.pitch if joint.kind.is_screw and joint.pitch else 0.0
     rail_twist = -rate if rail_roll == NOWHERE else 0.0
     twist = rate if roll == NOWHERE else 0.0

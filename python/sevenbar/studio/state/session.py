@@ -115,7 +115,7 @@ class Session:
             self.view, self.row = drawn
 
     def drive(self, input: str, output: str) -> None:
-        """Drives the joint `input` and tells of `output`; where both are one, the two change places.
+        """Drives the joint `input` and shows `output`; where both are one, the two change places.
 
         Raises `SevenbarError` where that cannot be.
         """

@@ -26,33 +26,33 @@ def heading(session: Session) -> str:
         f'<span style="background:{colour};color:white;border-radius:4px;padding:1px 8px;'
         f'font-weight:600;white-space:nowrap">{escape(word)}</span>'
     )
-    told = f'<div style="font-weight:600;line-height:1.3">{escape(session.draft.linkage.name)}</div>{badge}'
+    html = f'<div style="font-weight:600;line-height:1.3">{escape(session.draft.linkage.name)}</div>{badge}'
     if session.problem:
         last = " The last one that moves stays in grey." if session.view is not None else ""
-        told += (
+        html += (
             f'<div role="alert" style="color:{STALE};margin-top:6px;line-height:1.35">'
             f"{escape(session.problem)}.{last}</div>"
         )
-    return f'<div style="padding:4px 12px 8px;font-size:14px">{told}</div>'
+    return f'<div style="padding:4px 12px 8px;font-size:14px">{html}</div>'
 
 
 def verdict(session: Session) -> str:
-    """What the report tells of the motion, and of the circuit on view; in grey where that is out of date."""
+    """What the report says of the motion, and of the circuit on view; in grey where that is out of date."""
     motion = session.motion
-    told = "" if motion is None else _facts(_of_motion(motion))
+    html = "" if motion is None else _facts(_of_motion(motion))
     if session.view is not None:
         stale = "opacity:0.45;" if session.problem else ""
-        told += f'<div style="{stale}">{_of_circuit(session.view)}</div>'
-    return _block(told)
+        html += f'<div style="{stale}">{_of_circuit(session.view)}</div>'
+    return _block(html)
 
 
 def facts_html(view: View) -> str:
-    """What the report tells of the motion and the circuit of a view."""
+    """What the report says of the motion and the circuit of a view."""
     return _block(_facts(_of_motion(view.motion)) + _of_circuit(view))
 
 
-def _block(told: str) -> str:
-    return f'<div style="padding:2px 12px 10px;font-size:12.5px;line-height:1.4">{told}</div>'
+def _block(html: str) -> str:
+    return f'<div style="padding:2px 12px 10px;font-size:12.5px;line-height:1.4">{html}</div>'
 
 
 def _of_motion(motion: Motion) -> list[tuple[str, str]]:

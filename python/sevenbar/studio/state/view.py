@@ -38,7 +38,7 @@ class Stretch:
     """A stretch of a path: its first row, the input on its rows, and whether it stands still at either end.
 
     Near a dead centre the joints move as the root of what is left of the input. So a place between two rows
-    is told by a phase, an angle of which the input is the cosine: by that the joints run evenly.
+    is given by a phase, an angle of which the input is the cosine: by that the joints run evenly.
     """
 
     start: int
@@ -350,7 +350,7 @@ class _Measure:
         return np.asarray(np.where(self._turns, turned, step / self._size))
 
     def apart(self, joints: Floats, q: Floats) -> Floats:
-        """How far joint values (.., columns) are from others (columns,) [rad, or parts of the size]."""
+        """How far joint values (.., columns) are from others (columns,) [rad, or relative to the size]."""
         return np.asarray(np.linalg.norm(self._step(joints, q), axis=-1))
 
     def adjoins(self, view: View, row: int, at: float, gap: float) -> bool:

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import input_label, shown_value, slides, told_range
+from sevenbar.drawing.figure import input_label, range_drawn, shown_value, slides
 from sevenbar.drawing.output_curves import inputs_between, place_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.drawing.ticks import FLAT
@@ -68,9 +68,9 @@ class Curve:
         """The rows of each pass between input dead centres."""
         return self.view.path.passes
 
-    def told(self, kind: str) -> Span | None:
+    def span(self, kind: str) -> Span | None:
         """The range worth showing, without endless rates at input dead centres; `None` without values."""
-        spans = (told_range(self.view.circuit, self.values[part], kind) for part in self.passes)
+        spans = (range_drawn(self.view.circuit, self.values[part], kind) for part in self.passes)
         return _union([span for span in spans if span is not None])
 
     def lines(self, frame: Frame, x: Floats, y: Floats, most: int) -> str:
@@ -114,11 +114,11 @@ def panels(
             Curve(each, places, _bounded(quantity.values(each)))
             for each, places in zip(views, across, strict=True)
         ]
-        told = curves[circuit].told(quantity.kind)
-        if told is None or reach is None:
+        own_span = curves[circuit].span(quantity.kind)
+        if own_span is None or reach is None:
             made.append(_empty(frame, quantity, f"no value along circuit {circuit}"))
         else:
-            made.append(_panel(frame, quantity, curves, circuit, reach, told, over))
+            made.append(_panel(frame, quantity, curves, circuit, reach, own_span, over))
     return tuple(made)
 
 
@@ -128,7 +128,7 @@ def _panel(
     curves: Sequence[Curve],
     circuit: int,
     reach: Span,
-    told: Span,
+    own_span: Span,
     over: Over,
 ) -> Panel:
     own = curves[circuit]
@@ -138,10 +138,10 @@ def _panel(
     label = input_label(motion) if over == "input" else "time [s]"
     name, _, unit = label.removesuffix("]").rpartition(" [")
     below = scale(*reach, max(2, wide // 50), degrees=unit == "deg")
-    spans = [each.told(quantity.kind) for each in curves if each is not own]
-    everything = _union([told, *(span for span in spans if span is not None)]) or told
-    least = max(FLAT * quantity.natural(own.view), 1e-9 * max(map(abs, told)))
-    low, high = _shown_range(quantity, told, everything, least)
+    spans = [each.span(quantity.kind) for each in curves if each is not own]
+    everything = _union([own_span, *(span for span in spans if span is not None)]) or own_span
+    least = max(FLAT * quantity.natural(own.view), 1e-9 * max(map(abs, own_span)))
+    low, high = _shown_range(quantity, own_span, everything, least)
     beside = scale(low, high, max(2, tall // 18), degrees=quantity.unit == "deg")
     places = [(frame.x(below, each.across), frame.y(beside, each.values)) for each in curves]
     x, y = places[circuit]
@@ -159,7 +159,7 @@ def _panel(
         'fill="none" stroke-linejoin="round">',
         f'<g stroke-width="12">{"".join(faint)}</g>',
         f'<g stroke-width="20" stroke="{own.colour}">{own.lines(frame, x, y, len(x))}</g></svg>',
-        _marks(quantity, own, frame, below, beside) if told[1] - told[0] > least else "",
+        _marks(quantity, own, frame, below, beside) if own_span[1] - own_span[0] > least else "",
     ]
     svg = frame.svg("".join(content), name=f"{quantity.name}, circuit {circuit}")
     return Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
@@ -243,17 +243,17 @@ def _limits(view: View, frame: Frame, below: Scale, unit: str) -> str:
     for inputs, dashes, name in sorts:
         values = np.sort(inputs_between(motion, inputs, below.low, below.high))
         for value, x in zip(values.tolist(), frame.x(below, values).tolist(), strict=True):
-            told = below.reading(value, unit)
+            label = below.reading(value, unit)
             colour = QUIET if (np.abs(own - value) < 1e-6 * (1 + abs(value))).any() else ZERO
             parts.append(
                 f'<path d="M{x:.1f} {top}V{bottom}" stroke="{colour}" stroke-dasharray="{dashes}">'
-                f"<title>{escape(f'{name} {told}')}</title></path>"
+                f"<title>{escape(f'{name} {label}')}</title></path>"
             )
             # a number without room beside its neighbour is left to the tooltip
-            wide = breadth(told)
+            wide = breadth(label)
             start = max(x - wide / 2, left)
             if name == "input limit" and start >= free:
-                parts.append(words(frame, start, top - 3, told, look=f'fill="{QUIET}"'))
+                parts.append(words(frame, start, top - 3, label, look=f'fill="{QUIET}"'))
                 free = start + wide + 4
     return "".join(parts)
 
@@ -283,7 +283,7 @@ def _marks(quantity: Quantity, own: Curve, frame: Frame, below: Scale, beside: S
         x, y = float(frame.x(below, np.array(across))), float(frame.y(beside, np.array(value)))
         _, top, _, bottom = frame.box
         if math.isfinite(x) and top <= y <= bottom:
-            told = escape(f"{word} {beside.reading(value, quantity.unit)}")
+            label = escape(f"{word} {beside.reading(value, quantity.unit)}")
             look = f'fill="{GROUND}" stroke="{own.colour}" stroke-width="1.5"'
-            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.2" {look}><title>{told}</title></circle>')
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.2" {look}><title>{label}</title></circle>')
     return "".join(parts)

@@ -49,13 +49,13 @@ class Panel:
         if not left - 0.01 <= x <= right + 0.01:
             return []
         parts = [f'<path d="M{x:.1f} {top}V{bottom}" stroke="{INK}"/>']
-        told, inside = "no value", float(top)
+        label, inside = "no value", float(top)
         if math.isfinite(y):
-            told, inside = self.scale.reading(value, self.unit), min(max(y, top), bottom)
+            label, inside = self.scale.reading(value, self.unit), min(max(y, top), bottom)
             # a hollow dot at the edge stands for a value beyond it
             fill, ring = (self.colour, GROUND) if inside == y else (GROUND, self.colour)
             look = f'r="4.5" fill="{fill}" stroke="{ring}" stroke-width="1.5"'
             parts.append(f'<circle cx="{x:.1f}" cy="{inside:.1f}" {look}/>')
-        aside, anchor = (x + 8, "start") if x + 8 + breadth(told, bold=True) <= right else (x - 8, "end")
+        aside, anchor = (x + 8, "start") if x + 8 + breadth(label, bold=True) <= right else (x - 8, "end")
         line = inside - 7 if inside - 7 - FONT > top else min(inside + 7 + FONT, bottom - 3)
-        return [*parts, words(self.frame, aside, line, told, anchor=anchor, bold=True, look=HALO)]
+        return [*parts, words(self.frame, aside, line, label, anchor=anchor, bold=True, look=HALO)]

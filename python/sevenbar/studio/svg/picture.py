@@ -56,9 +56,9 @@ class Frame:
 
     def svg(self, content: str, *, name: str = "", style: str = "") -> str:
         """The picture, as wide as the page has room; `name` is what a screen reader says of it."""
-        told = f'role="img" aria-label="{escape(name)}"' if name else 'aria-hidden="true"'
+        role = f'role="img" aria-label="{escape(name)}"' if name else 'aria-hidden="true"'
         return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" {told} '
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" {role} '
             f'font-family="sans-serif" font-size="{FONT}" fill="{INK}" '
             f'style="display:block;width:100%;height:auto;{style}">{content}</svg>'
         )

@@ -60,7 +60,7 @@ pub(super) fn splatted<N: Number>(r: &Rotation) -> Rotation<N> {
 }
 
 #[inline(always)]
-pub(super) fn dot3<N: Number>(a: &[N], b: &[N]) -> N {
+pub(crate) fn dot3<N: Number>(a: &[N], b: &[N]) -> N {
     (a[0] * b[0]).plus_product(a[1], b[1]).plus_product(a[2], b[2])
 }
 

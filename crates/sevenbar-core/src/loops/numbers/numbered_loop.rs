@@ -77,18 +77,18 @@ pub struct Design {
 /// rotation about x, y and z of the frame before it.
 #[derive(Clone, Debug)]
 pub struct NumberedLoop {
-    pub(super) joints: Vec<Joint>,
-    pub(super) first: Vec<usize>,
-    pub(super) columns: usize,
-    pub(super) nominal: Design,
-    pub(super) input: usize,
+    pub(crate) joints: Vec<Joint>,
+    pub(crate) first: Vec<usize>,
+    pub(crate) columns: usize,
+    pub(crate) nominal: Design,
+    pub(crate) input: usize,
     /// Columns that stay where they are since they move no other link.
-    pub(super) held: Vec<usize>,
+    pub(crate) held: Vec<usize>,
     /// The other passive columns.
-    pub(super) free: Vec<usize>,
+    pub(crate) free: Vec<usize>,
     /// Idle freedoms that no column stands for; at each pose one more column is held for each.
-    pub(super) spins: usize,
-    pub(super) numbers: usize,
+    pub(crate) spins: usize,
+    pub(crate) numbers: usize,
     pub(super) moves: Vec<Vec<(usize, Twist)>>,
     pub(super) advances: Vec<Option<(usize, f64)>>,
     pub(super) points: Vec<NumberedPoint>,
@@ -104,16 +104,16 @@ pub struct Followed {
 
 /// Where the joints stand.
 #[derive(Clone, Debug, Default)]
-pub(super) struct State {
+pub(crate) struct State {
     values: Vec<f64>,
     balls: Vec<Rotation>,
 }
 
 /// The loop once round.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Around {
+pub(crate) struct Around {
     /// Behind each fixed transform but the last, and behind each joint.
-    pub(super) before: Vec<Pose>,
+    pub(crate) before: Vec<Pose>,
     pub(super) after: Vec<Pose>,
     pub(super) screws: Vec<Twist>,
     pub(super) error: Twist,
@@ -127,7 +127,7 @@ struct Side {
 
 impl Around {
     /// The frame behind so many joints.
-    pub(super) fn behind(&self, joints: usize) -> Pose {
+    pub(crate) fn behind(&self, joints: usize) -> Pose {
         joints.checked_sub(1).map_or(Pose::STILL, |last| self.after[last])
     }
 }
@@ -229,7 +229,7 @@ impl NumberedLoop {
         self.held.len() + self.spins
     }
 
-    pub(super) fn state(&self, values: &[f64]) -> State {
+    pub(crate) fn state(&self, values: &[f64]) -> State {
         let balls = self
             .joints
             .iter()
@@ -268,7 +268,7 @@ impl NumberedLoop {
         }
     }
 
-    pub(super) fn walk(&self, design: &Design, at: &State, out: &mut Around) {
+    pub(crate) fn walk(&self, design: &Design, at: &State, out: &mut Around) {
         out.before.clear();
         out.after.clear();
         out.screws.clear();

@@ -31,34 +31,49 @@ pub struct Slopes {
 }
 
 /// A value for each column, and its rates.
-type Orders = [Vec<f64>; ORDERS + 1];
+pub(crate) type Orders = [Vec<f64>; ORDERS + 1];
 
 /// What changes along the loop by one number: where what lies behind each joint (from 1) moves to, the twists before each joint
 /// and behind the last as series, and the series of the screws.
 #[derive(Clone, Debug, Default)]
-struct Changes {
-    carriers: [Vec<Twist>; ORDERS + 1],
-    screws: [Vec<Twist>; ORDERS],
+pub(crate) struct Changes {
+    pub carriers: [Vec<Twist>; ORDERS + 1],
+    /// Where the frame before each joint moves to.
+    pub before: Vec<Twist>,
+    pub screws: [Vec<Twist>; ORDERS],
     moves: Vec<Twist>,
+}
+
+impl Changes {
+    pub fn new(numbered: &NumberedLoop) -> Self {
+        let joints = numbered.joints.len();
+        Self {
+            carriers: std::array::from_fn(|_| vec![[0.0; 6]; joints + 1]),
+            before: vec![[0.0; 6]; joints],
+            screws: std::array::from_fn(|_| vec![[0.0; 6]; numbered.columns]),
+            moves: Vec::new(),
+        }
+    }
 }
 
 /// A number, or a column that is one.
 #[derive(Clone, Copy)]
-enum By {
+pub(crate) enum By {
     Number(usize),
     Column(usize),
 }
 
 /// A row with the power series of its rates.
-struct Moving {
-    inverse: Inverse,
-    around: Around,
-    kept: Vec<usize>,
-    values: Vec<f64>,
-    rates: [Vec<f64>; ORDERS],
+pub(crate) struct Moving {
+    /// Of the screws of the kept columns.
+    pub inverse: Inverse,
+    pub around: Around,
+    pub kept: Vec<usize>,
+    pub values: Vec<f64>,
+    pub rates: [Vec<f64>; ORDERS],
     /// Of what lies before each joint, and behind the last.
-    twists: [Vec<Twist>; ORDERS],
-    screws: [Vec<Twist>; ORDERS],
+    pub twists: [Vec<Twist>; ORDERS],
+    pub screws: [Vec<Twist>; ORDERS],
 }
 
 /// What a coefficient of a power series is as a derivative.
@@ -96,7 +111,7 @@ pub fn slopes(numbered: &NumberedLoop, values: &[f64], order: usize) -> Slopes {
 }
 
 /// A row with its rates; `None` at a dead centre.
-fn moving(numbered: &NumberedLoop, around: Around, values: &[f64]) -> Option<Moving> {
+pub(crate) fn moving(numbered: &NumberedLoop, around: Around, values: &[f64]) -> Option<Moving> {
     let kept = numbered.kept(&around);
     let inverse = numbered.factored(&around, &kept).inverse();
     let size = inverse.square(6).sqrt();
@@ -167,11 +182,7 @@ fn write_row(numbered: &NumberedLoop, moving: &Moving, row: usize, orders: usize
     }
     let block = &mut out.by_number[row * orders * all * width..][..orders * all * width];
     let mut slopes: Orders = std::array::from_fn(|_| vec![0.0; width]);
-    let mut changes = Changes {
-        carriers: std::array::from_fn(|_| vec![[0.0; 6]; numbered.joints.len() + 1]),
-        screws: std::array::from_fn(|_| vec![[0.0; 6]; width]),
-        moves: Vec::new(),
-    };
+    let mut changes = Changes::new(numbered);
     for number in 0..all {
         let own = (number < numbered.numbers).then_some(number);
         let by = own.map_or(By::Column(numbered.input), By::Number);
@@ -217,7 +228,7 @@ fn write_row(numbered: &NumberedLoop, moving: &Moving, row: usize, orders: usize
 }
 
 /// The derivatives of values and rates by one number, and the part of it that no joint can follow.
-fn derived(
+pub(crate) fn derived(
     numbered: &NumberedLoop,
     moving: &Moving,
     by: By,
@@ -275,6 +286,7 @@ fn derived(
             next += 1;
         }
         let before = carrier;
+        changes.before[i] = before;
         let direct = slid.as_ref().filter(|s| s.0 == i);
         for c in numbered.first[i]..numbered.first[i] + joint.columns() {
             plus(&mut carrier, &screws[0][c], slopes[0][c]);

@@ -41,8 +41,7 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
     near = np.interp(at, inputs, readings) - errors
     turn = 360.0 * np.round((near[0] - math.degrees(wish.output[0])) / 360.0)
     with styled():
-        figure = page_figure(6.4, 6.0)
-        figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
         top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
         top.plot(inputs, readings - turn, label=say("generated"), **GENERATED)
         below.axhline(0.0, color="#505050", lw=0.8, zorder=1)
@@ -96,8 +95,7 @@ def swing_figure(candidate: Candidate) -> Figure:
     angles -= 360.0 * np.round(angles.mean() / 360.0)
     across = np.degrees(inputs)
     with styled():
-        figure = page_figure(6.4, 6.0)
-        figure.set_layout_engine("constrained", h_pad=0.05, w_pad=0.06)
+        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
         top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
         top.plot(across, angles, **GENERATED)
         for name in ("input_at_low_deg", "input_at_high_deg"):

@@ -1,0 +1,184 @@
+"""A quantity that jumps or kinks at known inputs: polynomials between these, each as exact as rounding.
+
+Between two breaks the quantity is smooth. Every stretch is divided until the Chebyshev series through values
+at 16 nodes of each piece ends in rounding. Nodes never lie on a break, so nobody has to say what the value
+there is: the two polynomials give the limits from both sides.
+
+Source: docs/theory_forces.md, (23).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import Chebyshev, chebyshev, legendre
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.curve import Peak, highest_of
+from sevenbar.curves.stationary import AT_END, coefficients, nodes, real_roots
+
+#: Pieces of a cycle before any is halved.
+FIRST_PIECES = 12
+
+#: A piece is fine enough where the last terms of its series are below this part of the greatest value.
+RESOLVED = 1e-12
+
+#: Most halvings of a piece; what is left then is the tail.
+HALVINGS = 5
+
+#: Points of Gauss's rule on each piece for the mean of a power.
+GAUSS = 32
+
+#: Two breaks nearer than this part of the cycle are one.
+SAME = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """A quantity along a cycle in m pieces: from `starts` to `ends` (m,) [rad, or length], along the cycle.
+
+    `series` (m, terms) or (m, terms, k) are the Chebyshev coefficients of each piece, `breaks` those of the
+    starts at which the quantity may jump; `rows` as the caller has them.
+    """
+
+    rows: Floats
+    starts: Floats
+    ends: Floats
+    series: Floats
+    breaks: Floats
+
+    @cached_property
+    def scale(self) -> float:
+        """The greatest size at the middles and ends of the pieces."""
+        return max(
+            float(np.abs(chebyshev.chebval(x, np.moveaxis(self.series, 1, 0))).max()) for x in (-1, 0, 1)
+        )
+
+    @property
+    def tail(self) -> float:
+        """The greatest of the last two terms of a piece, as a part of the greatest value."""
+        return float(np.abs(self.series[:, -2:]).max() / self.scale) if self.scale else 0.0
+
+    def part(self, columns: int | tuple[int, ...]) -> Pieces:
+        """One column of a vector as a number, or some as a vector."""
+        return Pieces(self.rows[:, columns], self.starts, self.ends, self.series[:, :, columns], self.breaks)
+
+    def extremes(self) -> tuple[Floats, Floats]:
+        """Inputs and values (j,) of the local extremes, along the cycle; at a break those of both sides.
+
+        Where the slope is zero without a change of its sign is among them, too.
+        """
+        inputs, values = [], []
+        joined = False
+        for start, end, own in zip(self.starts, self.ends, self.series, strict=True):
+            curve = Chebyshev(own, domain=[-1, 1])
+            inside = np.sort(real_roots(curve.deriv()))
+            if joined and inside.size and inside[0] < -1 + 2 * AT_END:
+                # the piece before has it
+                inside = inside[1:]
+            jumps, ends = bool((self.breaks == start).any()), self._breaks(end)
+            joined = not ends and bool(inside.size) and inside[-1] > 1 - 2 * AT_END
+            at = np.concatenate([[-1.0] * jumps, inside, [1.0] * ends])
+            inputs.append((start + end) / 2 + (end - start) / 2 * at)
+            values.append(curve(at))
+        places, heights = np.concatenate(inputs), np.concatenate(values)
+        if not places.size:
+            # a constant
+            return self.starts[:1], chebyshev.chebval(-1.0, self.series[0])[None]
+        return places, heights
+
+    def highest(self) -> Peak:
+        """The highest value."""
+        # no piece reaches higher than the sum of the sizes of its terms
+        ends = chebyshev.chebval(np.array([-1.0, 0.0, 1.0]), self.series.T)
+        reach = self.series[:, 0] + np.abs(self.series[:, 1:]).sum(axis=1)
+        kept = reach >= ends.max()
+        some = Pieces(self.rows, self.starts[kept], self.ends[kept], self.series[kept], self.starts)
+        return highest_of(*some.extremes())
+
+    def lowest(self) -> Peak:
+        """The lowest value."""
+        top = Pieces(self.rows, self.starts, self.ends, -self.series, self.breaks).highest()
+        return Peak(-top.value, top.input)
+
+    def _breaks(self, end: float) -> bool:
+        """Whether a piece ends where the next may begin with a jump; that after the last is the first."""
+        after = self.starts[0] if end == self.ends[-1] else end
+        return bool((self.breaks == after).any())
+
+    def mean_of(self, function: Callable[[Floats], Floats]) -> float:
+        """The mean of a function of the values, by Gauss's rule on every piece."""
+        at, weights = legendre.leggauss(GAUSS)
+        values = function(np.asarray(chebyshev.chebval(at, np.moveaxis(self.series, 1, 0))))
+        shares = (self.ends - self.starts) / (self.ends[-1] - self.starts[0])
+        return float(shares @ values @ weights / 2)
+
+    def running(self) -> Pieces:
+        """The integral by the input of the quantity less its mean, 0 at the first piece's start."""
+        centred = self.series.copy()
+        centred[:, 0] -= self.mean_of(lambda values: values)
+        half = (self.ends - self.starts) / 2
+        sums = np.stack([h * chebyshev.chebint(own, lbnd=-1) for h, own in zip(half, centred, strict=True)])
+        gains = chebyshev.chebval(1.0, sums.T)
+        sums[:, 0] += np.concatenate([[0.0], np.cumsum(gains)[:-1]])
+        return Pieces(self.rows, self.starts, self.ends, sums, self.breaks)
+
+    def squared(self) -> Pieces:
+        """The squared size: twice the degree."""
+        terms = self.series.shape[1]
+        values = chebyshev.chebval(nodes(2 * terms), np.moveaxis(self.series, 1, 0))
+        sizes = (values**2).reshape(len(self.starts), -1, 2 * terms).sum(axis=1)
+        rows = (self.rows**2).reshape(len(self.rows), -1).sum(axis=1)
+        return Pieces(rows, self.starts, self.ends, coefficients(sizes.T).T, self.breaks)
+
+
+def pieces(
+    evaluate: Callable[[Floats], Floats],
+    rows: Floats,
+    first: float,
+    period: float,
+    breaks: Sequence[float] = (),
+) -> Pieces:
+    """A quantity along the cycle from `first` by `period`, which may jump at the inputs `breaks`.
+
+    `evaluate` takes inputs (j,) and gives values (j,) or (j, k); it is never called at a break. Breaks lie
+    anywhere; they are brought into the cycle by whole periods.
+    """
+    shares = np.sort((np.asarray(breaks, dtype=np.float64) - first) / period % 1.0)
+    shares = shares[np.diff(shares, prepend=-1.0) > SAME]
+    # a cycle may be cut anywhere: at its first break, so that no piece leads over the end
+    cut = float(shares[0]) if shares.size else 0.0
+    marks = np.append(shares - cut, 1.0) if shares.size else np.array([0.0, 1.0])
+    marks = marks[np.append(np.diff(marks) > SAME, True)]
+    edges = np.concatenate(
+        [np.linspace(a, b, max(1, round(FIRST_PIECES * (b - a))), endpoint=False) for a, b in pairwise(marks)]
+        + [marks[-1:]]
+    )
+    origin = first + cut * period
+    todo = np.column_stack([edges[:-1], edges[1:]])
+    found: list[tuple[float, float, Floats]] = []
+    scale = float(np.abs(rows).max())
+    for halving in range(HALVINGS + 1):
+        middle, half = todo.mean(axis=1), (todo[:, 1] - todo[:, 0]) / 2
+        grid = middle[:, None] + half[:, None] * nodes()
+        values = evaluate(origin + period * grid.ravel())
+        values = values.reshape(*grid.shape, *values.shape[1:])
+        scale = max(scale, float(np.abs(values).max()))
+        series = np.moveaxis(coefficients(np.moveaxis(values, 1, 0)), 0, 1)
+        rough = np.abs(series[:, -2:]).reshape(len(todo), -1).max(axis=1) > RESOLVED * scale
+        if halving == HALVINGS:
+            rough[:] = False
+        found += [(a, b, own) for (a, b), own in zip(todo[~rough], series[~rough], strict=True)]
+        todo = np.concatenate([np.column_stack([todo[:, 0], middle]), np.column_stack([middle, todo[:, 1]])])[
+            np.concatenate([rough, rough])
+        ]
+        if not len(todo):
+            break
+    found.sort(key=lambda piece: piece[0])
+    starts, ends = (origin + period * np.array([piece[i] for piece in found]) for i in (0, 1))
+    jumps = starts[np.isin([piece[0] for piece in found], marks[:-1])] if shares.size else np.empty(0)
+    return Pieces(rows, starts, ends, np.stack([piece[2] for piece in found]), jumps)

@@ -1,0 +1,132 @@
+"""Bodies on links: mass, centre and inertia, checked; several on a link as one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_array, finite_number
+from sevenbar.errors import RequestError, shown
+
+#: Where centre and inertia come from if they are not given.
+Solid = Literal["rod", "point", "drawn"]
+
+SOLIDS: tuple[str, ...] = get_args(Solid)
+
+#: The order of the entries of an inertia where six numbers give it.
+ENTRIES = "xx yy zz yz xz xy"
+
+#: By this part of its greatest principal moment an inertia may break a rule by rounding.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A rigid body that is fixed to a link.
+
+    `mass` [kg]; `centre` (3,) [length] of mass, written as a point of the link is; `inertia` (3, 3) [kg m^2],
+    the tensor about the centre along the axes in which points are written, so off the diagonal
+    `Ixy = -sum m x y`. Or a `solid`: "point", all mass in the centre; "rod", uniform and thin between the
+    link's two joints; "drawn", the solids that exports draw, of steel where `mass` is 0. Raises
+    `RequestError` for an inertia that no body has.
+    """
+
+    mass: float = 0.0
+    centre: tuple[float, float, float] | None = None
+    inertia: npt.ArrayLike | None = None
+    solid: Solid | None = None
+
+    def __post_init__(self) -> None:
+        mass = finite_number("mass", self.mass)
+        if mass < 0 or (mass == 0 and self.solid != "drawn"):
+            raise RequestError(f"mass: {shown(self.mass)} is not a mass; give kilograms > 0")
+        if self.solid is not None and self.solid not in SOLIDS:
+            raise RequestError(f"solid: {shown(self.solid)} is not offered; give {', '.join(SOLIDS)}")
+        object.__setattr__(self, "mass", mass)
+        made = self.solid in ("rod", "drawn")
+        if made and (self.centre is not None or self.inertia is not None):
+            raise RequestError(f"solid: {self.solid} has its own centre and inertia; leave both out")
+        if self.solid == "point" and self.inertia is not None:
+            raise RequestError("solid: a point has no inertia about itself; leave inertia out")
+        if not made:
+            if self.centre is None:
+                raise RequestError("centre: is missing; give three lengths, or solid")
+            object.__setattr__(self, "centre", triple("centre", self.centre))
+        tensor = np.zeros((3, 3)) if self.inertia is None else _tensor(self.inertia)
+        object.__setattr__(self, "inertia", tensor)
+
+    @property
+    def tensor(self) -> Floats:
+        """The inertia (3, 3) [kg m^2]."""
+        return np.asarray(self.inertia, dtype=np.float64)
+
+
+def triple(name: str, values: npt.ArrayLike) -> tuple[float, float, float]:
+    """Three finite numbers, or `RequestError`."""
+    array = finite_array(name, values)
+    if array.size != 3:
+        raise RequestError(f"{name}: {array.size} numbers; give three")
+    return float(array[0]), float(array[1]), float(array[2])
+
+
+def flaw_of_inertia(tensor: Floats) -> str:
+    """Why no body has an inertia (3, 3); empty where one has."""
+    principal = np.linalg.eigvalsh(tensor)
+    slack = ROUNDING * float(np.abs(principal).max())
+    listed = ", ".join(f"{x:.6g}" for x in principal)
+    if principal[0] < -slack:
+        return f"principal moments {listed}: one is negative; give the entries of the tensor about the centre"
+    if principal[0] + principal[1] < principal[2] - slack:
+        return f"principal moments {listed}: no body has one greater than the sum of the others"
+    return ""
+
+
+def tensor_of(entries: Sequence[float]) -> Floats:
+    """The inertia (3, 3) of its six entries, in the order of `ENTRIES`.
+
+    >>> tensor_of([4, 5, 6, 0.1, 0.2, 0.3]).tolist()
+    [[4.0, 0.3, 0.2], [0.3, 5.0, 0.1], [0.2, 0.1, 6.0]]
+    """
+    xx, yy, zz, yz, xz, xy = entries
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], dtype=np.float64)
+
+
+def entries_of(tensor: Floats) -> list[float]:
+    """The six entries of an inertia (3, 3), in the order of `ENTRIES`."""
+    rows, columns = [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]
+    return [float(value) for value in tensor[rows, columns]]
+
+
+def _tensor(values: npt.ArrayLike) -> Floats:
+    try:
+        tensor = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        tensor = np.zeros(0)
+    if tensor.shape != (3, 3) or not np.isfinite(tensor).all():
+        raise RequestError(f"inertia: {shown(values)} is not an inertia; give 3 x 3 numbers [kg m^2]")
+    if np.abs(tensor - tensor.T).max() > ROUNDING * np.abs(tensor).max():
+        raise RequestError("inertia: the tensor is not symmetric")
+    flaw = flaw_of_inertia(tensor)
+    if flaw:
+        raise RequestError(f"inertia: {flaw}")
+    tensor.setflags(write=False)
+    return tensor
+
+
+def as_one(bodies: Sequence[Body], metre: float) -> Body:
+    """Bodies of one link, none of them a rod or drawn, as one; `metre` is the length unit in metres."""
+    if len(bodies) == 1:
+        return bodies[0]
+    mass = math.fsum(body.mass for body in bodies)
+    centres = np.array([body.centre for body in bodies])
+    centre = np.array([body.mass for body in bodies]) @ centres / mass
+    tensor = np.zeros((3, 3))
+    for body, place in zip(bodies, centres, strict=True):
+        arm = metre * (place - centre)
+        tensor += body.tensor + body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return Body(mass, triple("centre", centre), tensor)

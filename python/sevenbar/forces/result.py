@@ -1,0 +1,145 @@
+"""Forces along a circuit: the input's torque, energies, what every joint bears, shaking; arrays over rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.cycle_series import CycleSeries
+from sevenbar.errors import ends_here
+from sevenbar.forces.loading import Loading
+from sevenbar.forces.sizing import Sizing, sizing
+from sevenbar.text.printing import Printed
+
+#: The components of a reaction, in the frame of its joint, whose z is the joint's axis.
+COMPONENTS = ("Mx", "My", "Mz", "Fx", "Fy", "Fz")
+
+#: A component is open if a wrench that nothing determines has more than this part of its length in it.
+OPEN = 1e-8
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Reaction(Printed):
+    """What the link before a joint puts on the link after it, row by row; the last joint's is the ground.
+
+    `force` (n, 3) [N] and `moment` (n, 3) [N m] about `at` (n, 3) [length], in the joint's own frame on the
+    side of the link before it, whose `axes` (n, 3, 3) are columns in the report frame; z is the joint's axis.
+    `determinate` (6,) says which of Mx, My, Mz, Fx, Fy, Fz equilibrium determines; the others are NaN.
+    `known` (n, k, 6) are the combinations of these six that it does determine, as orthonormal rows with
+    moments by the linkage's size, and `known_values` (n, k) [N] their values.
+    """
+
+    joint: str
+    force: Floats
+    moment: Floats
+    at: Floats
+    axes: Floats
+    determinate: npt.NDArray[np.bool_]
+    known: Floats
+    known_values: Floats
+
+    @property
+    def force_in_report(self) -> Floats:
+        """The force (n, 3) [N] in the report frame; NaN unless all three components are determinate."""
+        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.force))
+
+    @property
+    def moment_in_report(self) -> Floats:
+        """The moment (n, 3) [N m] in the report frame; NaN unless all three components are determinate."""
+        return np.asarray(np.einsum("nij,nj->ni", self.axes, self.moment))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Forces(Printed):
+    """What the input has to give, and what the joints bear, on the n rows of a circuit.
+
+    `input` [rad, or length], `time` [s], `speed` [rad/s, or length/s] and `status` are those of the rows
+    (n,). `torque` (n,) is what the input has to give, along its own positive turn [N m], or as it slides the
+    force [N]; `power` [W] is that by the input's speed, `kinetic` and `potential` [J] the energies of bodies,
+    weights and springs, `supplied` [W] the power of loads and dampers, `shaking` (n, 6) the moment about the
+    report's origin [N m] and the force [N] of all inertia on the ground. `reactions` has each joint's by its
+    name. `spin` has for each link that spins idly the moment (n,) [N m] that the rule of its spin needs and
+    no ball gives: 0 for a rod. `indeterminate` names the redundant constraints, whose share of the reactions
+    rigid bodies leave open. Rows without rates, as dead centres of the input, are NaN.
+
+    Source: docs/theory_forces.md, (1) to (9).
+    """
+
+    input: Floats
+    time: Floats
+    speed: Floats
+    status: npt.NDArray[np.str_]
+    torque: Floats
+    power: Floats
+    kinetic: Floats
+    potential: Floats
+    supplied: Floats
+    shaking: Floats
+    reactions: Mapping[str, Reaction]
+    spin: Mapping[str, Floats]
+    indeterminate: tuple[str, ...]
+    #: Whether the input slides, so that `torque` is a force.
+    slides: bool
+    length_unit: str
+    #: Whether the rows are one period of a closed cycle at constant speed, evenly spaced.
+    periodic: bool
+    loading: Loading = field(repr=False)
+    #: The same at any inputs (m,) of the cycle, where it is periodic.
+    between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
+
+    @property
+    def unit(self) -> str:
+        """The unit of `torque`."""
+        return "N" if self.slides else "N m"
+
+    @property
+    def period(self) -> float | None:
+        """The way of the input [rad] round a periodic cycle, negative where it falls from row to row."""
+        return float(self.input[1] - self.input[0]) * len(self.input) if self.periodic else None
+
+    @ends_here
+    def sizing(self, *, unevenness: float | None = None) -> Sizing | None:
+        """Peaks of torque and power with their places, means, fluctuation of energy, bearing loads.
+
+        With an `unevenness`, (highest less lowest speed) / mean speed, also the flywheel for it. `None` for
+        rows without a torque, as of a circuit that rocks at constant speed: there it has no bound.
+
+            >>> import sevenbar as sb
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> found = circuit.forces(bodies={3: sb.Body(2.0, solid="rod")}).sizing(unevenness=0.01)
+            >>> found.found, bool(found.flywheel > 0), bool(abs(found.mean_torque) < 1e-12)
+            ('series', True, True)
+
+        Source: docs/theory_forces.md, (20) to (26).
+        """
+        period = self.period
+        return sizing(
+            self,
+            period=period,
+            speed=float(self.speed[0]) if period is not None else None,
+            evaluate=self.between,
+            breaks=() if period is None else self.loading.breaks(turns=round(abs(period) / math.tau)),
+            unevenness=unevenness,
+        )
+
+    @property
+    def balance(self) -> float | None:
+        """How far power closes along the cycle, as a part of its peak: `torque q' + supplied - d(T + V)/dt`.
+
+        The derivative by time is that of the trigonometric polynomial through all rows. `None` where the rows
+        are no closed cycle at constant speed, or a row has no value.
+
+        Source: docs/theory_forces.md, (7).
+        """
+        total = self.power + self.supplied
+        if not self.periodic or len(total) < 3 or not np.isfinite(total).all():
+            return None
+        period = float(self.time[1] - self.time[0]) * len(total)
+        change = CycleSeries(self.kinetic + self.potential, 0.0, period).finer(1, 1)
+        peak = max(np.abs(change).max(), np.abs(self.power).max())
+        return float(np.abs(total - change).max() / peak) if peak else 0.0

@@ -1,0 +1,282 @@
+"""What a drive and its bearings have to bear over a cycle: peaks with their places, means, a flywheel.
+
+At constant speed, with torque M over the input x and its mean,
+
+    E(x) = integral (M - mean M) dx,   dE = max E - min E,   J = dE / (delta w^2)                         (24)
+
+A drive that gives the mean torque runs slowest where E is highest and fastest where it is lowest. A bearing's
+loads are the sizes of parts of the force and moment in its joint, as peak and as cubic mean.
+
+Source: docs/theory_forces.md, (24) to (26); ISO 281 for the third power.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_number
+from sevenbar.curves.curve import Curve, Peak, greatest, mean
+from sevenbar.curves.cycle_series import cycle_series
+from sevenbar.curves.pieces import pieces
+from sevenbar.curves.timed_rows import TimedRows
+from sevenbar.errors import RequestError, shown
+from sevenbar.text.printing import Printed
+
+#: Parts of a wrench (moment x, y, z, force x, y, z in the joint's frame, z its axis) whose size loads a
+#: bearing.
+PARTS: Mapping[str, tuple[int, ...]] = {
+    "force": (3, 4, 5),
+    "radial": (3, 4),
+    "axial": (5,),
+    "tilting": (0, 1),
+    "turning": (2,),
+}
+
+
+class Wrenches(Protocol):
+    """Force (n, 3) [N] and moment (n, 3) [N m] in a joint; (6,) flags: moment x, y, z, then force."""
+
+    @property
+    def force(self) -> Floats:
+        """Of the link before on the link after."""
+        ...
+
+    @property
+    def moment(self) -> Floats:
+        """About the place of the joint."""
+        ...
+
+    @property
+    def determinate(self) -> npt.NDArray[np.bool_]:
+        """Whether equilibrium determines each part."""
+        ...
+
+
+class Rows(Protocol):
+    """What a circuit takes at n rows: torque [N m | N], power [W], wrenches of its joints."""
+
+    @property
+    def input(self) -> Floats:
+        """The input [rad, or length]."""
+        ...
+
+    @property
+    def time(self) -> Floats:
+        """The time [s]."""
+        ...
+
+    @property
+    def torque(self) -> Floats:
+        """What the input gives."""
+        ...
+
+    @property
+    def power(self) -> Floats:
+        """The drive's power."""
+        ...
+
+    @property
+    def reactions(self) -> Mapping[str, Wrenches]:
+        """By the names of the joints."""
+        ...
+
+
+@dataclass(frozen=True)
+class Burden:
+    """The size of a force [N] or moment [N m] over a cycle: its peak, and `(mean size^3)^(1/3)` by time.
+
+    NaN where equilibrium does not determine it.
+    """
+
+    peak: Peak
+    mean_cube: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Bearing(Printed):
+    """What the bearing of a joint bears, in the joint's frame on the side of the link before, z its axis.
+
+    `force` [N] is the whole force, `radial` its part square to the axis, `axial` that along it; `tilting`
+    [N m] the moment about x and y, `turning` that about the axis, which a guide bears and a drive gives.
+    `direction` (n,) [rad] is that of the radial force from x towards y, row by row, and `size` (n,) [N].
+    """
+
+    force: Burden
+    radial: Burden
+    axial: Burden
+    tilting: Burden
+    turning: Burden
+    direction: Floats
+    size: Floats
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sizing(Printed):
+    """What motor, flywheel and bearings one cycle needs.
+
+    `peak_torque` [N m, of a slide N] is the value that is farthest from zero, `peak_power` and
+    `braking_power` [W] the highest and the lowest; the lowest is `None` where the drive never brakes.
+    `fluctuation` [J] is that of the energy about a drive of constant torque, of a law's rows about constant
+    power; such a drive runs `fastest` and `slowest` at these inputs. `flywheel` [kg m^2] keeps the unevenness
+    `(highest - lowest) / mean speed` at `unevenness`: all inertia that is needed, of which the mean of the
+    linkage's own may be taken off. `None` without a constant speed.
+
+    `found` says how: by a "series" through the rows, in "pieces" between jumps, or from the "rows" as they
+    are; `tail` how much may lie between the rows, as a part of the greatest torque, force or moment.
+    """
+
+    peak_torque: Peak
+    rms_torque: float
+    mean_torque: float
+    peak_power: Peak
+    braking_power: Peak | None
+    fluctuation: float
+    fastest: float
+    slowest: float
+    unevenness: float | None
+    flywheel: float | None
+    bearings: Mapping[str, Bearing]
+    found: Literal["series", "pieces", "rows"]
+    tail: float
+
+
+def sizing(
+    rows: Rows,
+    *,
+    period: float | None,
+    speed: float | None = None,
+    evaluate: Callable[[Floats], Rows] | None = None,
+    breaks: Sequence[float] = (),
+    unevenness: float | None = None,
+) -> Sizing | None:
+    """The sizing of a cycle; `None` where a row has no torque.
+
+    Of a circuit whose input goes round at constant `speed` [rad/s], `period` [rad] is its way till it closes,
+    negative for a negative speed, and the n rows are at equal steps; `evaluate` gives rows at any inputs, and
+    `breaks` are inputs where loads set in or end. Of a law's rows `period` is `None`.
+
+    Raises `RequestError` for an unevenness that is not > 0, and for breaks without `evaluate`.
+    """
+    delta = None if unevenness is None else _positive("unevenness", unevenness)
+    names = tuple(rows.reactions)
+    table = _table(rows, names)
+    known = np.array(
+        [True, *np.concatenate([*(rows.reactions[name].determinate for name in names), []])], dtype=bool
+    )
+    if not len(table) or not np.isfinite(table[:, known]).all():
+        return None
+    if len(breaks) and period is not None and evaluate is None:
+        raise RequestError("breaks: a torque that jumps needs rows between the rows; give evaluate")
+    table = np.where(known, table, 0.0)
+    units = _units(table)
+
+    def between(inputs: Floats) -> Floats:
+        assert evaluate is not None
+        return np.where(known, _table(evaluate(inputs), names), 0.0) / units
+
+    every: Curve
+    found: Literal["series", "pieces", "rows"]
+    if period is None:
+        every, found = TimedRows(table / units, rows.input, rows.time), "rows"
+    elif len(breaks):
+        every, found = pieces(between, table / units, float(rows.input[0]), period, breaks), "pieces"
+    else:
+        ask = between if evaluate is not None else None
+        every, found = cycle_series(ask, table / units, float(rows.input[0]), period), "series"
+    torque = every.part(0)
+    unit = float(units[0])
+    if period is None:
+        power: Curve = TimedRows(rows.power, rows.input, rows.time)
+        peak_power, braking, energy, work = power.highest(), power.lowest(), power.running(), 1.0
+    else:
+        rate, work = speed or 0.0, unit
+        ends = [Peak(rate * unit * one.value, one.input) for one in (torque.highest(), torque.lowest())]
+        peak_power, braking = max(ends, key=_value), min(ends, key=_value)
+        energy = torque.running()
+    top, bottom = energy.highest(), energy.lowest()
+    fluctuation = work * (top.value - bottom.value)
+    peak = greatest(torque)
+    return Sizing(
+        peak_torque=Peak(unit * peak.value, peak.input),
+        rms_torque=unit * math.sqrt(max(0.0, torque.mean_of(np.square))),
+        mean_torque=unit * mean(torque),
+        peak_power=peak_power,
+        braking_power=braking if braking.value < 0 else None,
+        fluctuation=fluctuation,
+        fastest=bottom.input,
+        slowest=top.input,
+        unevenness=delta,
+        flywheel=None
+        if delta is None or period is None or not speed
+        else flywheel(fluctuation, speed, delta),
+        bearings={
+            name: _bearing(every, units, known, rows.reactions[name], 1 + 6 * i)
+            for i, name in enumerate(names)
+        },
+        found=found,
+        tail=every.tail,
+    )
+
+
+def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:
+    """The inertia [kg m^2] that keeps a drive of constant torque as even as wanted, `dE / (delta w^2)`.
+
+    Source: docs/theory_forces.md, (24).
+    """
+    return fluctuation / (unevenness * speed**2)
+
+
+def _bearing(
+    every: Curve, units: Floats, known: npt.NDArray[np.bool_], wrenches: Wrenches, start: int
+) -> Bearing:
+    burdens = {}
+    for name, part in PARTS.items():
+        columns = tuple(start + i for i in part)
+        if not known[list(columns)].all():
+            burdens[name] = Burden(Peak(math.nan, math.nan), math.nan)
+            continue
+        unit = float(units[columns[0]])
+        squares = every.part(columns).squared()
+        top = squares.highest()
+        cubes = squares.mean_of(lambda values: np.maximum(values, 0.0) ** 1.5)
+        burdens[name] = Burden(
+            Peak(unit * math.sqrt(max(0.0, top.value)), top.input), unit * max(0.0, cubes) ** (1 / 3)
+        )
+    x, y = wrenches.force[:, 0], wrenches.force[:, 1]
+    return Bearing(**burdens, direction=np.arctan2(y, x), size=np.hypot(x, y))
+
+
+def _table(rows: Rows, names: tuple[str, ...]) -> Floats:
+    """Torque, then moment and force of each joint, (n, 1 + 6 joints)."""
+    found = [rows.torque[:, None]]
+    for name in names:
+        found += [rows.reactions[name].moment, rows.reactions[name].force]
+    return np.concatenate(found, axis=1)
+
+
+def _units(table: Floats) -> Floats:
+    """The greatest torque, moment and force, for their columns: so that rounding is one size in all."""
+    greatest_of = np.abs(table).max(axis=0)
+    joints = (len(greatest_of) - 1) // 6
+    kinds = np.concatenate([[0], np.tile([1, 1, 1, 2, 2, 2], joints)])
+    sizes = np.array([greatest_of[kinds == kind].max(initial=0.0) for kind in range(3)])
+    return np.asarray(np.where(sizes > 0, sizes, 1.0)[kinds])
+
+
+def _value(peak: Peak) -> float:
+    return peak.value
+
+
+def _positive(name: str, value: float) -> float:
+    number = finite_number(name, value)
+    if number <= 0:
+        raise RequestError(
+            f"{name}: {shown(value)} is not an {name}; give a part of the mean speed > 0, as in 0.01"
+        )
+    return number

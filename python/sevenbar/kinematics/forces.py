@@ -1,0 +1,269 @@
+"""The forces of a circuit by the transpose of its rates: what acts goes to the core, reactions come back.
+
+    A^T W = Q - c                                                                                         (4)
+
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths relative to the size, so forces in
+kg size/s^2; here they become newtons.
+
+Source: docs/theory_forces.md, (1) to (6).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+import numpy.typing as npt
+
+import sevenbar._core as _core
+from sevenbar.arrays import Floats
+from sevenbar.errors import RequestError, no_joint, shown
+from sevenbar.forces.bodies import Body
+from sevenbar.forces.loading import Load, Loading, Spring, Three
+from sevenbar.forces.result import OPEN, Forces, Reaction
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.driven import driven
+from sevenbar.kinematics.link_bodies import as_moved, resolved
+from sevenbar.kinematics.motion import Solvable
+from sevenbar.kinematics.rigid import half_turn, inverse
+from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.word import Product
+from sevenbar.text.units import LENGTHS
+
+
+@dataclass(frozen=True, eq=False)
+class ForceSolver:
+    """A loop with what acts on it, ready for rows of any circuit of it that this column drives."""
+
+    linkage: Solvable
+    loading: Loading
+    input: int
+
+    @cached_property
+    def numbers(self) -> Numbers:
+        """The loop by its numbers."""
+        return Numbers(self.linkage)
+
+    @cached_property
+    def loop(self) -> NumberedLoop:
+        """The loop that this input drives."""
+        return self.numbers.loop(self.input, only=())
+
+    @cached_property
+    def size(self) -> float:
+        """The length in which the core counts [m]."""
+        return self.numbers.size * LENGTHS[self.linkage.length_unit]
+
+    @cached_property
+    def bodies(self) -> dict[int, Body]:
+        """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
+        return as_moved(self.linkage, resolved(self.loading, self.linkage))
+
+    def _carrier(self, link: int) -> tuple[int, Product]:
+        """The steps before a link, and the frame there in which its points are written."""
+        count = len(self.linkage.joints)
+        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
+            raise RequestError(
+                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
+            )
+        return self.numbers.word.carrier(int(link))
+
+    def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
+        steps, product = self._carrier(link)
+        frame = product.pose(self.numbers.values(self.loop.p))
+        place = (frame[:3, :3] @ np.asarray(at) + frame[:3, 3]) / self.numbers.size
+        return steps, place, self.loop.twists_of(product)
+
+    def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
+        assert body.centre is not None
+        steps, centre, ways = self._place(link, body.centre)
+        axes = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
+        return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
+
+    def _load(self, load: Load) -> tuple[tuple[int, Floats, list[tuple[int, Floats]]], Floats, Floats, bool]:
+        assert load.at is not None
+        force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
+        turns = load.axes == "link"
+        if turns:
+            axes = self._carrier(load.link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
+            force, torque = axes @ force, axes @ torque
+        return self._place(load.link, load.at), force, torque, turns
+
+    def _joint_spring(self, spring: Spring) -> tuple[int, Floats]:
+        assert spring.joint is not None
+        linkage = self.linkage
+        if spring.joint not in linkage.drivable() and spring.joint not in [j.name for j in linkage.joints]:
+            raise RequestError(f"joint: {no_joint(spring.joint, linkage.drivable())}")
+        column = linkage.column(spring.joint, "joint")
+        if linkage.column_kinds[column] == "slide":
+            factors = np.array([1.0, 1 / self.numbers.size, 1.0]) / LENGTHS[linkage.length_unit]
+            factors[1] = 1 / self.numbers.size
+        else:
+            factors = np.array([1 / self.size**2, 1.0, 1 / self.size**2])
+        return column, factors * [spring.stiffness, spring.length, spring.damping]
+
+    @cached_property
+    def acting(self) -> _core.Acting:
+        """What acts, as the core takes it."""
+        metre = LENGTHS[self.linkage.length_unit]
+        springs = []
+        for spring in self.loading.springs:
+            if spring.links is None:
+                continue
+            assert spring.at is not None
+            ends = [self._place(link, at) for link, at in zip(spring.links, spring.at, strict=True)]
+            numbers = [spring.stiffness / metre, spring.length / self.numbers.size, spring.damping / metre]
+            springs.append((ends[0], ends[1], np.array(numbers)))
+        return _core.Acting(
+            np.array(self.loading.gravity) / self.size,
+            [self._body(link, body) for link, body in self.bodies.items()],
+            [self._load(load) for load in self.loading.loads],
+            springs,
+            [self._joint_spring(spring) for spring in self.loading.springs if spring.links is None],
+        )
+
+    @cached_property
+    def seats(self) -> tuple[list[int], Floats]:
+        """Where each joint's reaction is counted: before which step of the word, and its frame there."""
+        word, values = self.numbers.word, self.numbers.values(self.loop.p)
+        linkage = self.linkage
+        steps, frames = [], []
+        step = 0
+        for i, (joint, inside) in enumerate(zip(linkage.joints, word.inner, strict=True)):
+            frame = inverse(inside[0].pose(values)) if inside else np.eye(4)
+            if linkage.form == "drawn" and i + 1 == len(linkage.joints):
+                # its axes are those that are written
+                frame = frame @ half_turn(joint.row.half_turn)
+            frame[:3, 3] /= self.numbers.size
+            frames.append(frame)
+            steps.append(step)
+            step += len(word.freedoms[i])
+        return steps, np.array(frames)
+
+    def solved(
+        self, inputs: Floats, poses: Floats, speeds: Floats, *, by_numbers: bool = False
+    ) -> list[Floats]:
+        """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2)."""
+        scales = self.numbers.scales
+        turns = self.linkage.column_kinds[self.input] == "turn"
+        factors = [load.factors(inputs, turns=turns) for load in self.loading.loads]
+        steps, frames = self.seats
+        return _core.reactions(
+            self.loop.core,
+            self.acting,
+            np.ascontiguousarray(poses / scales),
+            np.ascontiguousarray(speeds / scales[self.input]),
+            np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
+            steps,
+            frames,
+            by_numbers,
+        )
+
+
+def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
+    """The forces on the rows of a circuit; see `Circuit.forces`."""
+    if loading.is_empty:
+        raise RequestError(
+            "forces: nothing has a mass and nothing acts; give bodies, loads or springs, or write [[body]]"
+        )
+    solver = ForceSolver(linkage, loading, circuit.input_column)
+    poses = solver.numbers.poses(circuit.q)
+    poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
+    speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
+    torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
+    size, metre = solver.size, LENGTHS[linkage.length_unit]
+    slides = linkage.column_kinds[circuit.input_column] == "slide"
+    torque = torque * (size if slides else size**2)
+    speed = speeds[:, 0]
+    energies = energies * size**2
+    return Forces(
+        input=circuit.input,
+        time=circuit.time,
+        speed=speed,
+        status=circuit.status,
+        torque=torque,
+        power=torque * speed * (metre if slides else 1.0),
+        kinetic=energies[:, 0],
+        potential=energies[:, 1],
+        supplied=energies[:, 2],
+        shaking=shaking * np.repeat([size**2, size], 3),
+        reactions=_reactions(solver, wrenches, seats, free),
+        spin=_spins(solver, spin * size**2),
+        indeterminate=linkage.mobility().redundant if free.shape[1] else (),
+        slides=slides,
+        length_unit=linkage.length_unit,
+        periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
+        loading=loading,
+        between=partial(_between, linkage, circuit, loading),
+    )
+
+
+def _between(linkage: Solvable, circuit: Circuit, loading: Loading, inputs: Floats) -> Forces:
+    """The forces of a circuit that goes round, at any inputs (n,)."""
+    return forces_of(linkage, driven(linkage, circuit, inputs, speed=circuit.speed), loading)
+
+
+def _winds_up(circuit: Circuit, loading: Loading) -> bool:
+    """Whether a spring in a joint has more to give with every turn of the joint."""
+    columns = [circuit.columns.index(s.joint) for s in loading.springs if s.joint and s.stiffness]
+    # rows end one step before the first comes again
+    gained = len(circuit.q) / max(len(circuit.q) - 1, 1) * (circuit.q[-1] - circuit.q[0])
+    return bool(np.any(np.abs(gained[columns]) > np.pi))
+
+
+def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Floats) -> dict[str, Reaction]:
+    """Each joint's reaction; components that the free wrenches (n, redundant, 6) leave open are NaN."""
+    size, found = solver.size, {}
+    for i, joint in enumerate(solver.linkage.joints):
+        axes, place = seats[:, i, :9].reshape(-1, 3, 3), seats[:, i, 9:]
+        wrench = wrenches[:, i] * size
+        known, determinate = _known(_in_seat(axes, place, free))
+        found[joint.name] = Reaction(
+            joint=joint.name,
+            force=np.where(determinate[3:], wrench[:, 3:], np.nan),
+            moment=np.where(determinate[:3], wrench[:, :3] * size, np.nan),
+            at=place * solver.numbers.size,
+            axes=axes,
+            determinate=determinate,
+            known=known,
+            known_values=np.einsum("nkj,nj->nk", known, wrench) if free.shape[1] else wrench,
+        )
+    return found
+
+
+def _in_seat(axes: Floats, place: Floats, wrenches: Floats) -> Floats:
+    """Wrenches (n, k, 6) about the origin, about a place (n, 3) and along axes (n, 3, 3) there."""
+    if not wrenches.shape[1]:
+        return wrenches
+    force = wrenches[:, :, 3:]
+    moment = wrenches[:, :, :3] - np.cross(place[:, None], force)
+    return np.concatenate([moment @ axes, force @ axes], axis=2)
+
+
+def _known(open_ways: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    """What open wrenches (n, k, 6) leave: combinations (n, 6 - k, 6), orthonormal; which components (6,)."""
+    rows, count, _ = open_ways.shape
+    if not count:
+        return np.broadcast_to(np.eye(6), (rows, 6, 6)), np.ones(6, dtype=bool)
+    full = np.isfinite(open_ways).all(axis=(1, 2))
+    known = np.full((rows, 6 - count, 6), np.nan)
+    determinate = np.ones(6, dtype=bool)
+    if full.any():
+        _, _, right = np.linalg.svd(open_ways[full], full_matrices=True)
+        known[full] = right[:, count:]
+        determinate = np.linalg.norm(right[:, :count], axis=1).max(axis=0) < OPEN
+    return known, determinate
+
+
+def _spins(solver: ForceSolver, spin: Floats) -> dict[str, Floats]:
+    """The moment that holds each idle spin (n,) [N m], by its link."""
+    linkage = solver.linkage
+    spun, *_ = linkage.held
+    columns = list(solver.numbers.held)
+    found = {}
+    for ball in sorted(spun):
+        column = linkage.places[ball].stop - 1
+        if column in columns:
+            found[f"link {ball + 1}"] = spin[:, columns.index(column)]
+    return found

@@ -1,0 +1,54 @@
+"""Torque and reactions as Exudyn's constraints give them, compared with Sevenbar's at two step sizes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from sevenbar.simulation.agreement import Difference
+from sevenbar.simulation.run import simulate
+from test_forces import random_body
+
+pytest.importorskip("exudyn")
+
+
+def loaded(name: str) -> sb.Linkage:
+    """A linkage of the gallery with random bodies, weight, two loads, a spring and a damper in a joint."""
+    rng = np.random.default_rng(7)
+    linkage = sb.load(name)
+    circuit, last = linkage.motion(8).circuits[0], len(linkage.joints)
+    size = circuit.size
+    # the spring of a joint that goes round has more to give with every turn
+    stiffness = 2.0 if circuit.output_range else 0.0
+    return linkage.loaded(
+        bodies={link: random_body(rng, size) for link in range(1, last)},
+        gravity=(1.0, 2.0, -9.8),
+        loads=[
+            sb.Load(last - 1, (3.0, 4.0, -5.0), (0.1, 0.2, 0.3), at=(0.1 * size, 0.0, 0.0), axes="link"),
+            sb.Load(1, (1.0, -2.0, 5.0), at=(0.1 * size, 0.0, 0.0), between=(0.5, 2.0)),
+        ],
+        springs=[
+            sb.Spring(0.3, 0.4 * size, 0.01, links=(1, last), at=((0.1 * size, 0.0, 0.0), (0.0, 0.0, size))),
+            sb.Spring(stiffness, 0.1, 0.3, joint=linkage.drive.output),
+        ],
+    )
+
+
+def forces_of(name: str, steps: int) -> dict[str, Difference]:
+    run = simulate(loaded(name), "exudyn", steps=steps)
+    return {d.quantity: d for d in run.differences if d.quantity.endswith((" torque", " force", " moment"))}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["rssr", "seven_r", "rscr", "rsur", "rccc", "rssp", "spherical_4r"])
+def test_torque_and_reactions_come_out_of_an_engine_with_the_square_of_its_step(name: str) -> None:
+    coarse, fine = forces_of(name, 720), forces_of(name, 1440)
+    assert len(fine) > 3
+    for quantity, found in fine.items():
+        scale = max(d.scale for q, d in fine.items() if q.split()[-1] == quantity.split()[-1])
+        if quantity.endswith("moment"):
+            scale = max(scale, *(d.scale for q, d in fine.items() if q.endswith("torque")))
+        assert found.greatest < 3e-4 * scale, (quantity, found)
+        if coarse[quantity].greatest > 1e-8 * scale:
+            assert found.greatest < 0.3 * coarse[quantity].greatest, (quantity, coarse[quantity], found)
