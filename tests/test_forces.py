@@ -115,14 +115,14 @@ def test_flags_say_what_equilibrium_determines(name: str, counts: set[int]) -> N
 def test_a_spatial_rod_needs_nothing_to_hold_its_spin() -> None:
     circuit = sb.load("rssr").motion(36).circuits[0]
     rod = circuit.forces(bodies={2: sb.Body(1.3, solid="rod")}, gravity=(0.0, 0.0, -9.81))
-    assert np.abs(rod.spin["link 2"]).max() < 1e-12 * np.abs(rod.torque).max()
+    assert np.abs(rod.spin["coupler"]).max() < 1e-12 * np.abs(rod.torque).max()
     start, end = np.zeros(3), np.array([float(sb.load("rssr").lengths[1]), 0.0, 0.0])
     thick = sb.Body(1.3, tuple((start + end) / 2), np.diag([2e-3, 0.09, 0.09]))
     thin = sb.Body(1.3, tuple((start + end) / 2), np.diag([0.0, 0.09, 0.09]))
     # balls without friction never turn it about its line
     assert np.array_equal(circuit.forces(bodies={2: thick}).torque, circuit.forces(bodies={2: thin}).torque)
     aside = sb.Body(1.3, (float(end[0] / 2), 20.0, 0.0), np.diag([2e-3, 0.09, 0.09]))
-    assert np.abs(circuit.forces(bodies={2: aside}).spin["link 2"]).max() > 0.01
+    assert np.abs(circuit.forces(bodies={2: aside}).spin["coupler"]).max() > 0.01
 
 
 def test_a_dead_centre_of_the_input_has_no_torque() -> None:

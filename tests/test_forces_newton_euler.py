@@ -247,18 +247,16 @@ def test_statics_is_the_derivative_of_potential_energy(name: str) -> None:
     got = forces(loaded)
     unit = 1.0 if slow.input_turns else loaded.metre
     want = []
+    rows = loaded.rows[::4]
     with mp.workdps(DIGITS):
         precise, step = loaded.reference(precise=True), mp.mpf(10) ** -14
-        for row in loaded.rows:
+        for row in rows:
             angle = mp.mpf(float(slow.q[row, slow.input_column]))
-            energies = [
-                precise.at(
-                    precise.motion.pose(slow.q[row], angle + side * step), mp.mpf(0), mp.mpf(0)
-                ).potential
-                for side in (-1, 1)
-            ]
-            want.append(float((energies[1] - energies[0]) / (2 * step)) / unit)
-    assert got.torque[loaded.rows] == pytest.approx(want, rel=0, abs=1e-12 * np.abs(want).max())
+            before, after = (
+                precise.potential(precise.motion.pose(slow.q[row], angle + side * step)) for side in (-1, 1)
+            )
+            want.append(float((after - before) / (2 * step)) / unit)
+    assert got.torque[rows] == pytest.approx(want, rel=0, abs=1e-12 * np.abs(want).max())
 
 
 def test_a_coupler_that_no_spin_concerns_is_held_by_nothing() -> None:

@@ -144,6 +144,13 @@ class NewtonEuler:
             ddq=ddq,
         )
 
+    def potential(self, q: Numbers) -> Any:
+        """The energy of weights and springs at a pose (m,)."""
+        still = 0 * q
+        links = [link.only(0) for link in self.motion.carried(q, still[None], still[None])[0]]
+        weights = [self._momentum(i, links[i])[3] for i in range(1, self.motion.count)]
+        return sum(weights, self._acting(links, q, still).potential)
+
     def _whole(self, matrix: Numbers, right: Numbers) -> tuple[Numbers, np.ndarray, int, float]:
         """Solution of least norm, the length of each unknown's row of the null space, its dimension, and the condition."""
         doubles = matrix.astype(np.float64)

@@ -37,7 +37,7 @@ ORDERS = (3, 2, 1)
 #: Waves smaller than this part of the greatest value are rounding.
 NOISE = 1e-15
 
-#: Waves in the last of so many equal parts of the spectrum are its tail.
+#: Waves in the last of so many equal shares of the spectrum are its tail.
 TAIL_PART = 8
 
 #: A greater tail: the rows are too few for figures to their digits.

@@ -5,7 +5,7 @@ At constant speed, with torque M over the input x and its mean,
     E(x) = integral (M - mean M) dx,   dE = max E - min E,   J = dE / (delta w^2)                         (24)
 
 A drive that gives the mean torque runs slowest where E is highest and fastest where it is lowest. A bearing's
-loads are the sizes of parts of the force and moment in its joint, as peak and as cubic mean.
+loads are the sizes of components of the force and moment in its joint, as peak and as cubic mean.
 
 Source: docs/theory_forces.md, (24) to (26); ISO 281 for the third power.
 """

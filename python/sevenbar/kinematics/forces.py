@@ -10,6 +10,7 @@ Source: docs/theory_forces.md, (1) to (6).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -39,6 +40,8 @@ class ForceSolver:
     linkage: Solvable
     loading: Loading
     input: int
+    #: Whether derivatives by the description's numbers are wanted.
+    by_numbers: bool = False
 
     @cached_property
     def numbers(self) -> Numbers:
@@ -48,7 +51,7 @@ class ForceSolver:
     @cached_property
     def loop(self) -> NumberedLoop:
         """The loop that this input drives."""
-        return self.numbers.loop(self.input, only=())
+        return self.numbers.loop(self.input, only=None if self.by_numbers else ())
 
     @cached_property
     def size(self) -> float:
@@ -141,9 +144,7 @@ class ForceSolver:
             step += len(word.freedoms[i])
         return steps, np.array(frames)
 
-    def solved(
-        self, inputs: Floats, poses: Floats, speeds: Floats, *, by_numbers: bool = False
-    ) -> list[Floats]:
+    def solved(self, inputs: Floats, poses: Floats, speeds: Floats) -> list[Floats]:
         """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2)."""
         scales = self.numbers.scales
         turns = self.linkage.column_kinds[self.input] == "turn"
@@ -157,7 +158,7 @@ class ForceSolver:
             np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
             steps,
             frames,
-            by_numbers,
+            self.by_numbers,
         )
 
 
@@ -177,6 +178,7 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
     torque = torque * (size if slides else size**2)
     speed = speeds[:, 0]
     energies = energies * size**2
+    reactions = _reactions(solver, wrenches, seats, free)
     return Forces(
         input=circuit.input,
         time=circuit.time,
@@ -188,8 +190,8 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
         potential=energies[:, 1],
         supplied=energies[:, 2],
         shaking=shaking * np.repeat([size**2, size], 3),
-        reactions=_reactions(solver, wrenches, seats, free),
-        spin=_spins(solver, spin * size**2),
+        reactions=reactions,
+        spin=_spins(solver, spin * size**2, reactions),
         indeterminate=linkage.mobility().redundant if free.shape[1] else (),
         slides=slides,
         length_unit=linkage.length_unit,
@@ -256,14 +258,22 @@ def _known(open_ways: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
     return known, determinate
 
 
-def _spins(solver: ForceSolver, spin: Floats) -> dict[str, Floats]:
-    """The moment that holds each idle spin (n,) [N m], by its link."""
+def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction]) -> dict[str, Floats]:
+    """The size of the moment (n,) [N m] in each ball that the rule of an idle spin needs, by its link.
+
+    The ball is held to two axes, so its moment is square to both; what the core has is its part about the
+    third axis of the word.
+    """
     linkage = solver.linkage
     spun, *_ = linkage.held
-    columns = list(solver.numbers.held)
     found = {}
     for ball in sorted(spun):
         column = linkage.places[ball].stop - 1
-        if column in columns:
-            found[f"link {ball + 1}"] = spin[:, columns.index(column)]
+        reaction = reactions[linkage.joints[ball].name]
+        if column not in solver.numbers.held:
+            continue
+        own = np.abs(spin[:, solver.numbers.held.index(column)])
+        name = "coupler" if linkage.kind == "RSSR" else f"link {ball + 1}"
+        known = bool(reaction.determinate[:3].all())
+        found[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
     return found

@@ -18,8 +18,8 @@ Placed = tuple[int, Floats]
 
 
 @dataclass(frozen=True, eq=False)
-class Mass:
-    """Mass [kg], its centre (3,) [length] in the body's frame, inertia (3, 3) about it [kg m^2]."""
+class PlacedMass:
+    """PlacedMass [kg], its centre (3,) [length] in the body's frame, inertia (3, 3) about it [kg m^2]."""
 
     mass: float
     centre: Floats
@@ -62,17 +62,19 @@ class JointSpring:
 
 
 @dataclass(frozen=True, eq=False)
-class Acting:
+class PlacedLoading:
     """All that acts; `masses` by the bodies' numbers, `gravity` (3,) [m/s^2]."""
 
-    masses: dict[int, Mass] = field(default_factory=dict)
+    masses: dict[int, PlacedMass] = field(default_factory=dict)
     gravity: Floats = field(default_factory=lambda: np.zeros(3))
     loads: tuple[PlacedLoad, ...] = ()
     springs: tuple[PlacedSpring, ...] = ()
     joint_springs: tuple[JointSpring, ...] = ()
 
 
-def acting(linkage: Solvable, links: dict[int, int], columns: dict[str, tuple[int, int]]) -> Acting | None:
+def acting(
+    linkage: Solvable, links: dict[int, int], columns: dict[str, tuple[int, int]]
+) -> PlacedLoading | None:
     """What acts on a linkage, for the bodies of its links and the connection and freedom of its columns.
 
     `None` where nothing has a mass and nothing acts. A link that spins idly is moved as balls without
@@ -119,9 +121,9 @@ def acting(linkage: Solvable, links: dict[int, int], columns: dict[str, tuple[in
     for link, body in as_moved(linkage, resolved(loading, linkage)).items():
         assert body.centre is not None
         number, centre = placed(link, body.centre)
-        masses[number] = Mass(body.mass, centre, axes(link) @ body.tensor @ axes(link).T)
+        masses[number] = PlacedMass(body.mass, centre, axes(link) @ body.tensor @ axes(link).T)
     between = [own for own in loading.springs if own.links is not None]
-    return Acting(
+    return PlacedLoading(
         masses,
         np.array(loading.gravity),
         tuple(load(own) for own in loading.loads),

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.rigid import perpendicular, pose
 from sevenbar.simulation.engine import imported
 from sevenbar.simulation.exudyn_screw import ScrewConstraint
-from sevenbar.simulation.prototype import GROUND, GYRATION, Body, Connection, Prototype, SpinRule
+from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, MovingBody, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 
 #: A body's mass, or that of the heaviest. Small against lengths of size one, so that constraints weigh most
@@ -28,7 +28,7 @@ def pace_of(model: Prototype) -> float:
     return abs(drive.speed) / (1.0 if drive.turns else model.size)
 
 
-class Assembly:
+class ExudynAssembly:
     """A prototype put together in an Exudyn system; a length of 1 is its size, a second has `pace` units."""
 
     def __init__(self, items: Any, system: Any, model: Prototype, pace: float) -> None:
@@ -64,7 +64,7 @@ class Assembly:
         """Exudyn's unit of force [N]."""
         return self.kilogram * self.metres * self.pace**2
 
-    def _add_node(self, body: Body) -> Any:
+    def _add_node(self, body: MovingBody) -> Any:
         rigid = imported("exudyn.rigidBodyUtilities")
         parameters = rigid.RotationMatrix2EulerParameters(body.frame[:3, :3])
         rates = rigid.AngularVelocity2EulerParameters_t(body.spin / self.pace, parameters)

@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
 from sevenbar.simulation.engine import Record, imported
-from sevenbar.simulation.exudyn_assembly import Assembly, pace_of
+from sevenbar.simulation.exudyn_assembly import ExudynAssembly, pace_of
 from sevenbar.simulation.exudyn_forces import add_acting, constraint_forces, constraint_sensors
 from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.progress import Progress
@@ -55,7 +55,7 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
     container = exu.SystemContainer()
     system = container.AddSystem()
     pace = pace_of(model)
-    assembly = Assembly(items, system, model, pace)
+    assembly = ExudynAssembly(items, system, model, pace)
     notes = []
     for joint in model.connections:
         assembly.add_joint(joint)

@@ -9,7 +9,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.rigid import pose
 from sevenbar.simulation.acting import JointSpring, PlacedLoad
-from sevenbar.simulation.exudyn_assembly import Assembly
+from sevenbar.simulation.exudyn_assembly import ExudynAssembly
 from sevenbar.simulation.prototype import GROUND, Connection
 from sevenbar.text.units import LENGTHS
 
@@ -21,7 +21,7 @@ class ConstraintForces(NamedTuple):
     reactions: Floats
 
 
-def add_acting(assembly: Assembly) -> None:
+def add_acting(assembly: ExudynAssembly) -> None:
     """Adds weights, loads, springs and dampers."""
     acting = assembly.model.acting
     if acting is None:
@@ -48,7 +48,7 @@ def add_acting(assembly: Assembly) -> None:
         _add_joint_spring(assembly, own)
 
 
-def _add_load(assembly: Assembly, load: PlacedLoad) -> None:
+def _add_load(assembly: ExudynAssembly, load: PlacedLoad) -> None:
     """A force and a torque, as large as they are at the drive's value."""
     items, drive, pace = assembly.items, assembly.model.drive, assembly.pace
     number, at = load.place
@@ -72,7 +72,7 @@ def _add_load(assembly: Assembly, load: PlacedLoad) -> None:
             assembly.system.AddLoad(full)
 
 
-def _add_joint_spring(assembly: Assembly, own: JointSpring) -> None:
+def _add_joint_spring(assembly: ExudynAssembly, own: JointSpring) -> None:
     """A spring about or along the axis of a joint's free turn or slide."""
     items, system = assembly.items, assembly.system
     joint = assembly.model.connections[own.connection]
@@ -108,7 +108,7 @@ def _add_joint_spring(assembly: Assembly, own: JointSpring) -> None:
     )
 
 
-def constraint_sensors(assembly: Assembly, kinds: Any) -> list[tuple[Any, Any]]:
+def constraint_sensors(assembly: ExudynAssembly, kinds: Any) -> list[tuple[Any, Any]]:
     """Sensors of force and torque of each joint's constraints, the drive's last; none without masses."""
     if assembly.model.acting is None:
         return []
@@ -128,7 +128,7 @@ def constraint_sensors(assembly: Assembly, kinds: Any) -> list[tuple[Any, Any]]:
 
 
 def constraint_forces(
-    assembly: Assembly, sensors: list[tuple[Any, Any]], frames: Floats
+    assembly: ExudynAssembly, sensors: list[tuple[Any, Any]], frames: Floats
 ) -> ConstraintForces | None:
     """What the constraints bear along the frames (n, bodies, 4, 4) of the bodies; `None` without masses.
 

@@ -21,7 +21,7 @@ from sevenbar.kinematics.rigid import inverse, quaternion
 from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
 
-#: Mass of every body [kg]. The motion that the drive prescribes does not depend on it.
+#: PlacedMass of every body [kg]. The motion that the drive prescribes does not depend on it.
 MASS = 1.0
 
 #: Least radius of gyration [m]: below, MuJoCo takes a body for none at all.

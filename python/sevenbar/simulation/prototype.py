@@ -18,7 +18,7 @@ from sevenbar.kinematics.joints import JointKind, kind_row
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.poses import frames_along
 from sevenbar.kinematics.rigid import about, inverse, pose
-from sevenbar.simulation.acting import Acting, acting
+from sevenbar.simulation.acting import PlacedLoading, acting
 
 #: The number of the ground among the bodies.
 GROUND = -1
@@ -32,7 +32,7 @@ LEAST_SINE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class MovingBody:
     """A rigid body: its frame at the start, in the report frame, and how that moves.
 
     `frame` (4, 4); `velocity` of its origin (3,) [length/s]; `spin` (3,) [rad/s]. Its centre of mass is the
@@ -114,7 +114,7 @@ class Prototype:
     name: str
     length_unit: str
     size: float
-    bodies: tuple[Body, ...]
+    bodies: tuple[MovingBody, ...]
     connections: tuple[Connection, ...]
     spin_rules: tuple[SpinRule, ...]
     drive: PrescribedMotion
@@ -123,7 +123,7 @@ class Prototype:
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...] = ()
     #: Masses, loads and springs; none where the linkage has none, and any masses will do.
-    acting: Acting | None = None
+    acting: PlacedLoading | None = None
     #: The connection that has the constraints of each joint of the linkage next to the link before it.
     seats: tuple[int, ...] = ()
 
@@ -148,7 +148,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     frames = frames_along(linkage, circuit, np.array([row]))[0]
     # rates of a row are given for the input at the motion's own speed, whatever the pass
     share = speed / circuit.dq[row, circuit.input_column]
-    bodies: list[Body] = []
+    bodies: list[MovingBody] = []
     connections: list[Connection] = []
     values: list[Floats] = []
     rates: list[Floats] = []
@@ -158,12 +158,12 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     before = GROUND
     last = len(linkage.joints) - 1
 
-    def link_body(i: int) -> Body:
+    def link_body(i: int) -> MovingBody:
         own = frames[i]
         place = inverse(linkage.point_frames[i]) @ np.array([0.0, 0.0, 0.0, 1.0])
         velocity = circuit.point(i + 1, (place[0], place[1], place[2])).velocity[row]
         spin = circuit.link_motion(i + 1).velocity[row]
-        return Body(f"link_{i + 1}", i + 1, own, share * velocity, share * spin)
+        return MovingBody(f"link_{i + 1}", i + 1, own, share * velocity, share * spin)
 
     for i, joint in enumerate(linkage.joints):
         own = linkage.places[i]
@@ -182,7 +182,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             carried = np.zeros(3) if carrier is None else carrier.spin
             velocity = np.zeros(3) if carrier is None else carrier.velocity + np.cross(carried, arm)
             cross, spin = start @ pose(about(step.axis, q[0])), carried + paces[0] * start[:3, step.axis]
-            bodies.append(Body(f"{joint.name}_cross", 0, cross, velocity, spin))
+            bodies.append(MovingBody(f"{joint.name}_cross", 0, cross, velocity, spin))
             after = len(bodies) - 1
             connections.append(
                 Connection(joint.columns[0], step.letter, before, after, frame_before, np.eye(4))
@@ -232,7 +232,9 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     )
 
 
-def _spin_rules(linkage: Solvable, bodies: list[Body], connections: list[Connection]) -> tuple[SpinRule, ...]:
+def _spin_rules(
+    linkage: Solvable, bodies: list[MovingBody], connections: list[Connection]
+) -> tuple[SpinRule, ...]:
     """The rule of the idle spin of each link between two balls: its y stays across an axis before."""
     axes = linkage.spin_axes
     rules = []

@@ -1,4 +1,4 @@
-"""The language of reports and figures: each sentence is written in English, and looked up for another one."""
+"""The language of reports and figures: each sentence is written in English, a catalogue has it in another one."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ Span = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ShownCurve:
     """The `values` of a circuit over what is `across`, along its walk, in the units shown, (n,)."""
 
     view: View
@@ -111,7 +111,7 @@ def panels(
     made = []
     for quantity in picked:
         curves = [
-            Curve(each, places, _bounded(quantity.values(each)))
+            ShownCurve(each, places, _bounded(quantity.values(each)))
             for each, places in zip(views, across, strict=True)
         ]
         own_span = curves[circuit].span(quantity.kind)
@@ -125,7 +125,7 @@ def panels(
 def _panel(
     frame: Frame,
     quantity: Quantity,
-    curves: Sequence[Curve],
+    curves: Sequence[ShownCurve],
     circuit: int,
     reach: Span,
     own_span: Span,
@@ -222,7 +222,7 @@ def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) 
     return low - (0.2 * room if quantity.point is not None else room), high + room
 
 
-def _keys(quantity: Quantity, own: Curve) -> list[tuple[str, str]]:
+def _keys(quantity: Quantity, own: ShownCurve) -> list[tuple[str, str]]:
     """Short words, with their dashes, that tell the passes apart and that rates are cut."""
     keys = [("axis cut", "")] if quantity.order and own.view.circuit.turns_back else []
     if len(own.passes) > 1 and own.view.motion.law is None:
@@ -263,7 +263,7 @@ def _pale(colour: str) -> str:
     return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
 
 
-def _marks(quantity: Quantity, own: Curve, frame: Frame, below: Scale, beside: Scale) -> str:
+def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, beside: Scale) -> str:
     """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
     motion, circuit = own.view.motion, own.view.circuit
     extremes: Extremes | None = getattr(circuit, quantity.kind)
