@@ -42,7 +42,7 @@ def closure_error(circuits: Iterable[Circuit]) -> float:
 
 
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
-    """What the report tells of the motion as a whole: names, in English, and words."""
+    """What the report says of the motion as a whole: names, in English, and words."""
     linkage = motion.linkage
     facts = [("loop", joints_text(linkage))]
     if linkage.form == "rows":

@@ -235,7 +235,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         return _Quantity(f"{second} {name}", words, head, of, f"[{unit}]", ends=True)
 
     def stands_still(end: Literal["input", "output"]) -> list[_Quantity]:
-        # a table tells the ends of a range as that
+        # in a table the ends of a range are its own column
         ranged = end == "output" or any(c.input_range is not None for c in motion)
         name = f"dead centres of the {end}"
         if end == "input":

@@ -77,8 +77,8 @@ def _title(candidate: Candidate, wish: Wish) -> str:
     if wish.exact and wish.function is None:
         met = say("{count} precision points, met to {error:.1e}°", count=len(wish.input), error=greatest)
         return f"{short(candidate.name, 60)}\n{met}"
-    told = say("error at most {greatest:.3g}°, RMS {rms:.3g}°", greatest=greatest, rms=rms)
-    return f"{short(candidate.name, 60)}\n{told}"
+    reached = say("error at most {greatest:.3g}°, RMS {rms:.3g}°", greatest=greatest, rms=rms)
+    return f"{short(candidate.name, 60)}\n{reached}"
 
 
 def swing_figure(candidate: Candidate) -> Figure:
