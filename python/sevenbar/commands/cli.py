@@ -67,6 +67,7 @@ MOST_DRAWN = 3600
 #: the studio.
 _ELSEWHERE = {
     "axodes": "sevenbar.commands.axodes:axodes",
+    "forces": "sevenbar.commands.forces:forces",
     "studio": "sevenbar.commands.studio:studio",
     "compare": "sevenbar.commands.compare:compare",
     "calibrate": "sevenbar.commands.compare:calibrate",

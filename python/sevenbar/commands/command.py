@@ -24,6 +24,11 @@ WHY_ONE = {
 
 #: Calls that show what a command does, below its options.
 EXAMPLES = {
+    "forces": (
+        "sevenbar forces rssr_press",
+        "sevenbar forces press.toml --speed '90 rpm' --unevenness 0.02 -o forces",
+        "sevenbar forces engine --speed 0 --json",
+    ),
     "analyze": (
         "sevenbar analyze rssr",
         "sevenbar analyze mine.toml --speed '60 rpm' -o report",

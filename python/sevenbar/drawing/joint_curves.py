@@ -68,7 +68,7 @@ def joints(
             panels = given_axes(ax, len(drawn), "one for each column")
             figure: Figure = panels[0].figure.figure
         else:
-            across = _across(len(drawn))
+            across = panels_across(len(drawn))
             down = math.ceil(len(drawn) / across)
             usual = 3.4 * across + 0.4, 2.0 * down + 1.0
             figure = new_figure(*page_size(style, figsize, usual, wide=across > 1), pads=(0.05, 0.06))
@@ -94,7 +94,7 @@ def joints(
     return figure
 
 
-def _across(count: int) -> int:
+def panels_across(count: int) -> int:
     """Columns of a grid of panels: few empty places, and as high as wide."""
     return min(
         (1, 2, 3, 4), key=lambda n: (-count % n) + abs(math.ceil(count / n) - 1.3 * n) + 9 * (n > count)

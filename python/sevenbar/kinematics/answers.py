@@ -83,18 +83,19 @@ class LinkageAnswers:
             low_at, high_at = low_at % math.tau, high_at % math.tau
         return Extremes(low, low_at, high, high_at)
 
-    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on a circuit's rows, with what is given in place of what the linkage has."""
         # the engine by numbers is for those who ask
         from sevenbar.kinematics.forces import ForceSolver, forces_of
 
         if given:
             loading = loading_with(self.linkage, **given)
-            return forces_of(ForceSolver(self.linkage, loading, circuit.input_column), circuit)
+            solver = ForceSolver(self.linkage, loading, circuit.input_column)
+            return forces_of(solver, circuit, at_rest=at_rest)
         if circuit.input_column not in self._solvers:
             solver = ForceSolver(self.linkage, self.linkage.loading, circuit.input_column)
             self._solvers[circuit.input_column] = solver
-        return forces_of(self._solvers[circuit.input_column], circuit)
+        return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
 
     def counterweights(
         self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]

@@ -205,7 +205,7 @@ class Answers(Protocol):
         """Places (..., 3) in the plane of a planar loop (..., 2)."""
         ...
 
-    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on its rows, with what is given in place of what the linkage has."""
         ...
 
@@ -425,12 +425,14 @@ class Circuit(Printed):
         gravity: tuple[float, float, float] | None = None,
         loads: Sequence[Load] | None = None,
         springs: Sequence[Spring] | None = None,
+        at_rest: bool = False,
     ) -> Forces:
         """What the input has to give, and what every joint bears, on each row.
 
         Bodies (by their link), gravity [m/s^2], loads and springs are those of the linkage's file, or the
-        given ones. Rates are those of the circuit: for statics, ask a motion with a law that rests. Raises
-        `RequestError` where nothing has a mass and nothing acts.
+        given ones. Rates are those of the circuit, or with `at_rest` zero: statics on every row, where
+        nothing has inertia and dampers do nothing. Raises `RequestError` where nothing has a mass and nothing
+        acts.
 
             >>> import sevenbar as sb
             >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
@@ -441,7 +443,8 @@ class Circuit(Printed):
         Source: docs/theory_forces.md, (1) to (7).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
-        return self._answers.forces(self, {key: value for key, value in given.items() if value is not None})
+        known = {key: value for key, value in given.items() if value is not None}
+        return self._answers.forces(self, known, at_rest=at_rest)
 
     @ends_here
     def counterweights(

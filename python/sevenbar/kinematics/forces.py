@@ -169,7 +169,7 @@ class ForceSolver:
         )
 
 
-def forces_of(solver: ForceSolver, circuit: Circuit) -> Forces:
+def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -> Forces:
     """The forces on the rows of a circuit; see `Circuit.forces`."""
     linkage, loading = solver.linkage, solver.loading
     if loading.is_empty:
@@ -179,6 +179,9 @@ def forces_of(solver: ForceSolver, circuit: Circuit) -> Forces:
     poses = solver.numbers.poses(circuit.q)
     poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
     speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
+    if at_rest:
+        # rows without rates stay without
+        speeds = np.where(np.isfinite(speeds), 0.0, np.nan)
     torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
     size, metre = solver.size, LENGTHS[linkage.length_unit]
     slides = linkage.column_kinds[circuit.input_column] == "slide"
@@ -191,6 +194,7 @@ def forces_of(solver: ForceSolver, circuit: Circuit) -> Forces:
         time=circuit.time,
         speed=speed,
         status=circuit.status,
+        branch=circuit.branch,
         torque=torque,
         power=torque * speed * (metre if slides else 1.0),
         kinetic=energies[:, 0],
@@ -204,13 +208,17 @@ def forces_of(solver: ForceSolver, circuit: Circuit) -> Forces:
         length_unit=linkage.length_unit,
         periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
         loading=loading,
-        between=partial(_between, solver, circuit),
+        bodies=solver.bodies,
+        driver=linkage.columns[circuit.input_column],
+        heading=linkage.heading,
+        at_rest=at_rest,
+        between=partial(_between, solver, circuit, at_rest),
     )
 
 
-def _between(solver: ForceSolver, circuit: Circuit, inputs: Floats) -> Forces:
+def _between(solver: ForceSolver, circuit: Circuit, at_rest: bool, inputs: Floats) -> Forces:
     """The forces of a circuit that goes round, at any inputs (n,)."""
-    return forces_of(solver, driven(solver.linkage, circuit, inputs, speed=circuit.speed))
+    return forces_of(solver, driven(solver.linkage, circuit, inputs, speed=circuit.speed), at_rest=at_rest)
 
 
 def _winds_up(circuit: Circuit, loading: Loading) -> bool:
@@ -230,6 +238,7 @@ def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Float
         known, determinate = _known(_in_seat(axes, place, free))
         found[joint.name] = Reaction(
             joint=joint.name,
+            kind=joint.kind,
             force=np.where(determinate[3:], wrench[:, 3:], np.nan),
             moment=np.where(determinate[:3], wrench[:, :3] * size, np.nan),
             at=place * solver.numbers.size,
