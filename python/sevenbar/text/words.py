@@ -1,4 +1,4 @@
-"""The language of reports and figures: each sentence is written in English, a catalogue has it in another one."""
+"""The language of reports and figures: sentences are written in English, a catalogue has them in another."""
 
 from __future__ import annotations
 
