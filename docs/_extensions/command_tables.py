@@ -1,5 +1,6 @@
 """Every command with its arguments and options, from the program's own command line."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
@@ -59,7 +60,8 @@ def all_commands(_pages: Path, _: str) -> str:
 
 
 def _section(words: str, command: Any) -> str:
-    kinds = get_type_hints(command.callback)
+    # those of the shared options are texts
+    kinds = defaultdict(lambda: str, get_type_hints(command.callback))
     arguments = [param for param in command.params if param.param_type_name == "argument"]
     shown = [param for param in command.params if not param.hidden]
     usage = " ".join([*(_metavar(param) for param in arguments), "[OPTIONS]"])

@@ -25,6 +25,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere
 from sevenbar.text.printing import SAID_IN
+from sevenbar.text.words import language
 
 if TYPE_CHECKING:
     from sevenbar.description.families import (
@@ -90,6 +91,7 @@ __all__ = [
     "from_dh",
     "from_table",
     "goldberg",
+    "language",
     "load",
     "load_law",
     "loads",

@@ -62,6 +62,10 @@ class AngleUnitWarning(UserWarning):
     """Angles that may have been written in another unit; the answer takes them as they are."""
 
 
+class MissingFontWarning(UserWarning):
+    """No font has the characters of a language, so figures are in English."""
+
+
 @dataclass(frozen=True)
 class Problem:
     """One thing that is wrong in a description: its place and what is the matter."""

@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
-from typing import Any
+from functools import cache
+from typing import Annotated, Any
 
 import typer.core
+import typer.main
 
+from sevenbar.drawing.asked import drawn_as
 from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.text.words import check_language, language
 
 #: What to say of options of which a second one is a mistake in thought, too.
 WHY_ONE = {
@@ -74,6 +78,67 @@ EXAMPLES = {
 }
 
 
+#: What two options mean, wherever a command has them.
+VIEW_HELP = "plane, space, xy, xz, yz or iso, or elevation and azimuth, as in '30,-60'."
+STYLE_HELP = "Style of the figures: screen, paper or ieee."
+
+#: Commands with the options of `_shared`, besides those that have one of their own.
+_DRAWING = (
+    *("modes", "map", "tolerance", "function", "swing", "path", "point", "inertia"),
+    *("compare", "calibrate", "simulate"),
+)
+SHARED = {
+    "--view": ("modes", "path", "point"),
+    "--style": _DRAWING,
+    "--lang": ("analyze", "plot", "forces", *_DRAWING),
+}
+
+
+def _draw_from(ctx: typer.Context, view: str | None) -> None:
+    if view is not None:
+        from sevenbar.commands.given import view_of
+
+        ctx.with_resource(drawn_as(view=view_of(view)))
+
+
+def _draw_in_style(ctx: typer.Context, style: str | None) -> None:
+    if style is not None:
+        # matplotlib is needed from here on
+        from sevenbar.drawing.style import check_style
+
+        ctx.with_resource(drawn_as(style=check_style(style, "--style")))
+
+
+def _say_language(ctx: typer.Context, lang: str | None) -> None:
+    if lang is not None:
+        ctx.with_resource(language(check_language(lang, "--lang")))
+
+
+def _shared(
+    view: Annotated[str | None, typer.Option(help=VIEW_HELP, callback=_draw_from, expose_value=False)] = None,
+    style: Annotated[
+        str | None, typer.Option(help=STYLE_HELP, callback=_draw_in_style, expose_value=False)
+    ] = None,
+    lang: Annotated[
+        str | None,
+        typer.Option(
+            help="Language of the figures, and of the report of a motion: en (the default) or zh.",
+            callback=_say_language,
+            expose_value=False,
+        ),
+    ] = None,
+) -> None:
+    """Options whose meaning holds for all that is made until the command ends."""
+
+
+@cache
+def _shared_options() -> dict[str, Any]:
+    """The options of `_shared` by their names."""
+    alone = typer.Typer(add_completion=False)
+    alone.command()(_shared)
+    return {option: made for made in typer.main.get_command(alone).params for option in made.opts}
+
+
 class Command(typer.core.TyperCommand):
     """A command of sevenbar."""
 
@@ -82,6 +147,7 @@ class Command(typer.core.TyperCommand):
             # lines of a paragraph would flow into each other
             options["epilog"] = "\n\n".join(("Examples:", *EXAMPLES[name]))
         super().__init__(name, *args, **options)
+        self.params += [_shared_options()[option] for option, commands in SHARED.items() if name in commands]
         for parameter in self.params:
             if "--out" in parameter.opts and "-o" not in parameter.opts:
                 parameter.opts.append("-o")

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-import sevenbar as sb
 from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import tell_written
-from sevenbar.commands.given import agreed, input_value
+from sevenbar.commands.given import input_value, opened
 from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.options import Agree, Force, InputJoint, OutputJoint, Samples, Source, Speed, Yes
 from sevenbar.commands.progress import progress_bar
@@ -80,9 +79,9 @@ def export(
     form = FORMATS[format_of(out, to)]
     # a folder of many parts has no ending
     check_targets([out] if out.suffix else [], force=force)
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     value = None if at is None else input_value("--at", at, loaded, input_joint)
-    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, agree=agreed(agree))
+    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed)
     if isinstance(form, Table):
         text = out.suffix.lower() in TEXT
         confirm(table_ahead(moved, samples, out.name, text=text), yes=yes)

@@ -38,17 +38,19 @@ class Draft:
     source: str
     #: Names of dimensions that the file leaves out and that are held at the value they have there.
     held: tuple[str, ...] = ()
+    #: The closure error up to which redundant constraints of its linkages agree; `None` for the usual one.
+    agree: float | None = None
 
     @staticmethod
-    def of(text: str, source: str) -> Draft:
+    def of(text: str, source: str, *, agree: float | None = None) -> Draft:
         """The draft of a TOML text; `source` is its name in messages. Raises `DescriptionError`."""
         loads(text, source)  # with all that is wrong in it
-        return Draft(text, _opened(text, source), source)
+        return Draft(text, _opened(text, source), source, agree=agree)
 
     @staticmethod
     def of_linkage(linkage: Loop) -> Draft:
         """The draft of a linkage's own description, which has no text with comments."""
-        return Draft("", description_of(linkage), linkage.name)
+        return Draft("", description_of(linkage), linkage.name, agree=linkage.agree)
 
     def as_opened(self) -> Draft:
         """The draft as its text has it."""
@@ -57,7 +59,7 @@ class Draft:
     @cached_property
     def linkage(self) -> Linkage:
         """The linkage described; raises `DescriptionError`."""
-        return from_description(self.raw)
+        return from_description(self.raw).agreeing(self.agree)
 
     def with_value(self, place: Place, value: object) -> Draft:
         """The draft with a value at a place, whose tables are made where the file has none."""

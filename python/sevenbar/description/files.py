@@ -31,8 +31,10 @@ LARGEST_TABLE = 20_000_000
 
 
 @ends_here
-def load(source: str | os.PathLike[str]) -> Linkage:
+def load(source: str | os.PathLike[str], *, agree: float | None = None) -> Linkage:
     """The linkage of a TOML file, of a table (CSV or Excel), or of the gallery by its name.
+
+    Redundant constraints `agree` up to a closure error in all that is made of it (`Linkage.agreeing`).
 
     Raises `DescriptionError` with every problem of the file, each with its place, the value and what is
     allowed; `TableError` for a table that cannot be read.
@@ -43,11 +45,11 @@ def load(source: str | os.PathLike[str]) -> Linkage:
     """
     path = Path(source)
     if isinstance(source, str) and source in names() and not path.exists():
-        return loads(text(source), source)
+        return loads(text(source), source).agreeing(agree)
     content = _read(path)
     if _is_table(content, path) and len(content) <= LARGEST_TABLE:
-        return _table(content, str(source)).linkage(from_description, str(source))
-    return loads(decoded(content, str(path)), str(source))
+        return _table(content, str(source)).linkage(from_description, str(source)).agreeing(agree)
+    return loads(decoded(content, str(path)), str(source)).agreeing(agree)
 
 
 def toml_text(source: str | os.PathLike[str]) -> str:

@@ -57,7 +57,7 @@ class TableCells:
     @property
     def _own(self) -> list[int]:
         """The columns that make a row one of the table."""
-        marks = ("joint", "order", "input", "output", "speed")
+        marks = ("joint", "order", "input", "output", "speed", "layout")
         return [column for key, column in self.columns.items() if key not in marks] or list(
             self.columns.values()
         )

@@ -190,6 +190,8 @@ class _Reader(TableCells):
             raw["point"] = [self.point(row, k) for k, row in enumerate(points)]
         count = f"{len(tables)} "
         if form == "link":
+            if layout := next((word for row in joints if (word := self.text(row, "layout"))), ""):
+                raw["layout"] = layout
             what = f"{count}classic Denavit-Hartenberg rows (Rz Tz Tx Rx, the last link is the ground)"
             return raw, f"read as {what}, lengths in {self.length_unit}, angles in {self.angle_unit}"
         left = len(self.filled) - len(rows)

@@ -31,6 +31,7 @@ from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import along, walk
+from sevenbar.text.words import say
 
 #: Circuits whose curves lie on each other: how much wider each is than the one on it.
 WIDER = 2.0
@@ -85,7 +86,9 @@ def joints(
             axes.set_xlabel(input_label(motion) if last else "")
         headline(figure, title, title_of(motion))
         if legend:
-            lines = [Line2D([], [], **_look(c, 0), label=f"circuit {c.index}") for c in motion]
+            lines = [
+                Line2D([], [], **_look(c, 0), label=say("circuit {number}", number=c.index)) for c in motion
+            ]
             key_below(figure, lines)
         tidy(figure)
     return figure

@@ -11,7 +11,7 @@ Source: docs/theory_forces.md, (1) to (6).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
@@ -42,6 +42,7 @@ class ForceSolver:
     input: int
     #: Whether derivatives by the description's numbers are wanted.
     by_numbers: bool = False
+    _frames: dict[int, Floats] = field(default_factory=dict, repr=False)
 
     @cached_property
     def numbers(self) -> Numbers:
@@ -72,16 +73,22 @@ class ForceSolver:
             )
         return self.numbers.word.carrier(int(link))
 
+    def _frame(self, link: int) -> Floats:
+        """The frame (4, 4) in which points of a link are written, against the steps before it."""
+        if link not in self._frames:
+            self._frames[link] = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))
+        return self._frames[link]
+
     def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
         steps, product = self._carrier(link)
-        frame = product.pose(self.numbers.values(self.loop.p))
+        frame = self._frame(link)
         place = (frame[:3, :3] @ np.asarray(at) + frame[:3, 3]) / self.numbers.size
-        return steps, place, self.loop.twists_of(product)
+        return steps, place, self.loop.twists_of(product) if self.by_numbers else []
 
     def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
         assert body.centre is not None
         steps, centre, ways = self._place(link, body.centre)
-        axes = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
+        axes = self._frame(link)[:3, :3]
         return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
 
     def _load(self, load: Load) -> tuple[tuple[int, Floats, list[tuple[int, Floats]]], Floats, Floats, bool]:
@@ -89,7 +96,7 @@ class ForceSolver:
         force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
         turns = load.axes == "link"
         if turns:
-            axes = self._carrier(load.link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
+            axes = self._frame(load.link)[:3, :3]
             force, torque = axes @ force, axes @ torque
         return self._place(load.link, load.at), force, torque, turns
 
@@ -162,13 +169,13 @@ class ForceSolver:
         )
 
 
-def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading, *, at_rest: bool = False) -> Forces:
+def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -> Forces:
     """The forces on the rows of a circuit; see `Circuit.forces`."""
+    linkage, loading = solver.linkage, solver.loading
     if loading.is_empty:
         raise RequestError(
             "forces: nothing has a mass and nothing acts; give bodies, loads or springs, or write [[body]]"
         )
-    solver = ForceSolver(linkage, loading, circuit.input_column)
     poses = solver.numbers.poses(circuit.q)
     poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
     speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
@@ -205,14 +212,13 @@ def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading, *, at_rest:
         driver=linkage.columns[circuit.input_column],
         heading=linkage.heading,
         at_rest=at_rest,
-        between=partial(_between, linkage, circuit, loading, at_rest),
+        between=partial(_between, solver, circuit, at_rest),
     )
 
 
-def _between(linkage: Solvable, circuit: Circuit, loading: Loading, at_rest: bool, inputs: Floats) -> Forces:
+def _between(solver: ForceSolver, circuit: Circuit, at_rest: bool, inputs: Floats) -> Forces:
     """The forces of a circuit that goes round, at any inputs (n,)."""
-    again = driven(linkage, circuit, inputs, speed=circuit.speed)
-    return forces_of(linkage, again, loading, at_rest=at_rest)
+    return forces_of(solver, driven(solver.linkage, circuit, inputs, speed=circuit.speed), at_rest=at_rest)
 
 
 def _winds_up(circuit: Circuit, loading: Loading) -> bool:

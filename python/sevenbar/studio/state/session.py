@@ -33,20 +33,23 @@ class Session:
     of all circuits of the motion on view; `row` is the place on the view's path.
     """
 
-    def __init__(self, text: str, source: str) -> None:
-        """Raises `DescriptionError` for a text that describes no linkage."""
+    def __init__(self, text: str, source: str, *, agree: float | None = None) -> None:
+        """Redundant constraints of all that is opened `agree` up to a closure error, if one is given.
+
+        Raises `DescriptionError` for a text that describes no linkage.
+        """
         self.view: View | None = None
         self.views: tuple[View, ...] = ()
         self.row, self.forwards = 0.0, True
         self.past: list[Draft] = []
         self.future: list[Draft] = []
         self._last_change: tuple[object, float] = ((), -math.inf)
-        self.draft = Draft.of(text, source)
+        self.draft = Draft.of(text, source, agree=agree)
         self._take(self.draft)
 
     def open(self, text: str, source: str) -> None:
         """Shows a TOML text as one more step; raises `DescriptionError`, and then nothing has changed."""
-        draft = Draft.of(text, source)
+        draft = Draft.of(text, source, agree=self.draft.agree)
         self.view, self.forwards = None, True
         self._step(draft)
 

@@ -100,7 +100,7 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
     """
     draft = task.drawn(solution.varied)
     try:
-        linkage = Draft.of(draft.toml(), "design").linkage
+        linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
         found = made(linkage, task.point.name, solution.inputs, task.wanted, place=task.place)
     except (DescriptionError, RequestError) as error:
         return Refusal("assembly", str(error))
