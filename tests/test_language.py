@@ -27,6 +27,8 @@ PACKAGE = Path(sb.__file__).parent
 
 #: What a report has in letters of ours: symbols, units, kinds of joints, words of the paper's formula.
 LEFT = {"K", "max", "min", "mm", "rpm", "rad", "deg", "s", "l", "p", "q", "e", "x", "y", "z", "br", *KINDS}
+#: Units of forces, and the command that reports them.
+LEFT |= {"N", "m", "sevenbar", "forces"}
 
 needs_font = pytest.mark.skipif(
     fonts._installed() is None, reason="no font with Chinese characters is installed"
@@ -197,6 +199,15 @@ def test_a_figure_has_no_english_and_every_character(kind):
         texts = texts_of(getattr(sb.plot, kind)(motion, title=False))
     assert english(motion, texts) == []
     assert re.search("[\u4e00-\u9fff]", texts)
+
+
+@needs_font
+@pytest.mark.parametrize("kind", ["torque", "reactions", "bearings", "shaking", "energies"])
+def test_a_figure_of_forces_has_no_english(kind):
+    motion = sb.load("rssr_press").motion(24)
+    with language("zh"):
+        texts = texts_of(motion[0].forces().plot(kind=kind, title=False))
+    assert [word for word in english(motion, texts) if word not in ("W", "J", "Fx", "Fy", "Fz")] == []
 
 
 def test_without_a_font_figures_are_in_english_and_one_warning_says_why(monkeypatch):

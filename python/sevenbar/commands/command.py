@@ -87,7 +87,11 @@ _DRAWING = (
     *("modes", "map", "tolerance", "function", "swing", "path", "point", "inertia"),
     *("compare", "calibrate", "simulate"),
 )
-SHARED = {"--view": ("modes", "path", "point"), "--style": _DRAWING, "--lang": ("analyze", "plot", *_DRAWING)}
+SHARED = {
+    "--view": ("modes", "path", "point"),
+    "--style": _DRAWING,
+    "--lang": ("analyze", "plot", "forces", *_DRAWING),
+}
 
 
 def _draw_from(ctx: typer.Context, view: str | None) -> None:

@@ -36,6 +36,7 @@ from sevenbar.drawing.style import INK, LINE_STYLES, OTHER, QUIET, page_size, st
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.result import COMPONENTS, Forces, Reaction
 from sevenbar.forces.sizing import Sizing
+from sevenbar.text.words import say
 
 
 def torque(
@@ -63,22 +64,27 @@ def torque(
     found = sizing or _sizing(forces)
     with styled(style):
         figure, panels = stack(count, ax, figsize, style, 2.3)
-        word = "force" if forces.slides else "torque"
+        word = say("input force") if forces.slides else say("input torque")
         curve(panels[0], forces, forces.torque, WHOLE, shade=True)
-        panels[0].set_ylabel(f"input {word} [{forces.unit}]")
+        panels[0].set_ylabel(f"{word} [{forces.unit}]")
         if found is not None:
             # on the side of the peak
             rms = math.copysign(found.rms_torque, found.peak_torque.value)
             panels[0].axhline(rms, color=QUIET, lw=0.9 * stroke(), ls=(0, (4, 2)))
         if count > 1:
             curve(panels[1], forces, forces.power, OTHER, shade=True)
-            panels[1].set_ylabel("power [W]")
+            panels[1].set_ylabel(say("power [W]"))
         input_axis(panels, forces)
         if ax is None:
-            headline(figure, title, title_of_forces(forces, f"input {word}" + " and power" * (count > 1)))
+            headline(
+                figure,
+                title,
+                title_of_forces(forces, say("{torque} and power", torque=word) if count > 1 else word),
+            )
             if legend and found is not None:
                 line = Line2D([], [], color=QUIET, lw=0.9 * stroke(), ls=(0, (4, 2)))
-                line.set_label(f"rms {digits(found.rms_torque)} {forces.unit}")
+                value = f"{digits(found.rms_torque)} {forces.unit}"
+                line.set_label(say("rms {value}", value=value))
                 key_below(figure, [line])
             tidy(figure)
         if found is not None:
@@ -116,7 +122,6 @@ def reactions(
     if what not in ("force", "moment"):
         raise RequestError(f"what: {shown(what)} is not offered; give force or moment")
     chosen = chosen_reactions(forces, joints)
-    unit = "N" if what == "force" else "N m"
     letters = COMPONENTS[3:] if what == "force" else COMPONENTS[:3]
     scale = max((greatest_of(getattr(reaction, what)) for reaction in forces.reactions.values()), default=0.0)
     with styled(style):
@@ -133,15 +138,16 @@ def reactions(
                 curve(axes, forces, np.linalg.norm(values, axis=1), INK, width=1.0, zero=False)
             if not known.any():
                 where: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "va": "center"}
-                axes.text(0.5, 0.5, "not determined", color=QUIET, **where)
+                axes.text(0.5, 0.5, say("not determined"), color=QUIET, **where)
                 axes.set_yticks([])
             axes.axhline(0, color=QUIET, lw=0.6 * stroke())
             axes.set_title(shown_name(reaction.joint, 28))
-            axes.set_ylabel(f"{what} [{unit}]")
+            axes.set_ylabel(say("force [N]") if what == "force" else say("moment [N m]"))
         input_axis(panels, forces, most=5)
         if ax is None:
             outer_labels(panels, across)
-            headline(figure, title, title_of_forces(forces, f"{what}s in the joints"))
+            which = say("forces in the joints") if what == "force" else say("moments in the joints")
+            headline(figure, title, title_of_forces(forces, which))
             if legend:
                 made = [
                     Line2D([], [], color=AXES[i], ls=LINE_STYLES[i], label=letters[i])
@@ -149,7 +155,7 @@ def reactions(
                     if any(np.isfinite(getattr(r, what)[:, i]).any() for r in chosen)
                 ]
                 if whole:
-                    made.append(Line2D([], [], color=INK, lw=1.0 * stroke(), label="size"))
+                    made.append(Line2D([], [], color=INK, lw=1.0 * stroke(), label=say("size")))
                 if made:
                     key_below(figure, made)
             tidy(figure)
@@ -194,7 +200,7 @@ def bearings(
             axes.set_xlabel("Fx [N]")
             axes.set_ylabel("Fy [N]")
         if ax is None:
-            headline(figure, title, title_of_forces(forces, "forces square to the joints' axes"))
+            headline(figure, title, title_of_forces(forces, say("forces square to the joints' axes")))
             if legend:
                 key_below(figure, [first_dot(forces, WHOLE)])
             tidy(figure)
@@ -238,11 +244,11 @@ def shaking(
             axes.set_ylabel(f"F{'xyz'[j]} [N]")
         size = panels[len(views)]
         curve(size, forces, np.linalg.norm(force, axis=1), INK, zero=False)
-        size.set_ylabel("shaking force [N]")
+        size.set_ylabel(say("shaking force [N]"))
         input_axis([size], forces, most=5)
         size.set_ylim(bottom=0)
         if ax is None:
-            headline(figure, title, title_of_forces(forces, "shaking force on the ground"))
+            headline(figure, title, title_of_forces(forces, say("shaking force on the ground")))
             if legend and views:
                 key_below(figure, [first_dot(forces, WHOLE)])
             tidy(figure)
@@ -267,18 +273,18 @@ def energies(
         axes = panels[0]
         total = forces.kinetic + forces.potential
         drawn: list[tuple[str, Floats, str, Any]] = [
-            ("kinetic", forces.kinetic, WHOLE, "-"),
-            ("potential", forces.potential, AXES[1], LINE_STYLES[1]),
+            (say("kinetic"), forces.kinetic, WHOLE, "-"),
+            (say("potential"), forces.potential, AXES[1], LINE_STYLES[1]),
         ]
         drawn = [one for one in drawn if greatest_of(one[1]) > 0]
         if len(drawn) > 1:
-            drawn.append(("sum", total, INK, LINE_STYLES[3]))
+            drawn.append((say("sum"), total, INK, LINE_STYLES[3]))
         for label, values, colour, line in drawn:
             curve(axes, forces, values, colour, style=line, label=label, zero=False)
-        axes.set_ylabel("energy [J]")
+        axes.set_ylabel(say("energy [J]"))
         input_axis(panels, forces)
         if ax is None:
-            headline(figure, title, title_of_forces(forces, "energies"))
+            headline(figure, title, title_of_forces(forces, say("energies")))
             if legend:
                 key_below(figure, axes.get_legend_handles_labels()[0])
             tidy(figure)
@@ -312,7 +318,8 @@ def small(forces: Forces) -> Figure | None:
         figure = new_figure(4.6, 2.8, pads=(0.05, 0.06))
         axes = figure.subplots()
         curve(axes, forces, forces.torque, WHOLE, shade=True)
-        axes.set_ylabel(f"input {'force' if forces.slides else 'torque'} [{forces.unit}]")
+        word = say("input force") if forces.slides else say("input torque")
+        axes.set_ylabel(f"{word} [{forces.unit}]")
         input_axis([axes], forces, most=6)
     return figure
 

@@ -20,6 +20,7 @@ from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, QUIET
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.result import Forces, Reaction
+from sevenbar.text.words import say
 
 #: The colours of x, y, z and of the whole.
 AXES = (CIRCUIT_COLOURS[1], CIRCUIT_COLOURS[2], CIRCUIT_COLOURS[5])
@@ -242,11 +243,11 @@ def first_dot(forces: Forces, colour: str) -> Line2D:
     known = np.flatnonzero(np.isfinite(forces.torque))
     first = float(forces.input[known[0]]) if len(known) else math.nan
     text = f"{first:.4g} {forces.length_unit}" if forces.slides else f"{math.degrees(first) + 0.0:.4g}°"
-    label = f"{shown_name(forces.driver)} at {text}"
+    label = say("{joint} at {value}", joint=shown_name(forces.driver), value=text)
     return Line2D([], [], ls="", marker="o", ms=4 * stroke(), color=colour, label=label)
 
 
 def title_of_forces(forces: Forces, what: str) -> str:
     """The linkage, and what is drawn."""
-    rest = " at rest" if forces.at_rest else ""
-    return f"{short(forces.heading, 60)}\n{what}{rest}"
+    whole = say("{what} at rest", what=what) if forces.at_rest else what
+    return f"{short(forces.heading, 60)}\n{whole}"

@@ -197,7 +197,7 @@ class Forces(Drawable):
         up to zero. `None` where equilibrium leaves one of the two open, a spring ends on the ground, or a
         load turns with its link.
 
-        Source: docs/theory_forces.md, (8).
+        Source: docs/theory_forces.md, (2).
         """
         first, *_, last = self.reactions.values()
         ground = len(self.reactions)

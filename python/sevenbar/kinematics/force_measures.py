@@ -29,8 +29,13 @@ SAME_VALUE = 1e-6
 
 
 def sized(circuit: Circuit, joints: Sequence[str] = ()) -> Sizing | None:
-    """The sizing of a circuit's torque, with the bearings of these joints only."""
+    """The sizing of a circuit's torque, with the bearings of these joints only.
+
+    `None` for the passes of a circuit that rocks: its measures are of constant speed.
+    """
     found = circuit.forces()
+    if not circuit.goes_round and not np.isnan(found.torque).any():
+        return None
     for name in joints:
         if name not in found.reactions:
             raise RequestError(f"measure: {no_joint(name, list(found.reactions))}")

@@ -10,6 +10,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Motion, Solvable
+from sevenbar.reporting.force_words import acting_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
@@ -87,6 +88,9 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
         idle = say("; ").join(map(retold, motion.idle))
         facts.append(("idle freedom", say("{freedoms}, held by convention", freedoms=idle)))
     facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
+    if not linkage.loading.is_empty:
+        acting = acting_text(linkage.loading)
+        facts.append(("forces", say("{acting}; 'sevenbar forces' reports all joints", acting=acting)))
     if motion.circuits:
         error, unit = closure_error(motion), linkage.length_unit
         facts.append(("closure error", say("at most {error:.1e} {unit}", error=error, unit=unit)))

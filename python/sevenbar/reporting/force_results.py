@@ -17,6 +17,7 @@ from sevenbar.reporting.force_words import (
     OPEN,
     ROUNDING,
     Places,
+    acting_text,
     check_text,
     found_text,
     greatest,
@@ -30,19 +31,9 @@ from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 @text_of.register(Forces)
 def _(forces: Forces) -> str:
-    what = []
-    if forces.bodies:
-        mass = sum(body.mass for body in forces.bodies.values())
-        what.append(f"{len(forces.bodies)} bodies, {mass:.6g} kg")
-    what += [
-        f"{len(of)} {name}{'s' * (len(of) > 1)}"
-        for name, of in (("load", forces.loading.loads), ("spring", forces.loading.springs))
-        if of
-    ]
-    if any(forces.loading.gravity):
-        what.append("gravity")
     place = Places(forces)
-    facts = [("acts", ", ".join(what))]
+    mass = sum(body.mass for body in forces.bodies.values())
+    facts = [("acts", acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
     lost = int((~np.isfinite(forces.torque)).sum())
     peak = ""
     if lost < len(forces.torque):

@@ -16,6 +16,7 @@ from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking, shaking_of
 from sevenbar.forces.sizing import Sizing
 from sevenbar.reporting.shown import Shown
+from sevenbar.text.words import say
 
 #: The moment of an idle spin below this part of the greatest moment in a joint is rounding.
 ROUNDING = 1e-9
@@ -117,6 +118,22 @@ def spring_text(spring: Spring, unit: str, *, slides: bool) -> str:
 def triple_text(values: Sequence[float]) -> str:
     """Three numbers in brackets."""
     return f"({', '.join(f'{value + 0.0:.6g}' for value in values)})"
+
+
+def acting_text(loading: Loading) -> str:
+    """What acts, counted."""
+    bodies = sum(map(len, loading.bodies.values()))
+    loads, springs = len(loading.loads), len(loading.springs)
+    what = [
+        (bodies == 1, say("1 body")),
+        (bodies > 1, say("{count} bodies", count=bodies)),
+        (loads == 1, say("1 load")),
+        (loads > 1, say("{count} loads", count=loads)),
+        (springs == 1, say("1 spring")),
+        (springs > 1, say("{count} springs", count=springs)),
+        (any(loading.gravity), say("gravity")),
+    ]
+    return say(", ").join(text for there, text in what if there)
 
 
 def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]]:

@@ -23,6 +23,7 @@ from sevenbar.kinematics.motion import Modes, Motion
 from sevenbar.reporting.facts import closure_error, completeness_text, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
+from sevenbar.reporting.force_peaks import peaks_dict
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.shown import value_text
@@ -103,7 +104,10 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "misfits": motion.search.misfits.tolist(),
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
-        "circuits": [_circuit_dict(circuit) for circuit in motion.circuits],
+        "circuits": [
+            _circuit_dict(circuit) | {"forces": None if linkage.loading.is_empty else peaks_dict(circuit)}
+            for circuit in motion.circuits
+        ],
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,8 @@ from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Modes, Motion
 from sevenbar.reporting.facts import facts_of, turns_text
+from sevenbar.reporting.force_peaks import peaks_of
+from sevenbar.reporting.force_words import number
 from sevenbar.reporting.shown import Shown, degrees, six_digits
 from sevenbar.text.words import say
 
@@ -260,6 +263,42 @@ def _quantities(motion: Motion) -> list[_Quantity]:
             ),
         ]
 
+    def forces() -> list[_Quantity]:
+        if motion.linkage.loading.is_empty:
+            return []
+        unit = "N m" if in_unit == "rad" else "N"
+        # once for both, and only where they are reported
+        found = cache(peaks_of)
+
+        def torque(circuit: Circuit) -> Texts:
+            peaks = found(circuit)
+            if peaks is None:
+                return ("-" if circuit.goes_round else say("no bound at limits"),)
+            return (f"{number(peaks.torque.value)} @ {place(peaks.torque.input, whole=True)}",)
+
+        def bearing(circuit: Circuit) -> Texts:
+            peaks = found(circuit)
+            if peaks is None or peaks.greatest is None:
+                return ("-",)
+            name, peak = peaks.greatest
+            where = say("{force} in {joint}", force=number(peak.value), joint=name)
+            return (f"{where} @ {place(peak.input, whole=True)}",)
+
+        peak = say("peak torque") if unit == "N m" else say("peak force")
+        reaction = say("greatest reaction")
+        return [
+            _Quantity(
+                "peak torque",
+                say("{joint} {quantity}", joint=first, quantity=peak),
+                f"{peak}\n[{unit}] @ {first}",
+                torque,
+                f"[{unit}]",
+            ),
+            _Quantity(
+                "greatest reaction", reaction, f"{reaction}\n[N] @ {first}", bearing, "[N]", spare=True
+            ),
+        ]
+
     position = "angle" if out_unit == "rad" else "position"
     between = say(" to ")
     first_range, second_range = (say("range of {joint}", joint=joint) for joint in (first, second))
@@ -315,6 +354,7 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         ),
         rate_of("velocity", f"{out_unit}/s"),
         rate_of("acceleration", f"{out_unit}/s\u00b2"),
+        *forces(),
     ]
 
 
