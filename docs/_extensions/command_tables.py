@@ -21,6 +21,7 @@ PAGES = {
     "compare": "measured.md",
     "calibrate": "measured.md",
     "axodes": "theory_measures.md",
+    "forces": "forces.md",
     "simulate": "simulation.md",
     "export": "export.md",
     "axes": "tables.md#axes-picked-from-a-cad-model",

@@ -2,13 +2,13 @@
 
 From n rows at equal steps of the input x, with phi = 2 pi (x - first) / period,
 
-    f(x) = Re sum c_k e^(i k phi),   k = 0, 1, .. floor(n / 2)                                            (20)
+    f(x) = Re sum c_k e^(i k phi),   k = 0, 1, .. floor(n / 2)                                            (10)
 
 passes through the rows. Between neighbouring zeros of f'' the slope f' rises or falls all the way, so each
 change of its sign between them is one extreme. The zeros of f'' are found in the same way between those of
 the third derivative.
 
-Source: docs/theory_forces.md, (20) to (22).
+Source: docs/theory_forces.md, (10) to (12).
 """
 
 from __future__ import annotations

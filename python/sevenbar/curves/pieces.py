@@ -4,7 +4,7 @@ Between two breaks the quantity is smooth. Every stretch is divided until the Ch
 at 16 nodes of each piece ends in rounding. Nodes never lie on a break, so nobody has to say what the value
 there is: the two polynomials give the limits from both sides.
 
-Source: docs/theory_forces.md, (23).
+Source: docs/theory_forces.md, (13).
 """
 
 from __future__ import annotations

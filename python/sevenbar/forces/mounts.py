@@ -1,6 +1,6 @@
 """Links that may carry a counterweight, and which numbers of it act on the shaking at all.
 
-Source: docs/theory_forces.md, (29) and (30).
+Source: docs/theory_forces.md, (19) and (20).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Mount:
     def columns(self) -> Floats:
         """What g and a mass in the pivot do, (n, 6, 4).
 
-        Source: docs/theory_forces.md, (29).
+        Source: docs/theory_forces.md, (19).
         """
         moved = np.concatenate([np.eye(3), [self.pivot]])
         moved = np.column_stack([moved, [0.0, 0.0, 0.0, 1.0]])
@@ -70,7 +70,7 @@ class Acting:
     def least_squares(self, target: Floats) -> Floats:
         """The shortest numbers (links, 4) with the least |target + columns @ numbers|.
 
-        Source: docs/theory_forces.md, (30).
+        Source: docs/theory_forces.md, (20).
         """
         left, values, right = np.linalg.svd(np.hstack(self.columns)[:, self.used], full_matrices=False)
         kept = slice(0, self.rank)

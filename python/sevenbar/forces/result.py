@@ -150,7 +150,7 @@ class Forces(Drawable):
             >>> found.found, bool(found.flywheel > 0), bool(abs(found.mean_torque) < 1e-12)
             ('series', True, True)
 
-        Source: docs/theory_forces.md, (20) to (26).
+        Source: docs/theory_forces.md, (10) to (16).
         """
         period = self.period
         passes = len(np.unique(self.branch))

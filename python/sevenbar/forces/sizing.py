@@ -2,12 +2,12 @@
 
 At constant speed, with torque M over the input x and its mean,
 
-    E(x) = integral (M - mean M) dx,   dE = max E - min E,   J = dE / (delta w^2)                         (24)
+    E(x) = integral (M - mean M) dx,   dE = max E - min E,   J = dE / (delta w^2)                         (14)
 
 A drive that gives the mean torque runs slowest where E is highest and fastest where it is lowest. A bearing's
 loads are the sizes of components of the force and moment in its joint, as peak and as cubic mean.
 
-Source: docs/theory_forces.md, (24) to (26); ISO 281 for the third power.
+Source: docs/theory_forces.md, (14) to (16); ISO 281 for the third power.
 """
 
 from __future__ import annotations
@@ -227,7 +227,7 @@ def sizing(
 def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:
     """The inertia [kg m^2] that keeps a drive of constant torque as even as wanted, `dE / (delta w^2)`.
 
-    Source: docs/theory_forces.md, (24).
+    Source: docs/theory_forces.md, (14).
     """
     return fluctuation / (unevenness * speed**2)
 

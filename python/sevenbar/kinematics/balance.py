@@ -3,9 +3,9 @@
 With p the place of the link's origin, R its axes, a and A their second derivatives by time, a unit mass at
 the origin and unit first moments along the axes shake with (moment about the report origin, force)
 
-    (-p x a, -a)   and   (-p x A_j - R_j x a, -A_j)                                                     (28)
+    (-p x a, -a)   and   (-p x A_j - R_j x a, -A_j)                                                     (18)
 
-Source: docs/theory_forces.md, (28).
+Source: docs/theory_forces.md, (18).
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def mount_of(linkage: Solvable, circuit: Circuit, link: int) -> Mount:
 def unit_shaking(linkage: Solvable, circuit: Circuit, link: int) -> Floats:
     """What a link shakes with (n, 4, 6) for unit first moments [by kg length] and 1 kg at its origin.
 
-    Source: docs/theory_forces.md, (28).
+    Source: docs/theory_forces.md, (18).
     """
     metre = LENGTHS[linkage.length_unit]
     # far points, so that differences lose nothing

@@ -477,7 +477,7 @@ class Circuit(Printed):
             >>> [round(one.product, 6) for one in found.counterweights]  # half of 1.3 kg at 250 and 550 mm
             [162.5, 357.5]
 
-        Source: docs/theory_forces.md, (27) to (33).
+        Source: docs/theory_forces.md, (17) to (23).
         """
         how = {"radius": radius, "most_mass": most_mass, "measure": measure, "force": force, "moment": moment}
         return self._answers.counterweights(self, links, {} if bodies is None else {"bodies": bodies}, how)
