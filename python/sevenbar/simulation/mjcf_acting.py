@@ -26,10 +26,6 @@ LEAST_GYRATION = 0.01
 #: its soft loop gives way where bodies are very unequal.
 MASSLESS = 1e-5
 
-#: Added to the inertia of a body about every axis, as a part of that of its mass at the radius of gyration:
-#: MuJoCo takes no rod without inertia about its line.
-LEAST_INERTIA = 1e-6
-
 #: Radius of the sites that springs end at, as a part of the linkage's size.
 SITE = 0.008
 
@@ -55,8 +51,7 @@ def inertial(model: Prototype, number: int) -> dict[str, str]:
         part = 1.0 if acting is None or number == GROUND else MASSLESS
         mass, inertia = part * heaviest(model), numbers([part * unit] * 3)
         return {"pos": "0 0 0", "mass": f"{mass:.17g}", "diaginertia": inertia}
-    least = LEAST_INERTIA * own.mass * gyration(model) ** 2
-    tensor = own.inertia + least * np.eye(3)
+    tensor = own.never_thin(gyration(model))
     entries = [tensor[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
     return {"pos": numbers(own.centre * metre), "mass": f"{own.mass:.17g}", "fullinertia": numbers(entries)}
 
