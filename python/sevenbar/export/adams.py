@@ -36,7 +36,7 @@ def write_cmd(assembly: Assembly, path: Path) -> None:
 
     A part for each moving link, in place in the pose, its frame that of the link; at each joint a marker on
     either part, so that `AZ(I, J)` is the joint's angle as Sevenbar counts it and `DZ(I, J, J)` its slide.
-    What acts on the linkage acts in the file too, but for loads by tables.
+    What acts on the linkage acts in the file too, except loads by tables.
     """
     path.write_text(_AdamsCommands(assembly).text(), encoding="utf-8")
 
@@ -110,8 +110,8 @@ class _AdamsCommands:
     def _hooke(self, i: int) -> bool:
         joint = self.linkage.joints[i]
         motion, springs = self.pose.motion, self.linkage.loading.springs
-        told = {motion.input, motion.output, *(spring.joint for spring in springs)}
-        return abs(joint.angle - math.pi / 2) < RIGHT and not set(joint.columns) & told
+        given = {motion.input, motion.output, *(spring.joint for spring in springs)}
+        return abs(joint.angle - math.pi / 2) < RIGHT and not set(joint.columns) & given
 
     def say(self, keywords: str, **parameters: str) -> None:
         words = [f"{key} = {value}" for key, value in parameters.items()]

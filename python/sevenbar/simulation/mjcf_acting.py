@@ -47,7 +47,7 @@ def inertial(model: Prototype, number: int) -> dict[str, str]:
     own = None if acting is None else acting.masses.get(number)
     unit = heaviest(model) * gyration(model) ** 2
     if own is None:
-        # the bare body of a weld stands still, whatever it weighs
+        # the bare body of a weld does not move, whatever it weighs
         part = 1.0 if acting is None or number == GROUND else MASSLESS
         mass, inertia = part * heaviest(model), numbers([part * unit] * 3)
         return {"pos": "0 0 0", "mass": f"{mass:.17g}", "diaginertia": inertia}

@@ -21,5 +21,5 @@ def numbers(values: object) -> str:
 
 
 def placed(frame: Floats, metre: float) -> dict[str, str]:
-    """Where a frame (4, 4) stands in its parent, lengths times `metre`."""
+    """Where a frame (4, 4) is in its parent, lengths times `metre`."""
     return {"pos": numbers(frame[:3, 3] * metre), "quat": numbers(quaternion(frame[:3, :3]))}
