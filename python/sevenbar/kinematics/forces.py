@@ -151,10 +151,13 @@ class ForceSolver:
             step += len(word.freedoms[i])
         return steps, np.array(frames)
 
-    def solved(self, inputs: Floats, poses: Floats, speeds: Floats) -> list[Floats]:
-        """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2)."""
+    def solved(self, inputs: Floats, poses: Floats, speeds: Floats, *, by: int | None = None) -> list[Floats]:
+        """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2).
+
+        Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given.
+        """
         scales = self.numbers.scales
-        turns = self.linkage.column_kinds[self.input] == "turn"
+        turns = self.linkage.column_kinds[self.input if by is None else by] == "turn"
         factors = [load.factors(inputs, turns=turns) for load in self.loading.loads]
         steps, frames = self.seats
         return _core.reactions(
