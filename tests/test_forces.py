@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -139,3 +141,12 @@ def test_nothing_that_acts_is_refused() -> None:
     circuit = sb.load("rssr").motion(8).circuits[0]
     with pytest.raises(sb.errors.RequestError, match="nothing has a mass and nothing acts"):
         circuit.forces()
+
+
+def test_a_row_whose_balls_have_no_turns_has_its_forces() -> None:
+    circuit = loaded_circuit("rssr", 36)[1]
+    q, status = circuit.q.copy(), circuit.status.astype("<U20")
+    q[5, 1:7], status[5] = np.nan, "turns-undefined"
+    found, whole = replace(circuit, q=q, status=status).forces(), circuit.forces()
+    assert abs(found.torque[5] - whole.torque[5]) < 1e-12 * np.abs(whole.torque).max()
+    assert np.abs(found.reactions["ball_b"].force[5] - whole.reactions["ball_b"].force[5]).max() < 1e-9

@@ -19,6 +19,7 @@ from sevenbar.errors import RequestError
 from sevenbar.reporting.folder import check_targets
 
 if TYPE_CHECKING:
+    import sevenbar as sb
     from sevenbar.export import Bodies, Table
 
 
@@ -102,17 +103,20 @@ def export(
             progress=progress,
         )
     tell_written(written, below=False)
-    for line in _notes(out, form):
+    for line in _notes(out, form, loaded):
         typer.echo(line)
 
 
-def _notes(out: Path, form: Table | Bodies) -> list[str]:
+def _notes(out: Path, form: Table | Bodies, loaded: sb.Linkage) -> list[str]:
     """What to know of a file besides its name."""
     from sevenbar.export import Bodies
+    from sevenbar.export.mass import has_masses
 
     notes = []
     if out.suffix.lower() == ".urdf":
         notes.append("URDF holds trees only: the joint that closes the loop is in the .loop.json file")
-    if isinstance(form, Bodies) and form.masses:
+    if isinstance(form, Bodies) and form.masses and has_masses(loaded):
+        notes.append("masses are the linkage's own; bodies that have none weigh next to nothing")
+    elif isinstance(form, Bodies) and form.masses:
         notes.append(f"masses are assumed: {form.masses}; put in your own where forces matter")
     return notes

@@ -12,6 +12,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.counterweights import Balance
+from sevenbar.forces.free_motion.equilibria import Equilibrium
+from sevenbar.forces.free_motion.result import FreeMotion
+from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.circuits import Circuit, Extremes, Law
 from sevenbar.kinematics.geometry import Point
@@ -104,6 +107,25 @@ class LinkageAnswers:
         from sevenbar.kinematics.balance import balance_of
 
         return balance_of(self.linkage, circuit, self.forces(circuit, given), links, how)
+
+    def free_motion(
+        self, circuit: Circuit, given: Mapping[str, Any], options: Mapping[str, Any]
+    ) -> FreeMotion:
+        """How a circuit moves by itself, with what is given in place of what the linkage has."""
+        from sevenbar.kinematics.free import free_motion_of
+
+        return free_motion_of(self.linkage, circuit, self._loading(given), **options)
+
+    def equilibria(
+        self, circuit: Circuit, given: Mapping[str, Any], torque: float
+    ) -> tuple[Equilibrium, ...]:
+        """Where a circuit can rest, with what is given in place of what the linkage has."""
+        from sevenbar.kinematics.free import equilibria_of
+
+        return equilibria_of(self.linkage, circuit, self._loading(given), torque)
+
+    def _loading(self, given: Mapping[str, Any]) -> Loading:
+        return loading_with(self.linkage, **given) if given else self.linkage.loading
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""

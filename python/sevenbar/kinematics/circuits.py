@@ -16,6 +16,8 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.counterweights import Balance
+from sevenbar.forces.free_motion.equilibria import Equilibrium
+from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.geometry import Point
@@ -207,6 +209,18 @@ class Answers(Protocol):
 
     def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on its rows, with what is given in place of what the linkage has."""
+        ...
+
+    def free_motion(
+        self, circuit: Circuit, given: Mapping[str, Any], options: Mapping[str, Any]
+    ) -> FreeMotion:
+        """How it moves by itself, with what is given in place of what the linkage has."""
+        ...
+
+    def equilibria(
+        self, circuit: Circuit, given: Mapping[str, Any], torque: float
+    ) -> tuple[Equilibrium, ...]:
+        """Where it can rest, with what is given in place of what the linkage has."""
         ...
 
 
@@ -481,6 +495,89 @@ class Circuit(Printed):
         """
         how = {"radius": radius, "most_mass": most_mass, "measure": measure, "force": force, "moment": moment}
         return self._answers.counterweights(self, links, {} if bodies is None else {"bodies": bodies}, how)
+
+    @ends_here
+    def free_motion(
+        self,
+        duration: float | str,
+        *,
+        speed: float | str | None = None,
+        energy: float | None = None,
+        start: float | str | None = None,
+        branch: int | None = None,
+        torque: Any = None,
+        torque_by_time: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+        samples: int = 361,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: tuple[float, float, float] | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+    ) -> FreeMotion:
+        """How the linkage moves by itself along this circuit for a `duration` [s, or "10s"].
+
+        It starts at the input `start` [rad, length, or text], the circuit's first row by default, with the
+        input's `speed` [rad/s, length/s, or text] or the kinetic `energy` [J], at rest by default; `branch`
+        counts the poses that have this input. `torque` acts on the input [N m, of a slide N]: a number, a
+        curve (speeds, torques), or a function of the speed; `torque_by_time` is a curve (times, torques).
+        Without dampers and with a torque that is a number at most, time is an integral along the circuit and
+        nothing is stepped. Change points are passed along the circuit's smooth continuation. Rows are
+        `samples` even times; the rest is as for `forces`.
+
+        Raises `RequestError` where nothing has a mass, and for a start that the circuit does not have.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.four_bar(crank=50, coupler=130, rocker=80, ground=100)
+            >>> crank = sb.Body(mass=2.0, centre=(25, 0, 0))
+            >>> circuit = linkage.motion().circuits[0]
+            >>> fall = circuit.free_motion("10s", start="30deg", bodies={1: crank}, gravity=(0, -9.81, 0))
+            >>> fall.kind
+            'oscillation'
+
+        Source: docs/theory_free_motion.md, (40) to (52).
+        """
+        given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
+        options = {
+            "duration": duration,
+            "speed": speed,
+            "energy": energy,
+            "start": start,
+            "branch": branch,
+            "torque": torque,
+            "torque_by_time": torque_by_time,
+            "samples": samples,
+        }
+        return self._answers.free_motion(
+            self, {key: value for key, value in given.items() if value is not None}, options
+        )
+
+    @ends_here
+    def equilibria(
+        self,
+        *,
+        torque: float = 0.0,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+        gravity: tuple[float, float, float] | None = None,
+        loads: Sequence[Load] | None = None,
+        springs: Sequence[Spring] | None = None,
+    ) -> tuple[Equilibrium, ...]:
+        """All poses of this circuit in which the linkage can rest, along the circuit.
+
+        Under a constant `torque` [N m, of a slide N] at the input; the rest is as for `forces`. None where
+        the potential is constant, as without gravity and springs: then it rests anywhere.
+
+            >>> import sevenbar as sb
+            >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> found = circuit.equilibria(bodies={1: crank}, gravity=(0, -9.81, 0))
+            >>> [(place.kind, round(place.input % 6.283185307, 9)) for place in found]
+            [('unstable', 1.570796327), ('stable', 4.71238898)]
+
+        Source: docs/theory_free_motion.md, (50).
+        """
+        given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
+        return self._answers.equilibria(
+            self, {key: value for key, value in given.items() if value is not None}, torque
+        )
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

@@ -151,10 +151,13 @@ class ForceSolver:
             step += len(word.freedoms[i])
         return steps, np.array(frames)
 
-    def solved(self, inputs: Floats, poses: Floats, speeds: Floats) -> list[Floats]:
-        """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2)."""
+    def solved(self, inputs: Floats, poses: Floats, speeds: Floats, *, by: int | None = None) -> list[Floats]:
+        """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2).
+
+        Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given.
+        """
         scales = self.numbers.scales
-        turns = self.linkage.column_kinds[self.input] == "turn"
+        turns = self.linkage.column_kinds[self.input if by is None else by] == "turn"
         factors = [load.factors(inputs, turns=turns) for load in self.loading.loads]
         steps, frames = self.seats
         return _core.reactions(
@@ -176,7 +179,7 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
         raise RequestError(
             "forces: nothing has a mass and nothing acts; give bodies, loads or springs, or write [[body]]"
         )
-    poses = solver.numbers.poses(circuit.q)
+    poses = _poses(solver, circuit)
     poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
     speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
     if at_rest:
@@ -214,6 +217,20 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
         at_rest=at_rest,
         between=partial(_between, solver, circuit, at_rest),
     )
+
+
+def _poses(solver: ForceSolver, circuit: Circuit) -> Floats:
+    """The rows (n, columns) of a circuit as poses of the word.
+
+    Where a ball's turns are undefined the pose is found anew, from the nearest row that has them all.
+    """
+    poses = solver.numbers.poses(circuit.q)
+    undefined = np.flatnonzero(circuit.status == "turns-undefined")
+    known = np.flatnonzero(np.isfinite(poses).all(axis=1))
+    if len(undefined) and len(known):
+        near = known[np.abs(undefined[:, None] - known).argmin(axis=1)]
+        poses[undefined] = solver.loop.closed(circuit.input[undefined], poses[near])
+    return poses
 
 
 def _between(solver: ForceSolver, circuit: Circuit, at_rest: bool, inputs: Floats) -> Forces:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number, real_array
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.geometry import Loop
-from sevenbar.text.units import examples_of
+from sevenbar.text.units import examples_of, sliding_speed, turning_speed
 
 
 def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
@@ -72,6 +73,20 @@ def joint_numbers(key: str, values: npt.ArrayLike, linkage: Loop, column: int) -
     if not isinstance(values, (str, list, tuple)):
         return real_array(key, values)
     return real_array(key, _read(key, values, [linkage.unit_of(column)] * len_of(values)))
+
+
+def joint_speed(speed: object, linkage: Loop, column: int) -> float:
+    """The speed of a joint [rad/s, or length/s] that a caller gives: a number, or a text as in "60 rpm"."""
+    # a number needs no reader of formulas
+    from sevenbar.text.amounts import plain_speed
+
+    try:
+        plain = float(speed) if isinstance(speed, np.number) else plain_speed(speed)
+        if linkage.column_kinds[column] == "slide":
+            return sliding_speed(plain, linkage.length_unit)
+        return turning_speed(plain)
+    except RequestError as error:
+        raise RequestError(f"speed: {error}") from None
 
 
 def pose_numbers(key: str, values: npt.ArrayLike, linkage: Loop) -> Floats:

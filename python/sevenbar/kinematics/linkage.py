@@ -20,12 +20,11 @@ from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.four_bar import four_bar_of
 from sevenbar.kinematics.general import AGREE, GeneralLoop
 from sevenbar.kinematics.grashof import FourBar
-from sevenbar.kinematics.joint_text import joint_number, joint_numbers, pose_numbers
+from sevenbar.kinematics.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
 from sevenbar.kinematics.loaded import loaded
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
-from sevenbar.text.units import sliding_speed, turning_speed
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000
@@ -123,16 +122,7 @@ class Linkage(Solvable):
     def _speed(self, speed: object, column: int) -> float:
         if speed is None:
             return self.speed_of(column)
-        # a number needs no reader of formulas
-        from sevenbar.text.amounts import plain_speed
-
-        try:
-            plain = float(speed) if isinstance(speed, np.number) else plain_speed(speed)
-            if self.column_kinds[column] == "slide":
-                return sliding_speed(plain, self.length_unit)
-            return turning_speed(plain)
-        except RequestError as error:
-            raise RequestError(f"speed: {error}") from None
+        return joint_speed(speed, self, column)
 
     @ends_here
     def output(

@@ -376,7 +376,8 @@ def sensitivity_of(linkage: Solvable, circuit: Circuit) -> Sensitivity:
 
 def ball_rotations(turns: Floats) -> Floats:
     """The rotations (n, 3, 3) of turns (n, 3) about z, y and x, one after the other."""
-    return np.array([about(2, z) @ about(1, y) @ about(0, x) for z, y, x in turns]).reshape(-1, 3, 3)
+    z, y, x = turns.T
+    return np.asarray(about(2, z) @ about(1, y) @ about(0, x))
 
 
 def ball_turns(turns: Floats, rotations: Floats) -> Floats:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring, Three
+from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.text.units import LENGTHS
+
+#: Added to the inertia of a body about every axis, as a part of that of its mass at a tenth of the linkage's
+#: size: programs take no rod without inertia about its line.
+LEAST_INERTIA = 1e-6
 
 #: A body of the prototype, or `GROUND`, and a place (3,) [length] in its frame.
 Placed = tuple[int, Floats]
@@ -19,11 +25,27 @@ Placed = tuple[int, Floats]
 
 @dataclass(frozen=True, eq=False)
 class PlacedMass:
-    """PlacedMass [kg], its centre (3,) [length] in the body's frame, inertia (3, 3) about it [kg m^2]."""
+    """A mass [kg], its centre (3,) [length] in the body's frame, inertia (3, 3) about it [kg m^2]."""
 
     mass: float
     centre: Floats
     inertia: Floats
+
+    def never_thin(self, radius: float) -> Floats:
+        """The inertia and a little more about every axis, by a radius of gyration [m]."""
+        return self.inertia + LEAST_INERTIA * self.mass * radius**2 * np.eye(3)
+
+
+def in_links(linkage: Loop, bodies: Mapping[int, Body]) -> dict[int, PlacedMass]:
+    """Bodies with their centre and inertia, written as points are, in the frames of their links."""
+    found = {}
+    for link, body in bodies.items():
+        assert body.centre is not None
+        frame = linkage.point_frames[link - 1]
+        turn = frame[:3, :3]
+        centre = turn @ np.array(body.centre) + frame[:3, 3]
+        found[link] = PlacedMass(body.mass, centre, turn @ body.tensor @ turn.T)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,14 +139,10 @@ def acting(
         unit = metre if slides else 1.0
         return JointSpring(*columns[own.joint], own.stiffness / unit, own.length * unit, own.damping / unit)
 
-    masses = {}
-    for link, body in as_moved(linkage, resolved(loading, linkage)).items():
-        assert body.centre is not None
-        number, centre = placed(link, body.centre)
-        masses[number] = PlacedMass(body.mass, centre, axes(link) @ body.tensor @ axes(link).T)
+    masses = in_links(linkage, as_moved(linkage, resolved(loading, linkage)))
     between = [own for own in loading.springs if own.links is not None]
     return PlacedLoading(
-        masses,
+        {links[link]: own for link, own in masses.items()},
         np.array(loading.gravity),
         tuple(load(own) for own in loading.loads),
         tuple(spring(own) for own in between),

@@ -192,13 +192,15 @@ def _force_differences(run: Simulation) -> Iterator[Difference]:
     idle spin bears what the rule needs.
     """
     record, circuit, rows = run.record, run.course.circuit, run.course.rows
-    if record.drive is None or record.reactions is None:
+    if record.drive is None:
         return
     first = len(run.course.lead)
     forces = circuit.forces()
     name = run.linkage.columns[circuit.input_column]
     what = "force" if forces.slides else "torque"
     yield _difference(run, f"{name} {what}", forces.unit, record.drive[first:], forces.torque[rows])
+    if record.reactions is None:
+        return
     for joint, seat in zip(run.linkage.joints, run.model.seats, strict=True):
         connection = run.model.connections[seat]
         if connection.row.is_screw:

@@ -1,0 +1,130 @@
+"""Quantities along a path as polynomials on its pieces: values and derivatives anywhere, integrals, zeros.
+
+On the piece from a to b, with x = (2 s - a - b) / (b - a),
+
+    f(s) = sum c_k T_k(x)                                                                                 (42)
+
+passes through the values at Chebyshev's nodes. Where f is analytic the c_k fall geometrically, so the last of
+them tell what is missing.
+
+Source: docs/theory_free_motion.md, (42).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import Chebyshev, chebyshev
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.stationary import real_roots
+
+#: Halvings of a bracket, from any length to rounding, if Newton's method never helps.
+HALVINGS = 80
+
+#: Two zeros nearer than this part of the path are one, found from two pieces.
+SAME = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Along:
+    """k quantities on m pieces between `edges` (m + 1,), by the Chebyshev coefficients `series` (m, n, k)."""
+
+    edges: Floats
+    series: Floats
+
+    @property
+    def length(self) -> float:
+        """From the first edge to the last."""
+        return float(self.edges[-1] - self.edges[0])
+
+    @cached_property
+    def slope(self) -> Along:
+        """The derivatives by the path."""
+        steps = 2 / np.diff(self.edges)
+        series = chebyshev.chebder(self.series, axis=1) * steps[:, None, None]
+        return Along(self.edges, series)
+
+    @cached_property
+    def integral(self) -> Along:
+        """The integrals from the first edge on."""
+        half = np.diff(self.edges) / 2
+        series = chebyshev.chebint(self.series, lbnd=-1, axis=1) * half[:, None, None]
+        gains = series.sum(axis=1)
+        series[1:, 0] += np.cumsum(gains[:-1], axis=0)
+        return Along(self.edges, series)
+
+    def part(self, *columns: int) -> Along:
+        """Some of the quantities."""
+        return Along(self.edges, self.series[:, :, list(columns)])
+
+    def at(self, s: Floats) -> Floats:
+        """The quantities (j, k) at places (j,); beyond the ends the polynomials of these go on."""
+        places = np.asarray(s, dtype=np.float64)
+        piece = np.clip(np.searchsorted(self.edges, places, "right") - 1, 0, len(self.series) - 1)
+        return self.on(piece, places)
+
+    def on(self, piece: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> Floats:
+        """The quantities (j, k) by the polynomials of given pieces (j,) at places (j,)."""
+        start, end = self.edges[piece], self.edges[piece + 1]
+        x = ((2 * s - start - end) / (end - start))[:, None]
+        own = self.series[piece]
+        # Clenshaw's sum
+        twice, one, two = 2 * x, np.zeros_like(own[:, 0]), np.zeros_like(own[:, 0])
+        for k in range(own.shape[1] - 1, 0, -1):
+            one, two = own[:, k] + twice * one - two, one
+        return np.asarray(own[:, 0] + x * one - two)
+
+    def stationary(self, column: int) -> Floats:
+        """Places (j,) where one quantity has slope zero, or may turn at an edge, in order."""
+        slope = self.slope.series[:, :, column]
+        # no zero where the first terms outweigh all others
+        rest = np.abs(slope[:, 2:]).sum(axis=1)
+        line = np.abs(slope[:, 0]) - np.abs(slope[:, 1]) - rest
+        found = []
+        for i in np.flatnonzero(line <= 0):
+            roots = np.sort(real_roots(Chebyshev(slope[i], domain=[-1, 1])))
+            a, b = self.edges[i], self.edges[i + 1]
+            found.append((a + b) / 2 + (b - a) / 2 * roots)
+        places = np.sort(np.concatenate(found)) if found else np.empty(0)
+        return places[np.diff(places, prepend=-np.inf) > SAME * self.length]
+
+    def crossings(self, column: int, value: float, marks: Floats) -> Floats:
+        """Places (j,) where one quantity has a value; `marks` are the edges and all stationary places."""
+        own = self.part(column)
+        heights = own.at(marks)[:, 0] - value
+        # an edge belongs to the piece on its left as well
+        found = [marks[heights == 0.0]]
+        for i in np.flatnonzero(heights[:-1] * heights[1:] < 0):
+            found.append(np.array([zero_between(own, value, marks[i], marks[i + 1])]))
+        return np.unique(np.concatenate(found))
+
+    @cached_property
+    def reach(self) -> Floats:
+        """The greatest size (k,) at the middles and ends of the pieces."""
+        waves = self.series
+        return np.asarray(
+            np.max([np.abs(chebyshev.chebval(x, np.moveaxis(waves, 1, 0))).max(axis=0) for x in (-1, 0, 1)],
+                   axis=0)
+        )  # fmt: skip
+
+
+def zero_between(one: Along, value: float, low: float, high: float) -> float:
+    """Where a single quantity has a value between two places on whose sides it lies."""
+    rising = one.at(np.array([high]))[0, 0] > value
+    at = (low + high) / 2
+    for _ in range(HALVINGS):
+        here = np.array([at])
+        height, slope = one.at(here)[0, 0] - value, one.slope.at(here)[0, 0]
+        if (height > 0) == rising:
+            high = at
+        else:
+            low = at
+        step = at - height / slope if slope else np.inf
+        after = step if low < step < high else (low + high) / 2
+        if abs(after - at) <= 2 * np.spacing(max(abs(low), abs(high))):
+            return float(after)
+        at = after
+    return float(at)

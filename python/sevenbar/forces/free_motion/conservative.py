@@ -1,0 +1,304 @@
+"""Free motion without losses: where it turns, whether it repeats itself, and the state at any time.
+
+Between neighbouring marks of the course U rises or falls all the way, so the first mark where U is above the
+energy has the turning point before it: none is missed. Between two turning points, or once round, the motion
+repeats itself for ever.
+
+Source: docs/theory_free_motion.md, (45) to (49).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.errors import RequestError
+from sevenbar.forces.free_motion.course import EnergyCourse
+from sevenbar.forces.free_motion.runs import Run, run_between
+
+#: Where the energy meets a hill's top to this part of the greatest T, it is reached after an infinite time.
+JUST = 1e-13
+
+#: How near [parts of the lap] to such a top the exponential law takes over.
+NEAR_TOP = 1e-7
+
+#: A slope of U below this part of its greatest is that of an equilibrium.
+BALANCED = 1e-13
+
+#: Most laps of a motion that does not repeat itself.
+MOST_LAPS = 20_000
+
+#: Parts of the way in which a turning point is looked for first.
+PARTS = 32
+
+#: Most laps that are taken together.
+MOST_AT_ONCE = 128
+
+#: How a motion goes on.
+Course = Literal["rotation", "oscillation", "rest", "asymptotic", "passing", "ends"]
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A run that begins at a time [s], upwards (way 1) or downwards, at `entry` [s] of its own time."""
+
+    begin: float
+    run: Run
+    way: int
+    entry: float
+
+    @property
+    def end(self) -> float:
+        """When it is over [s]."""
+        return self.begin + (self.run.time - self.entry if self.way > 0 else self.entry)
+
+    def at(self, t: Floats) -> tuple[Floats, Floats]:
+        """Places and speeds at times (j,) [s]."""
+        own = self.entry + self.way * (t - self.begin)
+        place, speed = self.run.at(own)
+        return place, self.way * speed
+
+
+@dataclass(frozen=True, eq=False)
+class Conservative:
+    """The motion from a place with a speed: legs, and from `repeats_from` on by `period` [s] again and again."""
+
+    kind: Course
+    legs: tuple[Leg, ...]
+    period: float | None
+    #: Places where it turns back, and those at which it arrives after an infinite time.
+    turning: tuple[float, ...]
+    #: What a period adds to the place.
+    advance: float = 0.0
+    rests_at: float = math.nan
+    #: Towards a hill's top: its place, when it is so near that only this counts, from where, and the rate [1/s].
+    top: tuple[float, float, float, float] | None = field(default=None)
+
+    def at(self, t: Floats) -> tuple[Floats, Floats]:
+        """Places and speeds s' (j,) at times (j,) [s]; NaN past the end of an open circuit."""
+        t = np.asarray(t, dtype=np.float64)
+        if self.kind == "rest":
+            return np.full(t.shape, self.rests_at), np.zeros(t.shape)
+        rounds = np.zeros(t.shape)
+        if self.period is not None:
+            rounds = np.floor(t / self.period)
+            t = t - rounds * self.period
+        place, speed = np.full(t.shape, np.nan), np.full(t.shape, np.nan)
+        for leg in self.legs:
+            mine = (t >= leg.begin) & (t <= leg.end)
+            if mine.any():
+                place[mine], speed[mine] = leg.at(t[mine])
+        if self.top is not None:
+            top, begin, off, rate = self.top
+            late = t > begin
+            left = off * np.exp(-rate * (t[late] - begin))
+            place[late], speed[late] = top - left, rate * left
+        elif self.legs and self.period is not None:
+            late = t > self.legs[-1].end
+            place[late], speed[late] = self.legs[-1].at(np.full(late.sum(), self.legs[-1].end))
+        return place + rounds * self.advance, speed
+
+
+def conservative(course: EnergyCourse, place: float, speed: float, duration: float) -> Conservative:
+    """The motion from a place with s' = `speed`, for a time [s] at least."""
+    mass, slope = (float(part[0]) for part in course.at(np.array([place]))[:2])
+    kinetic = mass * speed**2 / 2
+    reference = (place, kinetic)
+    steepest = float(np.abs(course.quantities.reach[1]))
+    if speed == 0.0:
+        if abs(slope) <= BALANCED * steepest:
+            return Conservative("rest", (), None, (), rests_at=place)
+        way = -1 if slope > 0 else 1
+    else:
+        way = 1 if speed > 0 else -1
+    seeker = _Seeker(course, reference, way if speed == 0.0 else 0)
+    if course.repeats:
+        ahead = seeker.end(place, way, place + way * course.length)
+        if ahead is None:
+            low = min(place, place + way * course.length)
+            run = run_between(course, low, low + course.length, (False, False), reference)
+            leg = Leg(0.0, run, way, 0.0 if way > 0 else run.time)
+            return Conservative("rotation", (leg,), run.time, (), advance=way * course.length)
+        behind = (place, "turn") if speed == 0.0 else seeker.end(place, -way, place - way * course.length)
+        return _between(course, reference, place, way, ahead, behind)
+    return _passing(course, reference, place, way, duration, seeker, rests=speed == 0.0)
+
+
+def _between(
+    course: EnergyCourse,
+    reference: tuple[float, float],
+    place: float,
+    way: int,
+    ahead: tuple[float, str],
+    behind: tuple[float, str] | None,
+) -> Conservative:
+    """A motion that has an end ahead; it swings if both ends are turning points."""
+    if ahead[1] == "top":
+        return _to_the_top(course, reference, place, way, ahead[0], ())
+    if behind is None or behind[1] == "top":
+        # it turns once and comes back for ever towards the other side
+        low, high = sorted((place, ahead[0]))
+        run = run_between(course, low, high, (way < 0, way > 0), reference)
+        first = Leg(0.0, run, way, 0.0 if way > 0 else run.time)
+        back = Leg(first.end, run, -way, run.time if way > 0 else 0.0)
+        assert behind is not None
+        return _to_the_top(course, reference, place, -way, behind[0], (first, back), turned=ahead[0])
+    low, high = sorted((ahead[0], behind[0]))
+    run = run_between(course, low, high, (True, True), reference)
+    entry = run.time_at(place)
+    if place == behind[0]:
+        entry = 0.0 if way > 0 else run.time
+    first = Leg(0.0, run, way, entry)
+    back = Leg(first.end, run, -way, run.time if way > 0 else 0.0)
+    again = Leg(back.end, run, way, 0.0 if way > 0 else run.time)
+    return Conservative("oscillation", (first, back, again), 2 * run.time, (low, high))
+
+
+def _to_the_top(
+    course: EnergyCourse,
+    reference: tuple[float, float],
+    place: float,
+    way: int,
+    top: float,
+    before: tuple[Leg, ...],
+    turned: float | None = None,
+) -> Conservative:
+    off = NEAR_TOP * course.length
+    near = top - way * off
+    begin = before[-1].end if before else 0.0
+    legs = before
+    if way * (near - place) > 0:
+        low, high = sorted((place, near))
+        run = run_between(course, low, high, (False, False), reference)
+        legs = (*before, Leg(begin, run, way, 0.0 if way > 0 else run.time))
+        begin = legs[-1].end
+    step = 1e-4 * course.length
+    slopes = course.slope(np.array([top - step, top + step]))
+    curvature = float((slopes[1] - slopes[0]) / (2 * step))
+    rate = math.sqrt(max(-curvature, 0.0) / float(course.at(np.array([top]))[0][0]))
+    turning = (top,) if turned is None else (turned, top)
+    return Conservative("asymptotic", legs, None, turning, top=(top, begin, way * off, rate))
+
+
+def _passing(
+    course: EnergyCourse,
+    reference: tuple[float, float],
+    place: float,
+    way: int,
+    duration: float,
+    seeker: _Seeker,
+    *,
+    rests: bool,
+) -> Conservative:
+    """A motion on an open circuit, or one that no lap repeats: lap by lap until it turns twice, or time is up."""
+    legs: list[Leg] = []
+    here, time, turned = place, 0.0, rests
+    first_turn = place if rests else None
+    ahead, laps = 1, 0
+    while laps < MOST_LAPS:
+        # a motion that goes faster and faster is taken by more and more laps
+        aim = here + way * ahead * course.length if course.closed else (course.length if way > 0 else 0.0)
+        laps, ahead = laps + ahead, min(2 * ahead, MOST_AT_ONCE)
+        end = seeker.end(here, way, aim)
+        if end is not None and end[1] == "turn" and turned and first_turn is not None:
+            low, high = sorted((first_turn, end[0]))
+            swing = run_between(course, low, high, (True, True), reference)
+            entry = swing.time_at(place)
+            if rests:
+                entry = 0.0 if way > 0 else swing.time
+                way_at_start = way
+            else:
+                way_at_start = -way
+            first = Leg(0.0, swing, way_at_start, entry)
+            back = Leg(first.end, swing, -way_at_start, swing.time if way_at_start > 0 else 0.0)
+            again = Leg(back.end, swing, way_at_start, 0.0 if way_at_start > 0 else swing.time)
+            return Conservative("oscillation", (first, back, again), 2 * swing.time, (low, high))
+        if end is not None and end[1] == "top":
+            found = _to_the_top(course, reference, here, way, end[0], tuple(legs), first_turn)
+            return found
+        stop = aim if end is None else end[0]
+        low, high = sorted((here, stop))
+        starts_still = rests and not legs
+        turns = (
+            (starts_still and way > 0)
+            or (end is not None and way < 0)
+            or (turned and not rests and here == first_turn and way > 0),
+            (starts_still and way < 0)
+            or (end is not None and way > 0)
+            or (turned and not rests and here == first_turn and way < 0),
+        )
+        run = run_between(course, low, high, turns, reference)
+        legs.append(Leg(time, run, way, 0.0 if way > 0 else run.time))
+        time, here = legs[-1].end, stop
+        if time >= duration:
+            turning = () if first_turn is None else (first_turn,)
+            return Conservative("passing", tuple(legs), None, turning)
+        if end is not None:
+            turned, first_turn, way, ahead = True, here, -way, 1
+            if rests:
+                first_turn = place
+        elif not course.closed:
+            return Conservative("ends", tuple(legs), None, () if first_turn is None else (first_turn,))
+    raise RequestError(
+        f"duration: the motion goes round more than {MOST_LAPS} times without repeating itself; give a shorter one"
+    )
+
+
+class _Seeker:
+    """Finds where a motion of known energy ends."""
+
+    def __init__(self, course: EnergyCourse, reference: tuple[float, float], still: int) -> None:
+        self.course, self.reference, self.still = course, reference, still
+
+    def kinetic(self, s: Floats) -> Floats:
+        """T (j,) [J] at places (j,); below zero where the motion does not come."""
+        return np.asarray(self.reference[1] - self.course.rise(np.float64(self.reference[0]), s))
+
+    def end(self, place: float, way: int, aim: float) -> tuple[float, str] | None:
+        """The first place from here on, up to `aim`, where it turns ("turn") or that it never reaches ("top")."""
+        course = self.course
+        first, last = np.sort(course.laps(np.array([place, aim])))
+        laps = np.arange(first - 1, last + 2) if course.closed else np.zeros(1)
+        marks = np.unique(np.concatenate([course.marks(float(lap)) for lap in laps]))
+        inside = marks[(way * (marks - place) > 1e-13 * course.length) & (way * (aim - marks) > 0)]
+        ordered = np.append(inside[::way], aim)
+        if not course.closed and abs(ordered[-1] - aim) == 0:
+            ordered = ordered[way * (ordered - place) > 0]
+            if not ordered.size:
+                return None
+        kinetic = self.kinetic(ordered)
+        scale = max(float(np.abs(kinetic).max()), self.reference[1])
+        slopes = np.abs(course.slope(ordered))
+        flat = slopes <= 1e-9 * float(course.quantities.reach[1])
+        for i, (height, level) in enumerate(zip(kinetic, flat, strict=True)):
+            if level and abs(height) <= JUST * scale:
+                return float(ordered[i]), "top"
+            if height < 0 or (height == 0 and not level):
+                start = place if i == 0 else float(ordered[i - 1])
+                return self._zero(start, float(ordered[i])), "turn"
+        return None
+
+    def _zero(self, inside: float, outside: float) -> float:
+        """Where T is zero between a place that is reached and one that is not."""
+        fine = inside + (outside - inside) * np.arange(PARTS + 1) / PARTS
+        beyond = np.flatnonzero(self.kinetic(fine[1:-1]) < 0)
+        first = int(beyond[0]) + 1 if beyond.size else PARTS
+        inside, outside = float(fine[first - 1]), float(fine[first])
+        at = (inside + outside) / 2
+        for _ in range(200):
+            here = np.array([at])
+            height, slope = float(self.kinetic(here)[0]), -float(self.course.slope(here)[0])
+            if height > 0:
+                inside = at
+            else:
+                outside = at
+            step = at - height / slope if slope else math.inf
+            after = step if min(inside, outside) < step < max(inside, outside) else (inside + outside) / 2
+            if abs(after - at) <= 2 * np.spacing(abs(at)):
+                return after
+            at = after
+        return at

@@ -1,0 +1,158 @@
+"""A linkage as one body on its circuit: the mass that arc length sees, potential energy, damping.
+
+    T = m(s) s'^2 / 2,    m s'' + m' s'^2 / 2 = -U' - D s' + torque dx/ds                                 (43)
+
+U is the potential energy of weights and springs less the work of loads, which depends on the place only, so
+on a closed circuit it may rise or fall with every lap.
+
+Source: docs/theory_free_motion.md, (43) and (44).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.along import Along
+
+#: Points of Gauss's rule for the rise of U over a short way, and how short, in pieces.
+GAUSS = 20
+SHORT = 0.5
+
+#: The columns of `EnergyCourse.quantities`.
+MASS, SLOPE, DAMPING, INPUT, WINDING = range(5)
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyCourse:
+    """What moves and what acts along a circuit; closed ones go on for ever, by laps.
+
+    `quantities` by arc length s from 0: m [J s^2], U' [J], D [J s], d(input)/ds [rad, or length], and what
+    U' gains with each lap from springs in joints that wind up [J], all for s in radians. `breaks` are places
+    where U' jumps or kinks, `start` [J] is the potential energy of weights and springs at s = 0.
+    """
+
+    quantities: Along
+    closed: bool
+    breaks: Floats
+    start: float
+    tail: float
+
+    @property
+    def length(self) -> float:
+        """One lap."""
+        return self.quantities.length
+
+    def driven_by(self, torque: float) -> EnergyCourse:
+        """The same with a constant torque [J for a radian, or by the length unit] at the input."""
+        if not torque:
+            return self
+        series = self.quantities.series.copy()
+        series[:, :, SLOPE] -= torque * series[:, :, INPUT]
+        return EnergyCourse(
+            Along(self.quantities.edges, series), self.closed, self.breaks, self.start, self.tail
+        )
+
+    @cached_property
+    def _all(self) -> Along:
+        """m, U', D, dx/ds, winding, and the integrals of U' and of winding."""
+        integrals = self.quantities.part(SLOPE, WINDING).integral.series
+        series = np.concatenate([np.pad(self.quantities.series, ((0, 0), (0, 1), (0, 0))), integrals], axis=2)
+        return Along(self.quantities.edges, series)
+
+    @cached_property
+    def _gains(self) -> tuple[float, float]:
+        """What U gains on the first lap, and by how much more on each next one."""
+        last = self._all.series[-1].sum(axis=0)
+        return float(last[-2]), float(last[-1])
+
+    @cached_property
+    def _force(self) -> float:
+        return float(self.quantities.reach[SLOPE])
+
+    @property
+    def gain(self) -> float:
+        """What U gains on a lap; 0 where that is rounding."""
+        return self._gains[0] if abs(self._gains[0]) > 1e-12 * self._force * self.length else 0.0
+
+    @property
+    def repeats(self) -> bool:
+        """Whether U is the same on every lap."""
+        return self.closed and not self.gain and not self.winds
+
+    @cached_property
+    def winds(self) -> bool:
+        """Whether a spring winds up from lap to lap."""
+        return bool(self.quantities.series[:, :, WINDING].any())
+
+    def laps(self, s: Floats) -> Floats:
+        """The lap (j,) of places (j,), counted from 0."""
+        return np.floor(s / self.length) if self.closed else np.zeros_like(s)
+
+    def at(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """m, U', U and D, each (j,), at places (j,) on any lap; U is `start` at 0."""
+        s = np.asarray(s, dtype=np.float64)
+        lap = self.laps(s)
+        own = self._all.at(s - lap * self.length)
+        gain, more = self.gain, self._gains[1] if self.winds else 0.0
+        energy = self.start + own[:, 5] + lap * own[:, 6] + lap * gain + more * lap * (lap - 1) / 2
+        return own[:, MASS], own[:, SLOPE] + lap * own[:, WINDING], energy, own[:, DAMPING]
+
+    @cached_property
+    def _slopes(self) -> Along:
+        return self.quantities.part(*((SLOPE, WINDING) if self.winds else (SLOPE,)))
+
+    def slope(self, s: Floats) -> Floats:
+        """U' (j,) at places (j,)."""
+        lap = self.laps(s)
+        own = self._slopes.at(s - lap * self.length)
+        return np.asarray(own[:, 0] + lap * own[:, 1]) if self.winds else own[:, 0]
+
+    def rise(self, a: Floats, b: Floats) -> Floats:
+        """U(b) - U(a), (j,): over short ways the integral of U', which loses no digits."""
+        a, b = np.broadcast_arrays(np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64))
+        out = self.at(b)[2] - self.at(a)[2]
+        near = np.flatnonzero(np.abs(b - a) < SHORT * self.shortest)
+        if near.size:
+            out[near] = (b - a)[near] * self.mean_slope(a[near], b[near])
+        return np.asarray(out)
+
+    def mean_slope(self, a: Floats, b: Floats) -> Floats:
+        """The mean of U' (j,) over short ways from a to b, (j,) each."""
+        points, weights = _GAUSS
+        where = a[:, None] + (b - a)[:, None] * (points + 1) / 2
+        return np.asarray(self.slope(where.ravel()).reshape(where.shape) @ weights / 2)
+
+    @cached_property
+    def shortest(self) -> float:
+        """The length of the shortest piece."""
+        return float(np.diff(self.quantities.edges).min())
+
+    @cached_property
+    def _first_marks(self) -> Floats:
+        return self._marked(0.0)
+
+    def _marked(self, lap: float) -> Floats:
+        series = self.quantities.series[:, :, [SLOPE]] + lap * self.quantities.series[:, :, [WINDING]]
+        own = Along(self.quantities.edges, series)
+        edges = own.edges
+        heights = np.abs(series).max(initial=0.0)
+        if not heights:
+            return edges
+        found = [edges]
+        turning = own.stationary(0)
+        places = np.union1d(edges, turning)
+        zeros = own.crossings(0, 0.0, places)
+        return np.unique(np.concatenate([*found, zeros]))
+
+    def marks(self, lap: float) -> Floats:
+        """Places on a lap, its edges among them, between which U rises or falls all the way."""
+        own = self._marked(lap) if self.winds and lap else self._first_marks
+        return own + lap * self.length
+
+
+_GAUSS = legendre.leggauss(GAUSS)

@@ -1,0 +1,120 @@
+"""Where a linkage can rest: every zero of the slope of its potential on the circuit, found, not sampled.
+
+    U'(s) = 0,    stable where U'' > 0,    omega^2 = U'' / m                                              (50)
+
+A load that sets in at a place makes U' jump; where it jumps over zero upwards the linkage rests as well, held
+from both sides.
+
+Source: docs/theory_free_motion.md, (50).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.along import Along
+from sevenbar.forces.free_motion.course import MASS, SLOPE, EnergyCourse
+from sevenbar.text.printing import Printed
+
+#: A curvature of U below this part of its greatest is zero: neither stable nor unstable to the first order.
+FLAT = 1e-9
+
+#: Two equilibria nearer than this part of the circuit are one.
+SAME = 1e-10
+
+Kind = Literal["stable", "unstable", "flat", "edge"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Equilibrium(Printed):
+    """A place where the linkage can rest.
+
+    `input` [rad, or length]; `q` (columns,) all joint values; `kind`: "stable", "unstable", "flat" where the
+    curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it.
+    `frequency` [rad/s] is that of small vibrations about a stable one, `rate` [1/s] that at which it leaves an
+    unstable one; NaN where there is none. `potential` [J] is that of weights, springs and loads.
+    """
+
+    input: float
+    columns: tuple[str, ...]
+    q: Floats
+    kind: Kind
+    frequency: float
+    rate: float
+    potential: float
+    place: float
+
+
+def resting_places(course: EnergyCourse) -> list[tuple[float, Kind, float, float]]:
+    """Places, kinds, frequencies and rates of all equilibria on the first lap; none where U is constant."""
+    quantities = course.quantities
+    edges = quantities.edges
+    series = quantities.series[:, :, SLOPE]
+    if not series.any():
+        return []
+    own = quantities.part(SLOPE)
+    turning = own.stationary(0)
+    found: list[float] = []
+    jumps: list[float] = []
+    last = len(edges) - 2
+    for i in range(last + 1):
+        a, b = edges[i], edges[i + 1]
+        marks = np.concatenate([[a], turning[(turning > a) & (turning < b)], [b]])
+        heights = own.on(np.full(len(marks), i), marks)[:, 0]
+        found += _zeros(own, i, marks, heights)
+        before = i - 1 if i else last
+        if i or course.closed:
+            left = float(own.on(np.array([before]), edges[before + 1 : before + 2])[0, 0])
+            if left * heights[0] < 0:
+                jumps.append(float(a))
+    flat = FLAT * float(own.slope.reach[0])
+    out: list[tuple[float, Kind, float, float]] = []
+    for s in sorted({*found, *jumps}):
+        near = abs(s - out[-1][0]) if out else math.inf
+        if near < SAME * course.length or (
+            out and course.closed and s - out[0][0] > course.length * (1 - SAME)
+        ):
+            continue
+        here = np.array([s])
+        curvature = float(own.slope.at(here)[0, 0])
+        mass = float(quantities.at(here)[0, MASS])
+        is_break = bool(np.any(np.abs(course.breaks - s) < SAME * course.length))
+        if s in jumps and is_break:
+            left = own.at(np.array([s - 1e-9 * course.length]))[0, 0]
+            out.append((s, "edge" if left < 0 else "unstable", math.nan, math.nan))
+        elif abs(curvature) <= flat:
+            out.append((s, "flat", math.nan, math.nan))
+        elif curvature > 0:
+            out.append((s, "stable", math.sqrt(curvature / mass), math.nan))
+        else:
+            out.append((s, "unstable", math.nan, math.sqrt(-curvature / mass)))
+    return out
+
+
+def _zeros(own: Along, piece: int, marks: Floats, heights: Floats) -> list[float]:
+    """Zeros of a piece's polynomial between its marks; a touching one that rounding hides is found as well."""
+    touch = 1e-13 * float(own.reach[0])
+    found = [float(s) for s, h in zip(marks, heights, strict=True) if abs(h) <= touch]
+    whole: npt.NDArray[np.int64] = np.array([piece])
+    for k in range(len(marks) - 1):
+        if heights[k] * heights[k + 1] >= 0 or min(abs(heights[k]), abs(heights[k + 1])) <= touch:
+            continue
+        low, high, rising = marks[k], marks[k + 1], heights[k + 1] > 0
+        at = (low + high) / 2
+        for _ in range(100):
+            here = np.array([at])
+            height, slope = own.on(whole, here)[0, 0], own.slope.on(whole, here)[0, 0]
+            low, high = (low, at) if (height > 0) == rising else (at, high)
+            step = at - height / slope if slope else math.inf
+            after = step if low < step < high else (low + high) / 2
+            if abs(after - at) <= 2 * np.spacing(abs(at)):
+                break
+            at = after
+        found.append(float(at))
+    return found

@@ -1,0 +1,159 @@
+"""A free motion: time, place, all joint values and rates, energies; how it goes on, and what is known of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.arrays import Floats, finite_array
+from sevenbar.errors import RequestError, ends_here
+from sevenbar.text.printing import Drawable
+
+if TYPE_CHECKING:
+    from sevenbar.kinematics.circuits import Law
+    from sevenbar.kinematics.motion import Motion
+
+
+@dataclass(frozen=True)
+class TurningPoint:
+    """A pose where the linkage comes to rest and turns back: input [rad, or length] and potential energy [J]."""
+
+    input: float
+    potential: float
+
+
+@dataclass(frozen=True, eq=False)
+class FreeStates:
+    """States (n,) at times: joint values and three derivatives by time (n, columns), energies [J]."""
+
+    q: Floats
+    dq: Floats
+    ddq: Floats
+    dddq: Floats
+    kinetic: Floats
+    potential: Floats
+    #: Arc length [rad, or parts of the size] and its rate.
+    place: Floats
+    rate: Floats
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FreeMotion(Drawable):
+    """How a linkage moves by itself from a start, row by row in time.
+
+    `time` (n,) [s]; `q`, `dq`, `ddq`, `dddq` (n, columns) [rad, or length, and derivatives by s], unwrapped;
+    `kinetic` and `potential` (n,) [J], the latter of weights, springs and loads, and of a constant torque.
+    `kind`: "rotation" and "oscillation" repeat themselves with `period` [s]; "rest"; "asymptotic" comes nearer
+    and nearer to an unstable equilibrium; "passing" repeats nothing within the duration; "ends" leaves an open
+    circuit, rows after that are NaN; "driven" has dampers or a motor. `turning` are the points where it turns
+    back, found, not sampled. `energy_error` is the greatest change of energy over the rows that nothing
+    explains, as a part of the greatest kinetic energy: NaN for "driven", which has `difference`, the greatest
+    difference in `q` [rad, or parts of the size] from a solution with a hundred times the tolerance. `tail` is
+    what the polynomials along the circuit leave out, as a part of the greatest value.
+
+    Source: docs/theory_free_motion.md, (40) to (51).
+    """
+
+    time: Floats
+    columns: tuple[str, ...]
+    q: Floats
+    dq: Floats
+    ddq: Floats
+    dddq: Floats
+    kinetic: Floats
+    potential: Floats
+    kind: str
+    period: float | None
+    turning: tuple[TurningPoint, ...]
+    energy_error: float
+    difference: float
+    tail: float
+    duration: float
+    input_column: int
+    input_turns: bool
+    column_kinds: tuple[str, ...]
+    length_unit: str
+    #: Whether change points lie on the circuit; it is passed through them along its smooth continuation.
+    through_change_points: bool
+    heading: str = field(repr=False)
+    _states: Callable[[Floats], FreeStates] = field(repr=False)
+    _motion: Callable[[FreeMotion], Motion] = field(repr=False)
+
+    @property
+    def input(self) -> Floats:
+        """The input [rad, or length], (n,)."""
+        return self.q[:, self.input_column]
+
+    @property
+    def speed(self) -> Floats:
+        """The input's speed [rad/s, or length/s], (n,)."""
+        return self.dq[:, self.input_column]
+
+    @property
+    def energy(self) -> Floats:
+        """Kinetic and potential energy together [J], (n,)."""
+        return self.kinetic + self.potential
+
+    @ends_here
+    def at(self, times: npt.ArrayLike) -> FreeMotion:
+        """The same motion at other times (n,) [s], up to the duration; of one that repeats itself, any times.
+
+        Raises `RequestError` for a time before the start, or after the end of what was solved.
+        """
+        from dataclasses import replace
+
+        asked = finite_array("times", times)
+        if asked.size and asked.min() < 0:
+            raise RequestError(f"times: {asked.min():g} lies before the start; give times from 0 on")
+        knows_all = self.kind in ("rotation", "oscillation", "rest", "asymptotic")
+        if not knows_all and asked.size and asked.max() > self.duration:
+            raise RequestError(
+                f"times: {asked.max():g} s is after the duration of {self.duration:g} s; give a longer duration"
+            )
+        states = self._states(asked)
+        kept = {name: getattr(states, name) for name in ("q", "dq", "ddq", "dddq", "kinetic", "potential")}
+        return replace(self, time=asked, **kept)
+
+    def law(self) -> Law:
+        """The input over time as a law, for `linkage.motion(law=..)`: rows in which the input is known.
+
+        A law has the input only; where that turns back, the rows of `motion()` say on which pass the linkage
+        is.
+        """
+        from sevenbar.kinematics.circuits import Law
+
+        column = self.input_column
+        rows = np.isfinite(self.input)
+        rates = [part[rows, column] for part in (self.q, self.dq, self.ddq)]
+        third = self.dddq[rows, column]
+        return Law.of(self.time[rows], *rates, third if np.isfinite(third).all() else 0.0)
+
+    @ends_here
+    def motion(self) -> Motion:
+        """A motion with one circuit, whose rows are these: for films, figures, tables and forces.
+
+        Its rows run through dead centres of the input, where a law alone does not say how to go on. Forces on
+        it are those of the free motion: the input's torque is what a motor gives.
+        """
+        return self._motion(self)
+
+    def table(self, *, si: bool = False) -> dict[str, npt.NDArray[Any]]:
+        """Columns (n,) by names that end in their units, as a file has them: degrees, or radians with `si`."""
+        from sevenbar.kinematics.columns import joint_column
+        from sevenbar.text.units import LENGTHS
+
+        length, angle = ("m", "rad") if si else (self.length_unit, "deg")
+        scale = LENGTHS[self.length_unit] if si else 1.0
+        found: dict[str, npt.NDArray[Any]] = {"time_s": self.time}
+        for order, values in enumerate((self.q, self.dq, self.ddq)):
+            for k, (name, kind) in enumerate(zip(self.columns, self.column_kinds, strict=True)):
+                slides = kind == "slide"
+                head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
+                column = values[:, k] * scale if slides else values[:, k]
+                found[head] = np.degrees(column) if head.endswith("_deg") else column
+        found["kinetic_J"], found["potential_J"] = self.kinetic, self.potential
+        return found

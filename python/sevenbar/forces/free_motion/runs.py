@@ -1,0 +1,222 @@
+"""A motion one way along a circuit without losses: time as an integral of place, and place by time.
+
+    t = integral ds / s',    s' = sqrt(2 (E - U) / m)                                                     (45)
+
+At a turning point c, where E = U, s = c - l (1 - w)^2 makes the integrand smooth:
+
+    dt/dw = 2 sqrt(l m / (2 M)),    M the mean of U' from s to c                                          (46)
+
+Source: docs/theory_free_motion.md, (45) to (47).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import chebyshev
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.stationary import coefficients, nodes
+from sevenbar.forces.free_motion.course import EnergyCourse
+
+#: Nodes of a panel.
+TERMS = 20
+
+#: A panel is fine enough where its last terms are below this part of the first.
+RESOLVED = 1e-14
+
+#: What rounding of a place leaves, in parts of it by the length of a piece.
+ROUNDING = 4e-15
+
+#: Most halvings of a panel: past an equilibrium that is just not reached the integrand is as sharp as rounding.
+HALVINGS = 50
+
+#: Steps of Newton's method, or halvings, from times to places.
+STEPS = 60
+
+#: What a panel does at its ends: it turns at its lower end, nowhere, or at its upper end.
+LOW, PLAIN, HIGH = -1, 0, 1
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A motion from `low` up to `high`, or back; its panels in order, and times from `low` on.
+
+    `kind`, `starts`, `ends`, `first`, `last` (m,): what a panel does, its places, and the part of it from w to
+    w that is this piece; `times` (m + 1,) [s]; `series` (m, terms) of dt/dw, in Chebyshev's polynomials.
+    """
+
+    low: float
+    high: float
+    kind: npt.NDArray[np.int64]
+    starts: Floats
+    ends: Floats
+    first: Floats
+    last: Floats
+    series: Floats
+    tail: float
+
+    @property
+    def time(self) -> float:
+        """How long it takes from `low` to `high` [s]."""
+        return float(self.times[-1])
+
+    @cached_property
+    def _integral(self) -> Floats:
+        half = (self.last - self.first) / 2
+        return np.asarray(chebyshev.chebint(self.series, lbnd=-1, axis=1) * half[:, None])
+
+    @cached_property
+    def times(self) -> Floats:
+        """When each panel begins, and the end [s]."""
+        return np.concatenate([[0.0], np.cumsum(self._integral.sum(axis=1))])
+
+    def time_at(self, s: float) -> float:
+        """When a place is passed [s]."""
+        bounds = np.append(_place(self.kind, self.starts, self.ends, self.first)[0], self.high)
+        i = int(np.clip(np.searchsorted(bounds, s, "right") - 1, 0, len(self.kind) - 1))
+        share = (s - self.starts[i]) / (self.ends[i] - self.starts[i])
+        share = min(max(share, 0.0), 1.0)
+        w = {LOW: share**0.5, PLAIN: share, HIGH: 1 - (1 - share) ** 0.5}[int(self.kind[i])]
+        x = (2 * w - self.first[i] - self.last[i]) / (self.last[i] - self.first[i])
+        return float(self.times[i] + chebyshev.chebval(min(max(x, -1.0), 1.0), self._integral[i]))
+
+    def at(self, t: Floats) -> tuple[Floats, Floats]:
+        """Places and speeds s' (j,) of the motion upwards at times (j,) [s] from `low` on."""
+        t = np.clip(t, 0.0, self.time)
+        i = np.clip(np.searchsorted(self.times, t, "right") - 1, 0, len(self.kind) - 1)
+        wanted = t - self.times[i]
+        half = (self.last - self.first)[i] / 2
+        integral, series = self._integral[i], self.series[i]
+        low, high = np.full(t.shape, -1.0), np.ones(t.shape)
+        x = 2 * wanted / (self.times[i + 1] - self.times[i]) - 1
+        x = np.clip(x, -1.0, 1.0)
+        for _ in range(STEPS):
+            terms = np.cos(np.arccos(x)[:, None] * np.arange(integral.shape[1]))
+            missing = (terms * integral).sum(axis=1) - wanted
+            rate = (terms[:, :-1] * series).sum(axis=1)
+            low, high = np.where(missing <= 0, x, low), np.where(missing >= 0, x, high)
+            step = x - missing / (rate * half)
+            after = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+            moved = np.abs(after - x).max(initial=0.0)
+            x = after
+            if moved < 1e-15:
+                break
+        w = (self.first[i] + self.last[i]) / 2 + half * x
+        terms = np.cos(np.arccos(np.clip(x, -1, 1))[:, None] * np.arange(series.shape[1]))
+        place, by_w = _place(self.kind[i], self.starts[i], self.ends[i], w)
+        return place, by_w / (terms * series).sum(axis=1)
+
+
+def _place(kind: npt.NDArray[np.int64], start: Floats, end: Floats, w: Floats) -> tuple[Floats, Floats]:
+    """The place s of w, and ds/dw."""
+    way = end - start
+    place = np.where(
+        kind == LOW, start + way * w**2, np.where(kind == HIGH, end - way * (1 - w) ** 2, start + way * w)
+    )
+    slope = np.where(kind == LOW, 2 * way * w, np.where(kind == HIGH, 2 * way * (1 - w), way))
+    return place, slope
+
+
+def run_between(
+    course: EnergyCourse, low: float, high: float, turns: tuple[bool, bool], reference: tuple[float, float]
+) -> Run:
+    """The run from `low` to `high`, which may be turning points; `reference` is a place and T there [J]."""
+    marks = _inner_marks(course, low, high)
+    turns_low, turns_high = turns
+    reach = (high - low) / 2 if turns_low and turns_high else high - low
+    low_end = low + _turn_length(course, low, high, reach, 1) if turns_low else low
+    high_end = high - _turn_length(course, low, high, reach, -1) if turns_high else high
+    inner = marks[(marks > low_end) & (marks < high_end)]
+    # marks that nearly meet make no panel
+    edges = np.concatenate([[low_end], inner, [high_end]])
+    keep = np.append(np.diff(edges) > 1e-13 * course.length, True)
+    edges = edges[keep]
+    panels = [(PLAIN, a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    if turns_low:
+        panels.insert(0, (LOW, low, low_end))
+    if turns_high:
+        panels.append((HIGH, high_end, high))
+    kind = np.array([p[0] for p in panels])
+    starts, ends = (np.array([p[k] for p in panels]) for k in (1, 2))
+    first, last = np.zeros(len(kind)), np.ones(len(kind))
+    done = []
+    tail = 0.0
+    # far laps have fewer digits left for the place on them
+    resolved = max(RESOLVED, ROUNDING * max(abs(low), abs(high)) / course.shortest)
+    for halving in range(HALVINGS + 1):
+        w = (first + last)[:, None] / 2 + (last - first)[:, None] / 2 * nodes(TERMS)
+        rates = _rates(course, kind, starts, ends, w, reference)
+        series = coefficients(rates.T).T
+        worst = np.abs(series[:, -2:]).max(axis=1) / np.abs(series[:, 0])
+        rough = worst > resolved if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
+        # no finer than places are known
+        rough &= (last - first) * (ends - starts) > 1e-14 * course.length
+        tail = max(tail, float(worst[~rough].max(initial=0.0)))
+        done.append((kind[~rough], starts[~rough], ends[~rough], first[~rough], last[~rough], series[~rough]))
+        if not rough.any():
+            break
+        middle = (first + last)[rough] / 2
+        kind, starts, ends = (np.repeat(part[rough], 2) for part in (kind, starts, ends))
+        first = np.stack([first[rough], middle], axis=1).ravel()
+        last = np.stack([middle, last[rough]], axis=1).ravel()
+    kind, starts, ends, first, last, series = (np.concatenate(part) for part in zip(*done, strict=True))
+    order = np.lexsort((first, starts))
+    return Run(
+        low, high, kind[order], starts[order], ends[order], first[order], last[order], series[order], tail
+    )
+
+
+def _rates(
+    course: EnergyCourse,
+    kind: npt.NDArray[np.int64],
+    starts: Floats,
+    ends: Floats,
+    w: Floats,
+    reference: tuple[float, float],
+) -> Floats:
+    """dt/dw (m, terms) on panels (m,) at w (m, terms)."""
+    place, by_w = _place(kind[:, None], starts[:, None], ends[:, None], w)
+    mass = course.at(place.ravel())[0].reshape(w.shape)
+    kinetic = np.empty(w.shape)
+    plain = kind == PLAIN
+    origin, there = reference
+    kinetic[plain] = there - course.rise(origin, place[plain].ravel()).reshape(-1, w.shape[1])
+    for own, edge, sign in ((kind == LOW, starts, -1.0), (kind == HIGH, ends, 1.0)):
+        if own.any():
+            at = np.repeat(edge[own], w.shape[1])
+            mean = course.mean_slope(place[own].ravel(), at).reshape(-1, w.shape[1])
+            kinetic[own] = sign * mean
+    way = (ends - starts)[:, None]
+    kinetic = np.maximum(kinetic, np.finfo(float).tiny)
+    mass = np.maximum(mass, 0.0)
+    # at a turning point the square root of the way cancels
+    return np.where(
+        plain[:, None], by_w * np.sqrt(mass / (2 * kinetic)), 2 * np.sqrt(way * mass / (2 * kinetic))
+    )
+
+
+def _inner_marks(course: EnergyCourse, low: float, high: float) -> Floats:
+    edges = course.quantities.edges
+    if not course.closed:
+        return edges
+    laps = np.arange(np.floor(low / course.length), np.floor(high / course.length) + 1)
+    return np.asarray((edges[:-1] + laps[:, None] * course.length).ravel())
+
+
+def _turn_length(course: EnergyCourse, low: float, high: float, reach: float, way: int) -> float:
+    """How far a panel goes that turns at `low` (way 1) or at `high` (way -1): to a break, or a piece."""
+    place = low if way > 0 else high
+    lap = float(course.laps(np.array([place]))[0])
+    inside = place - lap * course.length
+    edges = course.quantities.edges
+    i = int(np.clip(np.searchsorted(edges, inside, "right") - 1, 0, len(edges) - 2))
+    most = min(reach, float(edges[i + 1] - edges[i]))
+    for k in (-1, 0, 1):
+        ahead = way * (course.breaks + (lap + k) * course.length - place)
+        ahead = ahead[ahead > 1e-12 * course.length]
+        most = min(most, float(ahead.min(initial=np.inf)))
+    return most

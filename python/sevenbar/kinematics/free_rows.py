@@ -1,0 +1,152 @@
+"""Rows of a linkage that moves along a circuit as it likes: columns, points and links by arc length.
+
+    dq/dt = q' s',   d2q/dt2 = q'' s'^2 + q' s''                                                          (52)
+
+Source: docs/theory_free_motion.md, (52).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.curves.along import Along
+from sevenbar.curves.stationary import coefficients, nodes
+from sevenbar.kinematics.circuit_path import TERMS
+from sevenbar.kinematics.circuits import Trace, Words
+from sevenbar.kinematics.energy_path import EnergyBuilder
+from sevenbar.kinematics.poses import frames_of
+
+#: A ball's turns whose series ends above this [rad] are no polynomials there: the ball is near a singular pose.
+UNDEFINED = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class CourseRows:
+    """The columns of an analysis along a path, balls as their turns about z, y and x."""
+
+    builder: EnergyBuilder
+
+    @cached_property
+    def _places(self) -> tuple[Floats, Floats]:
+        """Nodes on the path's pieces (m, terms), and the rows there (m * terms, columns)."""
+        path = self.builder.path
+        edges = path.poses.edges
+        middle, half = (edges[:-1] + edges[1:]) / 2, np.diff(edges) / 2
+        grid = middle[:, None] + half[:, None] * nodes(TERMS)
+        pieces = np.repeat(np.arange(len(middle)), TERMS)
+        return grid, self._rows(self.builder.poses(pieces, grid.ravel()))
+
+    def _rows(self, poses: Floats) -> Floats:
+        """Poses of the word as rows of an analysis; see `Numbers.poses`, whose inverse this is."""
+        numbers = self.builder.numbers
+        rows = poses.copy()
+        values = numbers.values(numbers.nominal)
+        for joint in numbers.spun:
+            a, b = (numbers.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in (0, 1))
+            column = numbers.word.freedoms[joint][0].columns[0]
+            turn = _turned(a, poses[:, column]) @ _turned(b, poses[:, column + 1])
+            middle = -np.arcsin(np.clip(turn[:, 2, 0], -1.0, 1.0))
+            first = np.arctan2(turn[:, 1, 0], turn[:, 0, 0])
+            rows[:, column : column + 3] = np.stack(
+                [first, middle, np.arctan2(turn[:, 2, 1], turn[:, 2, 2])], axis=1
+            )
+        return rows
+
+    @cached_property
+    def columns(self) -> Along:
+        """All columns by arc length."""
+        path, numbers = self.builder.path, self.builder.numbers
+        series = path.poses.series.copy()
+        balls = np.flatnonzero(numbers.is_ball)
+        if balls.size:
+            grid, rows = self._places
+            # from the first node of the circuit on
+            order = np.argsort(grid.ravel())
+            turns = np.empty((len(order), balls.size))
+            turns[order] = np.unwrap(rows[np.ix_(order, balls)], axis=0)
+            turns = turns.reshape(*grid.shape, balls.size)
+            series[:, :, balls] = np.moveaxis(coefficients(np.moveaxis(turns, 1, 0)), 0, 1)
+        return Along(path.poses.edges, series)
+
+    @cached_property
+    def _undefined(self) -> Floats:
+        """Whether a ball's turns are undefined on a piece (m, columns)."""
+        last = np.abs(self.columns.series[:, -2:]).max(axis=1)
+        return np.asarray((last > UNDEFINED) & self.builder.numbers.is_ball)
+
+    def at(
+        self, place: Floats, rates: tuple[Floats, Floats, Floats]
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """Columns and three derivatives by time (n, columns) at places (n,) with s', s'' and s'''."""
+        path = self.builder.path
+        laps = np.floor(place / path.length) if path.closed else np.zeros_like(place)
+        inside = place - laps * path.length
+        known = np.isfinite(inside)
+        inside = np.where(known, inside, 0.0)
+        q = self.columns.at(inside) + laps[:, None] * path.gain
+        found = _by_time([q, *self._slopes(inside)], rates)
+        piece = np.clip(np.searchsorted(path.poses.edges, inside, "right") - 1, 0, len(self._undefined) - 1)
+        for values in found:
+            values[self._undefined[piece]] = np.nan
+            values[~known] = np.nan
+        return found
+
+    def _slopes(self, inside: Floats) -> list[Floats]:
+        first = self.columns.slope
+        found = [first.at(inside), first.slope.at(inside), first.slope.slope.at(inside)]
+        exact = self.builder.tangents
+        if exact is not None:
+            # those of the core, which lose a derivative less
+            smooth = self.builder.smooth
+            for values, own in zip(found, (exact, exact.slope, exact.slope.slope), strict=True):
+                values[:, smooth] = own.at(inside)
+        return found
+
+    def trace(
+        self,
+        place: Floats,
+        rates: tuple[Floats, Floats, Floats],
+        status: Words,
+        link: int,
+        at: Floats,
+    ) -> Trace:
+        """A point, `at` in its link's own frame, on rows at places (n,)."""
+        linkage, path = self.builder.solver.linkage, self.builder.path
+        if link == len(linkage.joints):
+            position = np.broadcast_to(at, (len(place), 3)).copy()
+            rest = np.zeros_like(position)
+            return Trace(position, rest, rest.copy(), rest.copy(), status)
+        grid, rows = self._places
+        frames = frames_of(linkage, rows)[:, link - 1]
+        places = (frames[:, :3, :3] @ at + frames[:, :3, 3]).reshape(*grid.shape, 3)
+        along = Along(path.poses.edges, np.moveaxis(coefficients(np.moveaxis(places, 1, 0)), 0, 1))
+        inside = place % path.length if path.closed else place
+        known = np.isfinite(inside)
+        inside = np.where(known, inside, 0.0)
+        first = along.slope
+        derived = [along.at(inside), first.at(inside), first.slope.at(inside), first.slope.slope.at(inside)]
+        found = _by_time(derived, rates)
+        for values in found:
+            values[~known] = np.nan
+        return Trace(*found, status)
+
+
+def _by_time(
+    by_s: list[Floats], rates: tuple[Floats, Floats, Floats]
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """A quantity and its derivatives by arc length (n, k) each, as derivatives by time."""
+    value, one, two, three = by_s
+    v, a, j = (rate[:, None] for rate in rates)
+    return value, one * v, two * v**2 + one * a, three * v**3 + 3 * two * v * a + one * j
+
+
+def _turned(axis: Floats, angles: Floats) -> Floats:
+    """Rotations (n, 3, 3) about an axis (3,)."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sines, versines = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
+    return np.asarray(np.eye(3) + sines * cross + versines * (cross @ cross))
