@@ -81,3 +81,11 @@ def test_bodies_without_mass_weigh_next_to_nothing_in_mujoco() -> None:
     torque = run.difference("theta_1 torque")
     assert torque.greatest < 5e-4 * torque.scale
     assert any("link_1, link_2, link_4, link_5, link_6 weigh 1e-05 of" in note for note in run.record.notes)
+
+
+def test_weight_is_no_acceleration_in_mujoco() -> None:
+    pytest.importorskip("mujoco")
+    run = simulate(loaded("rssr"), "mujoco", steps=720)
+    for quantity in ("A acceleration", "B acceleration", "rocker acceleration"):
+        found = run.difference(quantity)
+        assert found.greatest < 3e-3 * found.scale, found
