@@ -7,6 +7,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.simulation.agreement import Difference
+from sevenbar.simulation.figures import FIGURES
+from sevenbar.simulation.report import columns
 from sevenbar.simulation.run import simulate
 from test_forces import random_body
 
@@ -81,3 +83,33 @@ def test_bodies_without_mass_weigh_next_to_nothing_in_mujoco() -> None:
     torque = run.difference("theta_1 torque")
     assert torque.greatest < 5e-4 * torque.scale
     assert any("link_1, link_2, link_4, link_5, link_6 weigh 1e-05 of" in note for note in run.record.notes)
+
+
+def test_weight_is_no_acceleration_in_mujoco() -> None:
+    pytest.importorskip("mujoco")
+    run = simulate(loaded("rssr"), "mujoco", steps=720)
+    for quantity in ("A acceleration", "B acceleration", "rocker acceleration"):
+        found = run.difference(quantity)
+        assert found.greatest < 5e-3 * found.scale, found
+
+
+def test_report_rows_and_figure_have_torque_and_reactions() -> None:
+    run = simulate(loaded("planar_4r"), "mujoco", steps=720)
+    assert [f"{force.name} {force.what}" for force in run.forces][:2] == ["theta_1 torque", "theta_1 force"]
+    # of a planar linkage forces out of the plane and moments in it are left open, and are not compared
+    assert {force.axes for force in run.forces} == {("",), ("x", "y")}
+    rows = columns(run)
+    for axis in "xy":
+        ours, theirs = (rows[f"theta_4_force_{axis}_{who}_N"] for who in ("sevenbar", "mujoco"))
+        assert np.abs(ours - theirs).max() < 0.05 * np.abs(ours).max()
+    ours, theirs = (rows[f"theta_1_torque_{who}_Nm"] for who in ("sevenbar", "mujoco"))
+    assert np.abs(ours - theirs).max() == pytest.approx(run.difference("theta_1 torque").greatest)
+    printed = " ".join(str(run).split())
+    assert "as far as equilibrium determines it" in printed
+    assert "theta_4 force [N]" in printed
+    figure = FIGURES["forces"](run)
+    assert [axes.get_ylabel() for axes in figure.axes[::2]] == ["input torque [N m]", "force [N]"]
+    unloaded = simulate(sb.load("planar_4r"), "mujoco", steps=720)
+    assert unloaded.forces == ()
+    assert "equilibrium" not in str(unloaded)
+    assert not any("torque" in head for head in columns(unloaded))

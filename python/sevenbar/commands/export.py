@@ -21,6 +21,7 @@ from sevenbar.reporting.folder import check_targets
 if TYPE_CHECKING:
     import sevenbar as sb
     from sevenbar.export import Bodies, Table
+    from sevenbar.kinematics.linkage import Linkage
 
 
 #: Tables that hold numbers as text.
@@ -107,7 +108,7 @@ def export(
         typer.echo(line)
 
 
-def _notes(out: Path, form: Table | Bodies, loaded: sb.Linkage) -> list[str]:
+def _notes(out: Path, form: Table | Bodies, loaded: Linkage) -> list[str]:
     """What to know of a file besides its name."""
     from sevenbar.export import Bodies
     from sevenbar.export.mass import has_masses

@@ -12,6 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
+from sevenbar.simulation.force_agreement import ComparedForce, compared_forces
 from sevenbar.simulation.joint_values import BodyStates, JointValues, joint_values
 from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.printing import Printed
@@ -49,7 +50,7 @@ class Simulation(Printed):
     `input` (n,) and `time` (n,) [s] of the rows; `engine` and `theory` hold the joints' values, the theory's
     without closure errors; `points` holds each named point as the engine and as Sevenbar has it. `returned`
     is by how much the engine's links miss their first places [length] and attitudes [rad] at the end of a
-    cycle; None where the course is no cycle.
+    cycle; None where the course is no cycle. `forces` are those of both, where masses or loads act.
     """
 
     course: Course
@@ -59,6 +60,7 @@ class Simulation(Printed):
     theory: JointValues
     points: dict[str, tuple[PointValues, PointValues]]
     returned: tuple[float, float] | None
+    forces: tuple[ComparedForce, ...] = ()
     differences: tuple[Difference, ...] = ()
 
     @property
@@ -123,7 +125,8 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         # of a small turn the matrix less the unit matrix has a norm of sqrt 2 times its angle
         askew = np.linalg.norm(turn - np.eye(3), axis=(-1, -2)).max() / math.sqrt(2)
         returned = (float(apart), float(askew))
-    found = Simulation(course, model, record, values, theory, points, returned)
+    forces = compared_forces(course, model, record)
+    found = Simulation(course, model, record, values, theory, points, returned, forces)
     return replace(found, differences=(*_differences(found), *_force_differences(found)))
 
 
@@ -186,39 +189,11 @@ def _differences(run: Simulation) -> Iterator[Difference]:
 
 
 def _force_differences(run: Simulation) -> Iterator[Difference]:
-    """The input's torque, and in each joint what its constraints bear as far as equilibrium determines it.
-
-    What passes along a joint's own freedoms is a spring's, and at the input the torque; a ball that holds an
-    idle spin bears what the rule needs.
-    """
-    record, circuit, rows = run.record, run.course.circuit, run.course.rows
-    if record.drive is None:
-        return
-    first = len(run.course.lead)
-    forces = circuit.forces()
-    name = run.linkage.columns[circuit.input_column]
-    what = "force" if forces.slides else "torque"
-    yield _difference(run, f"{name} {what}", forces.unit, record.drive[first:], forces.torque[rows])
-    if record.reactions is None:
-        return
-    for joint, seat in zip(run.linkage.joints, run.model.seats, strict=True):
-        connection = run.model.connections[seat]
-        if connection.row.is_screw:
-            continue
-        reaction = forces.reactions[joint.name]
-        free = np.array(connection.row.free)
-        axes, found = reaction.axes[rows], record.reactions[first:, seat]
-        for word, unit, own, held, part in (
-            ("force", "N", reaction.force, reaction.determinate[3:] & ~free[:3], found[:, :3]),
-            ("moment", "N m", reaction.moment, reaction.determinate[:3] & ~free[3:], found[:, 3:]),
-        ):
-            if not held.any():
-                continue
-            engine = np.einsum("nji,nj->ni", axes, part)[:, held]
-            theory = own[rows][:, held]
-            apart = np.linalg.norm(engine - theory, axis=1)
-            scale = float(np.nanmax(np.linalg.norm(theory, axis=1), initial=0.0))
-            yield _difference(run, f"{joint.name} {word}", unit, apart, np.zeros(len(apart)), scale)
+    """The input's torque, and in each joint what its constraints bear as far as equilibrium determines it."""
+    for found in run.forces:
+        name = f"{found.name} {found.what}"
+        scale = float(np.nanmax(found.size, initial=0.0))
+        yield _difference(run, name, found.unit, found.apart, np.zeros(len(found.apart)), scale)
 
 
 def _difference(

@@ -127,6 +127,44 @@ def points_figure(run: Simulation) -> Figure:
     return figure
 
 
+def forces_figure(run: Simulation) -> Figure:
+    """The input's torque, and the size of forces and moments in the joints; how far the engine's are off."""
+    joints = dict.fromkeys(force.name for force in run.forces[1:])
+    colours = {name: CIRCUIT_COLOURS[k % len(CIRCUIT_COLOURS)] for k, name in enumerate(joints)}
+    parts = [list(run.forces[:1])]
+    parts += [[force for force in run.forces[1:] if force.what == what] for what in ("force", "moment")]
+    shown = [part for part in parts if part]
+    with styled():
+        figure = page_figure(9.2, 1.2 + 2.2 * len(shown), pads=(0.06, 0.08))
+        grid = figure.subplots(len(shown), 2, sharex=True, squeeze=False)
+        for number, ((left, right), part) in enumerate(zip(grid, shown, strict=True)):
+            unit = part[0].unit
+            for force in part:
+                colour = colours[force.name] if number else ""
+                # the input's own has a sign
+                own, other = (
+                    _length(values) if number else values[:, 0] for values in (force.theory, force.engine)
+                )
+                _compared(left, run, own, other, colour)
+                _logarithmic(right, run, force.apart, colour or _ENGINE, shown_name(force.name, 20))
+            left.set_ylabel(_force_label(part[0].what, unit, drive=number == 0))
+            right.set_ylabel(say("size of the difference [{unit}]", unit=unit))
+        _finish(figure, run)
+        keys = [
+            Line2D([], [], color=colour, lw=1.5, label=shown_name(name, 20))
+            for name, colour in colours.items()
+        ]
+        keys += _keys(run, "0.35")[:2]
+        figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 6), frameon=False)
+    return figure
+
+
+def _force_label(what: str, unit: str, *, drive: bool) -> str:
+    if drive:
+        return f"{say('input force') if what == 'force' else say('input torque')} [{unit}]"
+    return say("force [N]") if what == "force" else say("moment [N m]")
+
+
 def _length(vectors: Floats) -> Floats:
     return np.asarray(np.linalg.norm(vectors, axis=1))
 
@@ -190,4 +228,4 @@ def _keys(run: Simulation, colour: str = "") -> list[Line2D]:
 
 
 #: The figures of a run by their names; of points where the linkage names some.
-FIGURES = {"output": output_figure, "joints": joints_figure, "points": points_figure}
+FIGURES = {"output": output_figure, "joints": joints_figure, "points": points_figure, "forces": forces_figure}

@@ -56,8 +56,9 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
         for place, body in enumerate(bodies):
             mujoco.mj_objectVelocity(own, data, kind, body, six, 0)
             rates[:, 0, row, place] = six[3:], six[:3]
+            # MuJoCo's accelerations are those that an instrument would show, with weight
             mujoco.mj_objectAcceleration(own, data, kind, body, six, 0)
-            rates[:, 1, row, place] = six[3:], six[:3]
+            rates[:, 1, row, place] = six[3:] + own.opt.gravity, six[:3]
         forces.read(data, row)
         if not np.isfinite(data.qacc).all() or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
             raise EngineError(
