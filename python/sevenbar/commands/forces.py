@@ -29,16 +29,6 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import chosen_circuit
 from sevenbar.text.units import split_quantity
 
-#: What a file without anything that acts lacks.
-NOTHING_ACTS = """nothing in it has a mass and nothing acts; write a body, a load or a spring into it, as in
-  [forces]
-  gravity = [0, 0, -9.80665]
-
-  [[body]]
-  link = 2
-  mass = 1.3
-  solid = "rod\""""
-
 
 def forces(
     linkage: Source,
@@ -76,6 +66,7 @@ def forces(
     json: Json = False,
 ) -> None:
     """Torque of the input and what every joint bears, from bodies, loads and springs of the file."""
+    from sevenbar.reporting.force_words import NOTHING_ACTS
     from sevenbar.reporting.forces import CircuitForces, forces_report
 
     look = look_of(None, size, style)

@@ -61,7 +61,7 @@ def torque(
         ['input torque [N m]', 'power [W]']
     """
     count = 1 if forces.at_rest else 2
-    found = sizing or _sizing(forces)
+    found = sizing or sizing_of(forces)
     with styled(style):
         figure, panels = stack(count, ax, figsize, style, 2.3)
         word = say("input force") if forces.slides else say("input torque")
@@ -324,7 +324,7 @@ def small(forces: Forces) -> Figure | None:
     return figure
 
 
-def _sizing(forces: Forces) -> Sizing | None:
+def sizing_of(forces: Forces) -> Sizing | None:
     """The sizing of rows that have one: not of several passes one after the other."""
     if forces.period is None and len(np.unique(forces.branch)) > 1:
         return None

@@ -30,6 +30,9 @@ CIRCUIT_COLOURS = ("#332288", "#CC6677", "#6B8E23", "#882255", "#44AA99", "#B886
 #: Vectors of a point.
 VELOCITY, ACCELERATION = "#7A3E9D", "#B5651D"
 
+#: The force in a joint.
+REACTION = "#C2185B"
+
 #: What is computed, where it is compared with what comes from elsewhere: measured, wanted, another program's.
 COMPUTED, OTHER = CIRCUIT_COLOURS[0], "#C77700"
 

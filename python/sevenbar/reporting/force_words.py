@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -26,6 +26,16 @@ LISTED = {"force": "N", "radial": "N", "axial": "N", "tilting": "N m", "turning"
 
 #: What a cell says of a part that rigid bodies leave open.
 OPEN = "open"
+
+#: What a file without anything that acts lacks.
+NOTHING_ACTS = """nothing in it has a mass and nothing acts; write a body, a load or a spring into it, as in
+  [forces]
+  gravity = [0, 0, -9.80665]
+
+  [[body]]
+  link = 2
+  mass = 1.3
+  solid = "rod\""""
 
 #: Digits of forces, torques and what follows from them.
 DIGITS = 4
@@ -80,8 +90,8 @@ def bodies_texts(loading: Loading, resolved: Mapping[int, Body]) -> list[tuple[s
     return found
 
 
-def load_text(load: Load, place: Places) -> str:
-    """A load in words."""
+def load_text(load: Load, shown: Callable[[float], str]) -> str:
+    """A load in words; `shown` writes a value of the input."""
     axes = "" if load.axes == "ground" else ", turning with the link"
     parts = []
     if any(load.force):
@@ -90,12 +100,10 @@ def load_text(load: Load, place: Places) -> str:
         parts.append(f"torque {triple_text(load.torque)} N m")
     when = ""
     if load.between is not None:
-        when = f", from {place.plain(load.between[0])} to {place.plain(load.between[1])} of the input"
+        when = f", from {shown(load.between[0])} to {shown(load.between[1])} of the input"
     elif load.table is not None:
         inputs = load.table[0]
-        when = (
-            f", by a table of {len(inputs)} rows from {place.plain(inputs[0])} to {place.plain(inputs[-1])}"
-        )
+        when = f", by a table of {len(inputs)} rows from {shown(inputs[0])} to {shown(inputs[-1])}"
     name = f"{load.name}: " if load.name else ""
     return f"{name}{' and '.join(parts)} on link {load.link}{axes}{when}"
 
@@ -140,7 +148,7 @@ def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]
     """What acts, a line each; `sliding` are the joints that slide."""
     loading, place = forces.loading, Places(forces)
     lines = bodies_texts(loading, forces.bodies)
-    lines += [(f"load {i}", load_text(load, place)) for i, load in enumerate(loading.loads, 1)]
+    lines += [(f"load {i}", load_text(load, place.plain)) for i, load in enumerate(loading.loads, 1)]
     for i, spring in enumerate(loading.springs, 1):
         text = spring_text(spring, forces.length_unit, slides=spring.joint in sliding)
         lines.append((f"spring {i}", text))

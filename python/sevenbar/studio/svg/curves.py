@@ -116,7 +116,7 @@ def panels(
         ]
         own_span = curves[circuit].span(quantity.kind)
         if own_span is None or reach is None:
-            made.append(_empty(frame, quantity, f"no value along circuit {circuit}"))
+            made.append(_empty(frame, quantity, quantity.absence(views[circuit])))
         else:
             made.append(_panel(frame, quantity, curves, circuit, reach, own_span, over))
     return tuple(made)
@@ -213,13 +213,13 @@ def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) 
     if quantity.order and span > least:
         # at least a third of the height is left to the chosen circuit
         low, high = max(low, own[0] - span), min(high, own[1] + span)
-    if quantity.point is not None:
+    if quantity.is_size:
         low = 0.0
     if high - low <= least:
         half = 0.1 * max(abs(low + high) / 2, least / FLAT) or 1.0
         return (low + high) / 2 - half, (low + high) / 2 + half
     room = 0.07 * (high - low)
-    return low - (0.2 * room if quantity.point is not None else room), high + room
+    return low - (0.2 * room if quantity.is_size else room), high + room
 
 
 def _keys(quantity: Quantity, own: ShownCurve) -> list[tuple[str, str]]:
