@@ -11,6 +11,7 @@ Source: docs/theory_free_motion.md, (51).
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -62,8 +63,12 @@ def driven(
     """The motion from a place with s' = `speed` for a time [s]."""
     from scipy.integrate import solve_ivp
 
-    quantities, slopes = course.quantities, course.quantities.slope
-    edges, length = quantities.edges, course.length
+    quantities, length = course.quantities, course.length
+    edges = quantities.edges
+    bounds_of, last = edges.tolist(), len(edges) - 2
+    by_place = np.pad(quantities.slope.series[:, :, :1], ((0, 0), (0, 1), (0, 0)))
+    tables = list(np.ascontiguousarray(np.moveaxis(np.concatenate([quantities.series, by_place], axis=2), 1, 2)))
+    numbers = np.arange(quantities.series.shape[1])
     scale = max(abs(speed), math.sqrt(2 * float(np.ptp(course.at(course.marks(0.0))[2])) / float(
         np.median(quantities.at((edges[:-1] + edges[1:]) / 2)[:, 0]))), 1e-6)  # fmt: skip
     breaks = course.breaks
@@ -77,10 +82,13 @@ def driven(
             s, v = float(y[0]), float(y[1])
             inside = min(max(s, low + PUSH * length), high - PUSH * length)
             lap = math.floor(inside / length) if course.closed else 0
-            here = np.array([inside - lap * length])
-            piece = np.clip(np.searchsorted(edges, here, "right") - 1, 0, len(edges) - 2)
-            mass, slope, loss, by_s, winding = quantities.on(piece, here)[0]
-            by_mass = slopes.on(piece, here)[0, 0]
+            here = inside - lap * length
+            # one place at a time: in plain numbers and one product
+            piece = min(max(bisect_right(bounds_of, here) - 1, 0), last)
+            start, end = bounds_of[piece], bounds_of[piece + 1]
+            x = min(max((2 * here - start - end) / (end - start), -1.0), 1.0)
+            own = tables[piece] @ np.cos(numbers * math.acos(x))
+            mass, slope, loss, by_s, winding, by_mass = own.tolist()
             force = -(slope + lap * winding) - loss * v - by_mass * v * v / 2
             if motor is not None:
                 force += motor(t, by_s * v) * by_s
