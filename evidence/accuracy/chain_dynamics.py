@@ -73,7 +73,10 @@ class HingedChain:
             inertia = turn @ self.inertias[i] @ turn.T
             angular = np.array([walk[k][3] if k <= i else np.zeros(3) for k in range(count)]).T
             linear = np.array(
-                [np.cross(walk[k][3], place + c - walk[k][1]) if k <= i else np.zeros(3) for k in range(count)]
+                [
+                    np.cross(walk[k][3], place + c - walk[k][1]) if k <= i else np.zeros(3)
+                    for k in range(count)
+                ]
             ).T
             own = bias + np.cross(bias_turn, c) + np.cross(spin, np.cross(spin, c))
             mass += self.masses[i] * linear.T @ linear + angular.T @ inertia @ angular

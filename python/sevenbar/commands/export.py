@@ -19,7 +19,6 @@ from sevenbar.errors import RequestError
 from sevenbar.reporting.folder import check_targets
 
 if TYPE_CHECKING:
-    import sevenbar as sb
     from sevenbar.export import Bodies, Table
     from sevenbar.kinematics.linkage import Linkage
 

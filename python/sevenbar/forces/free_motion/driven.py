@@ -67,7 +67,9 @@ def driven(
     edges = quantities.edges
     bounds_of, last = edges.tolist(), len(edges) - 2
     by_place = np.pad(quantities.slope.series[:, :, :1], ((0, 0), (0, 1), (0, 0)))
-    tables = list(np.ascontiguousarray(np.moveaxis(np.concatenate([quantities.series, by_place], axis=2), 1, 2)))
+    tables = list(
+        np.ascontiguousarray(np.moveaxis(np.concatenate([quantities.series, by_place], axis=2), 1, 2))
+    )
     numbers = np.arange(quantities.series.shape[1])
     scale = max(abs(speed), math.sqrt(2 * float(np.ptp(course.at(course.marks(0.0))[2])) / float(
         np.median(quantities.at((edges[:-1] + edges[1:]) / 2)[:, 0]))), 1e-6)  # fmt: skip
