@@ -262,6 +262,10 @@ def test_forces_are_seen_switched_and_told_on_the_page(studio: Any, pages: Any) 
     sizing = desk.linkage.motion(360).circuits[0].forces().sizing()
     peak = f"peak {sizing.peak_torque.value:.4g} N m @ {math.degrees(sizing.peak_torque.input):.3f}°"
     desk.until(lambda: desk.verdict().get("input torque"), peak)
+    # all tabs stand side by side in the narrowest panel
+    names = ("Shape", "Show", "Points", "Forces", "Files")
+    tabs = [page.get_by_role("tab", name=name, exact=True) for name in names]
+    assert len({tab.bounding_box()["y"] for tab in tabs}) == 1
     before = settled(page)
     choose(page, "force arrows", "all joints")
     desk.wait(SHOWN)
@@ -279,3 +283,4 @@ def test_forces_are_seen_switched_and_told_on_the_page(studio: Any, pages: Any) 
     desk.says(re.compile(r"\[\[body\]\]"))
     assert shown(page, "force arrows") == "none"
     assert shown(page, "curve 1").startswith("output")
+    assert not pink(settled(page)).sum() > 20

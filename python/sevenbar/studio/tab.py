@@ -30,7 +30,7 @@ STYLE = (
     " .mantine-Slider-root { margin-bottom: 0.55em }"
     # five tabs in the narrowest panel: there they have no icons
     " [role=tab] { padding-inline: 0.45em !important }"
-    " @media (max-width: 1340px) { [role=tab] svg { display: none } }</style>"
+    " @media (max-width: 1340px) { [role=tab] :has(> svg) { display: none } }</style>"
 )
 
 FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the terminal"

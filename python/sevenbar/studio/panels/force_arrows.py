@@ -25,8 +25,8 @@ LONGEST = 0.25
 NO_ARROWS, EVERY_JOINT = "none", "all joints"
 
 _HINT = (
-    "What the link before a joint puts on the link after it, the ground after the last: the part of it "
-    "that equilibrium determines. The peak of the cycle is the longest arrow."
+    "What the link before a joint puts on the link after it, the ground after the last: "
+    "the part of the force that equilibrium determines. The peak of the cycle is the longest arrow."
 )
 
 
