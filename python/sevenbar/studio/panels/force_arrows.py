@@ -19,6 +19,9 @@ from sevenbar.studio.state.acting import Acting, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 
+#: The longest arrow, as a share of the linkage's extent.
+LONGEST = 0.25
+
 NO_ARROWS, EVERY_JOINT = "none", "all joints"
 
 _HINT = (
@@ -86,7 +89,9 @@ class ForceArrows:
         ]
         if self._along:
             sizes = np.linalg.norm(np.concatenate([force for _, force in self._along]), axis=1)
-            self._unit = arrow_unit(view, sizes, 95 if view.circuit.turns_back else 100)
+            self._unit = arrow_unit(
+                view, sizes, percent=95 if view.circuit.turns_back else 100, longest=LONGEST
+            )
 
     def _at(self, view: View, row: float) -> list[Arrow]:
         places = view.frame.pose(row)
