@@ -119,6 +119,9 @@ class PathBuilder:
         rows = rows[np.isfinite(rows).all(axis=1)]
         if len(rows) < 4:
             raise RequestError("circuit: it has no rows to follow; ask a motion with more samples")
+        # turns of a ball that holds a spin come from arctangents
+        spun = [c for joint in numbers.spun for c in numbers.word.freedoms[joint][0].columns]
+        rows[:, spun] = np.unwrap(rows[:, spun], axis=0)
         gain = np.zeros(rows.shape[1])
         if circuit.closed:
             turns = np.round((rows[-1] - rows[0]) / math.tau)

@@ -7,6 +7,7 @@ Source: docs/theory_free_motion.md, (52).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -73,6 +74,15 @@ class CourseRows:
         return Along(path.poses.edges, series)
 
     @cached_property
+    def gain(self) -> Floats:
+        """What a closed circuit adds to the columns (columns,)."""
+        gain = self.builder.path.gain.copy()
+        balls = np.flatnonzero(self.builder.numbers.is_ball)
+        ends = self.columns.series[-1].sum(axis=0) - self.columns.at(np.zeros(1))[0]
+        gain[balls] = math.tau * np.round(ends[balls] / math.tau)
+        return gain
+
+    @cached_property
     def _undefined(self) -> Floats:
         """Whether a ball's turns are undefined on a piece (m, columns)."""
         last = np.abs(self.columns.series[:, -2:]).max(axis=1)
@@ -87,7 +97,7 @@ class CourseRows:
         inside = place - laps * path.length
         known = np.isfinite(inside)
         inside = np.where(known, inside, 0.0)
-        q = self.columns.at(inside) + laps[:, None] * path.gain
+        q = self.columns.at(inside) + laps[:, None] * self.gain
         found = _by_time([q, *self._slopes(inside)], rates)
         piece = np.clip(np.searchsorted(path.poses.edges, inside, "right") - 1, 0, len(self._undefined) - 1)
         for values in found:

@@ -24,7 +24,7 @@ from sevenbar.forces.free_motion.runs import Run, run_between
 JUST = 1e-13
 
 #: How near [parts of the lap] to such a top the exponential law takes over.
-NEAR_TOP = 1e-7
+NEAR_TOP = 1e-6
 
 #: A slope of U below this part of its greatest is that of an equilibrium.
 BALANCED = 1e-13
@@ -108,9 +108,8 @@ def conservative(course: EnergyCourse, place: float, speed: float, duration: flo
     mass, slope = (float(part[0]) for part in course.at(np.array([place]))[:2])
     kinetic = mass * speed**2 / 2
     reference = (place, kinetic)
-    steepest = float(np.abs(course.quantities.reach[1]))
     if speed == 0.0:
-        if abs(slope) <= BALANCED * steepest:
+        if abs(slope) <= BALANCED * course.steepest:
             return Conservative("rest", (), None, (), rests_at=place)
         way = -1 if slope > 0 else 1
     else:
@@ -168,6 +167,8 @@ def _to_the_top(
     turned: float | None = None,
 ) -> Conservative:
     off = NEAR_TOP * course.length
+    # seen from the top, little energy loses no digits
+    reference = (top, 0.0)
     near = top - way * off
     begin = before[-1].end if before else 0.0
     legs = before
@@ -273,7 +274,7 @@ class _Seeker:
         kinetic = self.kinetic(ordered)
         scale = max(float(np.abs(kinetic).max()), self.reference[1])
         slopes = np.abs(course.slope(ordered))
-        flat = slopes <= 1e-9 * float(course.quantities.reach[1])
+        flat = slopes <= 1e-9 * course.steepest
         for i, (height, level) in enumerate(zip(kinetic, flat, strict=True)):
             if level and abs(height) <= JUST * scale:
                 return float(ordered[i]), "top"

@@ -20,7 +20,7 @@ from numpy.polynomial import chebyshev
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.stationary import coefficients, nodes
-from sevenbar.forces.free_motion.course import EnergyCourse
+from sevenbar.forces.free_motion.course import SHORT, EnergyCourse
 
 #: Nodes of a panel.
 TERMS = 20
@@ -30,6 +30,9 @@ RESOLVED = 1e-14
 
 #: What rounding of a place leaves, in parts of it by the length of a piece.
 ROUNDING = 4e-15
+
+#: What rounding leaves of energies and slopes, as a part of their greatest.
+DIGITS = 2e-15
 
 #: Most halvings of a panel: past an equilibrium that is just not reached the integrand is as sharp as rounding.
 HALVINGS = 50
@@ -149,10 +152,10 @@ def run_between(
     resolved = max(RESOLVED, ROUNDING * max(abs(low), abs(high)) / course.shortest)
     for halving in range(HALVINGS + 1):
         w = (first + last)[:, None] / 2 + (last - first)[:, None] / 2 * nodes(TERMS)
-        rates = _rates(course, kind, starts, ends, w, reference)
+        rates, noise = _rates(course, kind, starts, ends, w, reference)
         series = coefficients(rates.T).T
         worst = np.abs(series[:, -2:]).max(axis=1) / np.abs(series[:, 0])
-        rough = worst > resolved if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
+        rough = worst > np.maximum(resolved, noise) if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
         # no finer than places are known
         rough &= (last - first) * (ends - starts) > 1e-14 * course.length
         tail = max(tail, float(worst[~rough].max(initial=0.0)))
@@ -177,26 +180,38 @@ def _rates(
     ends: Floats,
     w: Floats,
     reference: tuple[float, float],
-) -> Floats:
-    """dt/dw (m, terms) on panels (m,) at w (m, terms)."""
+) -> tuple[Floats, Floats]:
+    """dt/dw (m, terms) on panels (m,) at w (m, terms), and what part of it rounding may be (m,)."""
     place, by_w = _place(kind[:, None], starts[:, None], ends[:, None], w)
     mass = course.at(place.ravel())[0].reshape(w.shape)
     kinetic = np.empty(w.shape)
     plain = kind == PLAIN
     origin, there = reference
+    noise = np.empty(w.shape)
     kinetic[plain] = there - course.rise(origin, place[plain].ravel()).reshape(-1, w.shape[1])
+    away = np.abs(place[plain] - origin)
+    near = away < SHORT * course.shortest
+    noise[plain] = DIGITS * (np.where(near, course.steepest * away, course.highest) + there)
     for own, edge, sign in ((kind == LOW, starts, -1.0), (kind == HIGH, ends, 1.0)):
         if own.any():
             at = np.repeat(edge[own], w.shape[1])
             mean = course.mean_slope(place[own].ravel(), at).reshape(-1, w.shape[1])
             kinetic[own] = sign * mean
+            noise[own] = DIGITS * course.steepest
     way = (ends - starts)[:, None]
     kinetic = np.maximum(kinetic, np.finfo(float).tiny)
     mass = np.maximum(mass, 0.0)
     # at a turning point the square root of the way cancels
+<<<<<<< HEAD
     return np.where(
         plain[:, None], by_w * np.sqrt(mass / (2 * kinetic)), 2 * np.sqrt(way * mass / (2 * kinetic))
     )
+=======
+    rates = np.where(
+        plain[:, None], by_w * np.sqrt(mass / (2 * kinetic)), 2 * np.sqrt(way * mass / (2 * kinetic))
+    )
+    return rates, (noise / kinetic).max(axis=1)
+>>>>>>> freemotion
 
 
 def _inner_marks(course: EnergyCourse, low: float, high: float) -> Floats:
