@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -34,7 +35,7 @@ ROUNDING = 4e-15
 #: What rounding leaves of energies and slopes, as a part of their greatest.
 DIGITS = 2e-15
 
-#: Most halvings of a panel: past an equilibrium that is just not reached the integrand is as sharp as rounding.
+#: Most halvings of a panel: where an equilibrium is just passed the integrand is as sharp as rounding.
 HALVINGS = 50
 
 #: Steps of Newton's method, or halvings, from times to places.
@@ -48,8 +49,8 @@ LOW, PLAIN, HIGH = -1, 0, 1
 class Run:
     """A motion from `low` up to `high`, or back; its panels in order, and times from `low` on.
 
-    `kind`, `starts`, `ends`, `first`, `last` (m,): what a panel does, its places, and the part of it from w to
-    w that is this piece; `times` (m + 1,) [s]; `series` (m, terms) of dt/dw, in Chebyshev's polynomials.
+    `kind`, `starts`, `ends`, `first`, `last` (m,): what a panel does, its places, and from which w to
+    which w this piece of it goes; `times` (m + 1,) [s]; `series` (m, terms) of dt/dw.
     """
 
     low: float
@@ -138,7 +139,7 @@ def run_between(
     edges = np.concatenate([[low_end], inner, [high_end]])
     keep = np.append(np.diff(edges) > 1e-13 * course.length, True)
     edges = edges[keep]
-    panels = [(PLAIN, a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    panels = [(PLAIN, a, b) for a, b in pairwise(edges)]
     if turns_low:
         panels.insert(0, (LOW, low, low_end))
     if turns_high:
@@ -202,16 +203,10 @@ def _rates(
     kinetic = np.maximum(kinetic, np.finfo(float).tiny)
     mass = np.maximum(mass, 0.0)
     # at a turning point the square root of the way cancels
-<<<<<<< HEAD
-    return np.where(
-        plain[:, None], by_w * np.sqrt(mass / (2 * kinetic)), 2 * np.sqrt(way * mass / (2 * kinetic))
-    )
-=======
     rates = np.where(
         plain[:, None], by_w * np.sqrt(mass / (2 * kinetic)), 2 * np.sqrt(way * mass / (2 * kinetic))
     )
     return rates, (noise / kinetic).max(axis=1)
->>>>>>> freemotion
 
 
 def _inner_marks(course: EnergyCourse, low: float, high: float) -> Floats:
