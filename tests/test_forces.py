@@ -150,3 +150,17 @@ def test_a_row_whose_balls_have_no_turns_has_its_forces() -> None:
     found, whole = replace(circuit, q=q, status=status).forces(), circuit.forces()
     assert abs(found.torque[5] - whole.torque[5]) < 1e-12 * np.abs(whole.torque).max()
     assert np.abs(found.reactions["ball_b"].force[5] - whole.reactions["ball_b"].force[5]).max() < 1e-9
+
+
+def test_a_coupler_that_comes_near_the_axis_of_the_crank_has_the_same_forces_by_both_ways() -> None:
+    """There the general way, which gives what lies between rows, holds the spin by another axis."""
+    rng = np.random.default_rng(3)
+    linkage = sb.rssr(M=150, N=250, L1=185, L2=500, L3=390, D=-475, speed="60 rpm")
+    linkage = linkage.loaded(bodies={link: random_body(rng, 500.0) for link in (1, 2, 3)})
+    circuit = linkage.motion().circuits[0]
+    again = linkage.circuit(circuit.q[0])
+    spin = circuit.columns.index("ball_a.3")
+    assert np.ptp(circuit.q[:, spin]) < 1e-9 < 1 < np.ptp(again.q[:, spin])
+    own = circuit.forces()
+    assert np.abs(again.forces().torque - own.torque).max() < 1e-10 * np.abs(own.torque).max()
+    assert own.sizing().tail < 1e-10
