@@ -526,8 +526,8 @@ class Circuit(Printed):
         Raises `RequestError` where nothing has a mass, and for a start that the circuit does not have.
 
             >>> import sevenbar as sb
-            >>> linkage = sb.four_bar(crank=50, coupler=130, rocker=80, ground=100)
-            >>> crank = sb.Body(mass=2.0, centre=(25, 0, 0))
+            >>> linkage = sb.four_bar(crank=40, coupler=100, rocker=80, ground=90)
+            >>> crank = sb.Body(mass=2.0, centre=(0, 20, 0))
             >>> circuit = linkage.motion().circuits[0]
             >>> fall = circuit.free_motion("10s", start="30deg", bodies={1: crank}, gravity=(0, -9.81, 0))
             >>> fall.kind
