@@ -32,6 +32,16 @@ COMMANDS = {
     "constraint create joint hooke": "!joint_name !i_marker_name !j_marker_name",
     "constraint create joint screw": "!joint_name !i_marker_name !j_marker_name !pitch",
     "constraint create motion_generator": "!motion_name !type_of_freedom !joint_name !function",
+    "force create body gravitational": (
+        "!gravity_field_name !x_component_gravity !y_component_gravity !z_component_gravity"
+    ),
+    "force create element_like translational_spring_damper": (
+        "!spring_damper_name !i_marker_name !j_marker_name !stiffness !damping preload !displacement_at_preload"
+    ),
+    "force create direct general_force": (
+        "!general_force_name !i_marker_name !j_part_name !ref_marker_name !x_force_function !y_force_function "
+        "!z_force_function !x_torque_function !y_torque_function !z_torque_function"
+    ),
     "measure create function": "!measure_name !function units create_measure_display",
     "simulation single_run transient": "type initial_static !end_time !number_of_steps !model_name",
 }
@@ -49,6 +59,9 @@ class Model:
     joints: dict = field(default_factory=dict)
     motions: list = field(default_factory=list)
     measures: dict = field(default_factory=dict)
+    gravity: list = field(default_factory=list)
+    springs: dict = field(default_factory=dict)
+    forces: dict = field(default_factory=dict)
     run: dict = field(default_factory=dict)
 
 
@@ -90,6 +103,18 @@ def read(text):
             for marker in re.findall(r"\.[\w.]+", values["function"]):
                 assert marker in model.markers
             _new(model.measures, values["measure_name"], values["function"])
+        elif keywords == "force create body gravitational":
+            assert not model.gravity
+            model.gravity = [float(values[f"{axis}_component_gravity"]) for axis in "xyz"]
+        elif keywords == "force create element_like translational_spring_damper":
+            assert {values["i_marker_name"], values["j_marker_name"]} <= set(model.markers)
+            _new(model.springs, values["spring_damper_name"], values)
+        elif keywords == "force create direct general_force":
+            functions = [values[f"{a}_{what}_function"] for what in ("force", "torque") for a in "xyz"]
+            named = re.findall(r"\.[A-Za-z][\w.]+", " ".join(functions))
+            assert {values["i_marker_name"], values["ref_marker_name"], *named} <= set(model.markers)
+            assert values["j_part_name"] in model.parts
+            _new(model.forces, values["general_force_name"], values | {"functions": functions})
         elif keywords == "simulation single_run transient":
             model.run = values
     return model

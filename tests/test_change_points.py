@@ -284,9 +284,12 @@ def test_a_sarrus_linkage_of_equal_links_passes_the_poses_in_which_it_folds(long
     assert "there it can also move with 2 freedoms" in sb.report.markdown(motion)
 
 
-@pytest.mark.parametrize("error", [0.0, 1e-11, -1e-11, 1.7e-9, -1e-7, 1e-6])
+@pytest.mark.parametrize("error", [0.0, 1e-11, -1e-11, 1.7e-9, -1e-7, 1e-6, 1e-5, -3e-5])
 def test_six_axes_at_right_angles_or_nearly_so(error: float) -> None:
-    """Three motions meet in one pose, one of them with the input at rest, or all but."""
+    """Three motions meet in one pose, one of them with the input at rest, or all but.
+
+    The farther the axes lean the more redundant constraints miss each other by along one of them, from nothing where it begins.
+    """
     twists = [-pi / 2, pi / 2 - error, 0] * 2
     motion = is_whole(sb.from_dh("R" * 6, length=[0.5, 1, 0.5] * 2, twist=twists, offset=[-1, 0, 0] * 2))
     assert len(motion.circuits) == (2 if error else 3)
@@ -302,9 +305,45 @@ def test_what_moves_but_for_rounding_is_told_to_move_by_mobility_too() -> None:
     rows = [(0, 0, 2), (2, 0, 1), (0, 89.9999999, -1), (1, 89.9999999, 0)] * 2
     lengths, twists, offsets = zip(*rows, strict=True)
     loop = sb.from_dh("R" * 8, length=lengths, twist=[radians(twist) for twist in twists], offset=offsets)
-    motion = loop.motion(SAMPLES)
-    assert len(motion.circuits) == 1
+    motion = is_whole(loop)
+    assert len(motion.circuits) == 2
+    assert motion.search.unfollowed == 0
     assert motion.mobility.finite == loop.mobility().finite == 1
+
+
+@pytest.mark.parametrize("error", [0.0, 1e-9, -1e-9, 1e-8])
+def test_a_motion_leads_over_poses_where_redundant_constraints_miss_each_other(error: float) -> None:
+    """A folded loop with two idle turns, twists off by so many degrees: two pairs of its joints turn against each other, through
+    poses of rank four in which two constraints are redundant and no longer meet."""
+    rows = [(-1, -90, 0), (0, 0, 0), (0.5, 90, 0), (-1, error, 1)] * 2
+    lengths, twists, offsets = zip(*rows, strict=True)
+    loop = sb.from_dh("R" * 8, length=lengths, twist=[radians(twist) for twist in twists], offset=offsets)
+    motion = is_whole(loop)
+    assert motion.search.unfollowed == 0
+    assert [circuit.turns for circuit in motion] == [1, 1, 1]
+    passed = [point.input for point in motion.change_points if point.ways == 2]
+    np.testing.assert_allclose(np.sort(passed), [-2 * pi / 3, 2 * pi / 3], atol=1e-6)
+
+
+def test_a_walk_into_a_change_point_from_afar_is_not_told_beside_the_whole_motion() -> None:
+    """Two slides run to infinity on both sides of a pose in which three motions meet; at right angles but for 1.7e-9."""
+    row = [("R", 1, 90, 0.5, 0), ("R", 2, 90, 1, 0), ("P", 10, 89.9999999, 0, -90)] * 2
+    kinds, length, twist, offset, angle = zip(*row, strict=True)
+    loop = sb.from_dh(
+        "".join(kinds),
+        length=length,
+        twist=[radians(t) for t in twist],
+        offset=offset,
+        angle=[radians(a) for a in angle],
+    )
+    for drive, count in (("theta_1", 1), ("theta_2", 1), ("theta_3", 3)):
+        motion = loop.motion(24, input=drive)
+        assert len(motion.circuits) == count
+        (point,) = motion.change_points
+        assert (point.circuits, point.ways) == (tuple(range(count)), 6)
+        for circuit in motion:
+            low, high = circuit.input_range or (-np.inf, np.inf)
+            assert low < point.input < high
 
 
 def planar_with_balls(*places: tuple[float, float]) -> sb.Linkage:

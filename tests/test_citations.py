@@ -58,6 +58,7 @@ def test_the_pages_of_theory_are_numbered():
         "rssr",
         "theory",
         "theory_design",
+        "theory_forces",
         "theory_free_motion",
         "theory_many",
         "theory_measures",

@@ -217,7 +217,7 @@ def test_ctrl_c_before_the_first_file_leaves_nothing(tmp_path):
 
 
 def test_ctrl_c_in_a_computation_is_no_fault():
-    stop = "import sevenbar as sb\ndef stop(*_):\n    raise KeyboardInterrupt\nsb.load = stop"
+    stop = "import sevenbar as sb\ndef stop(*_, **__):\n    raise KeyboardInterrupt\nsb.load = stop"
     run = sevenbar("analyze", "rssr", before=stop)
     assert (run.returncode, run.stdout) == (130, "")
     assert run.stderr == "sevenbar: stopped; nothing is written\n"

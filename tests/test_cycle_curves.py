@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sevenbar.curves.curve import greatest, mean
 from sevenbar.curves.cycle_series import ENOUGH, CycleSeries, cycle_series
-from sevenbar.curves.pieces import pieces
+from sevenbar.curves.pieces import Pieces, pieces
 from sevenbar.curves.stationary import highest_between, zeros_between
 from sevenbar.curves.timed_rows import TimedRows, shares_of
 
@@ -98,6 +98,28 @@ def test_a_constant_has_its_first_row_for_highest_and_lowest():
         series = CycleSeries(rows, 0.5, math.tau)
         assert series.highest().value == series.lowest().value == rows[0]
         assert series.highest().input == 0.5
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-16])
+@pytest.mark.parametrize("value", [0.0, 0.1, -0.3, 1e-17])
+def test_constant_pieces_have_their_value_as_highest_and_lowest(value, noise):
+    rng = np.random.default_rng(2)
+
+    def evaluate(x):
+        return value + noise * rng.normal(size=len(x))
+
+    curve = pieces(evaluate, np.full(8, value), 0.0, math.tau, (1.0, 2.0))
+    assert [curve.highest().value, curve.lowest().value] == pytest.approx([value] * 2, abs=1e-14)
+
+
+def test_a_piece_that_is_highest_at_its_end_is_not_lost_by_rounding():
+    # with positive terms the value there is their sum, which two ways of adding give differently
+    rng = np.random.default_rng(4)
+    ends = np.array([0.0]), np.array([1.0])
+    for _ in range(50):
+        terms = rng.uniform(size=(1, 16))
+        top = Pieces(np.zeros(4), *ends, terms, breaks=ends[0]).highest()
+        assert (top.value, top.input) == pytest.approx((terms.sum(), 1.0))
 
 
 def test_the_peak_of_a_sine_of_three_rows_is_right_and_of_two_is_not_claimed():

@@ -17,6 +17,7 @@ from sevenbar.design.maps.window import axes_of, split_ranges
 from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.sweep.axes import axis_from_text, axis_of
 from sevenbar.text.amounts import value_of
+from sevenbar.text.quantities import quantity_of
 from sevenbar.text.ranges import split_name
 from sevenbar.text.units import turning_speed
 
@@ -84,6 +85,11 @@ READERS: dict[str, Callable[[str], str]] = {
     "box": boxed,
     "formula of a length": lambda text: f"{value_of(text, 'length'):g} mm",
     "formula of an angle": lambda text: f"{value_of(text, 'angle'):g} deg",
+    "mass in a file": lambda text: f"{quantity_of(text, 'mass'):g} kg",
+    "inertia in a file": lambda text: f"{quantity_of(text, 'inertia'):g} kg mm^2",
+    "torque in a file": lambda text: f"{quantity_of(text, 'torque'):g} N m",
+    "stiffness in a file": lambda text: f"{quantity_of(text, 'stiffness'):g} N/mm",
+    "stiffness in a joint": lambda text: f"{quantity_of(text, 'turning stiffness'):g} N m/rad",
     "count": lambda text: f"{count_of('--samples')(text)}",
 }
 
@@ -93,6 +99,7 @@ REFUSING: dict[str, Callable[[str], object]] = {
     "--at": lambda text: point_of(None, 4, text),
     "--box": lambda text: parsed_box(text, "mm"),
     "L1": lambda text: value_of(text, "length"),
+    "mass": lambda text: quantity_of(text, "mass"),
     "--samples": count_of("--samples"),
     "--swing": lambda text: angle("--swing", text),
 }

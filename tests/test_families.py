@@ -1,6 +1,7 @@
 """Linkages of the textbooks: the gallery's files come out of their free dimensions, and the families' laws hold."""
 
 import math
+import re
 
 import mpmath
 import numpy as np
@@ -17,7 +18,6 @@ OF_THE_GALLERY = {
     "bricard_line": lambda: sb.bricard_line((30, 80, 70), ("30 deg", "100 deg", "80 deg"), (10, -20, 35)),
     "bricard_plane": lambda: sb.bricard_plane((30, 80, 75), ("40 deg", "70 deg", "50 deg"), (10, -15)),
     "bricard_trihedral": lambda: sb.bricard_trihedral((50, 55, 70, 60, 75)),
-    "planar_4r": lambda: sb.four_bar(40, 100, 80, 90),
     "spherical_4r": lambda: sb.spherical_four_bar("30 deg", "80 deg", "70 deg", "85 deg"),
     "universal_joint": lambda: sb.universal_joint("acos(4/5)"),
     "five_bar": lambda: sb.clemens("2*atan(5/12)", 65, 72),
@@ -137,3 +137,91 @@ def test_each_mistake_has_its_message(make, message):
     with pytest.raises(RequestError) as refused:
         make()
     assert str(refused.value).startswith(message)
+
+
+FOUR_BARS = [
+    (40, 100, 80, 90),
+    (60, 30, 50, 40),
+    (90, 80, 70, 40),
+    (3, 1.5, 2, 2.5),
+    (40, 90, 40, 90),
+    (50, 50, 50, 50),
+]
+
+
+@pytest.mark.parametrize("lengths", FOUR_BARS)
+def test_the_planar_four_bar_is_freudenstein_s_in_the_xy_plane_with_angles_from_the_ground_line(lengths):
+    """d/a cos(psi) - d/c cos(theta) + (a^2 - b^2 + c^2 + d^2) / (2 a c) = cos(theta - psi), a crank to d ground."""
+    a, b, c, d = lengths
+    linkage = sb.four_bar(*lengths)
+    np.testing.assert_array_equal([linkage.plane.x, linkage.plane.y, linkage.plane.normal], np.eye(3))
+    circuits = linkage.motion(36).circuits
+    assert circuits
+    for circuit in circuits:
+        good = np.isfinite(circuit.q).all(axis=1)
+        theta, psi = circuit.q[good, 0], circuit.q[good, 3]
+        constant = (a * a - b * b + c * c + d * d) / (2 * a * c)
+        left = d / a * np.cos(psi) - d / c * np.cos(theta) + constant - np.cos(theta - psi)
+        assert np.abs(left).max() < 1e-12
+        nothing = np.zeros(len(theta))
+        pins = {
+            (1, (0, 0, 0)): (nothing, nothing),
+            (1, (0, a, 0)): (a * np.cos(theta), a * np.sin(theta)),
+            (2, (0, b, 0)): (d + c * np.cos(psi), d + c * np.sin(psi) - d),
+            (3, (0, c, 0)): (nothing + d, nothing),
+            (4, (0, d, 0)): (nothing, nothing),
+        }
+        for (link, at), place in pins.items():
+            found = circuit.point(link, at).position[good]
+            np.testing.assert_allclose(found, np.stack([*place, nothing], axis=1), atol=1e-11 * sum(lengths))
+        # w is to the left of v, seen against z
+        tip, side = (circuit.point(1, (0, 1, w)).position[good] for w in (0, 1))
+        np.testing.assert_allclose(
+            side - tip, np.stack([-np.sin(theta), np.cos(theta), nothing], axis=1), atol=1e-12
+        )
+
+
+def test_the_planar_layout_is_the_linkage_of_the_rows_with_other_zeros():
+    ours, rows = sb.four_bar(40, 100, 80, 90), sb.load("planar_4r")
+    assert ours.dimensions == rows.dimensions
+    one, other = ours.motion(36).circuits[0], rows.motion(36).circuits
+    twin = min(other, key=lambda c: np.abs(np.sin((c.q[0, 0] - math.pi) - one.q[0, 0])).max())
+    turned = np.argsort(np.mod(twin.q[:, 0] - math.pi, math.tau))
+    like = [c for c in other if np.abs(np.cos(c.q[turned, 3]) - np.cos(one.q[:, 3])).max() < 1e-12]
+    assert like
+    assert np.abs(np.sin(like[0].q[turned, 3] + one.q[:, 3])).max() < 1e-12
+    assert one.transmission.lowest == pytest.approx(twin.transmission.lowest, abs=1e-12)
+    assert one.motion_type == "crank-rocker"
+
+
+def test_the_planar_layout_is_kept_in_files_tables_and_changed_numbers(tmp_path):
+    from sevenbar.description.draft import Draft
+    from sevenbar.export.workbook import linkage_table
+
+    linkage = sb.four_bar(40, 100, 80, 90)
+    draft = Draft.of_linkage(linkage)
+    for again in (draft.linkage, sb.loads(draft.toml()), draft.with_values({"length_1": 41.0}).linkage):
+        assert again.form == "planar"
+        np.testing.assert_array_equal(again.plane.y, [0, 1, 0])
+    head, rows = linkage_table(linkage)
+    lines = [",".join("" if cell is None else str(cell) for cell in line) for line in (head, *rows)]
+    (tmp_path / "bar.csv").write_text("\n".join(lines), encoding="utf-8")
+    table = sb.load(tmp_path / "bar.csv")
+    np.testing.assert_array_equal(table.motion(24).circuits[0].q, linkage.motion(24).circuits[0].q)
+
+
+@pytest.mark.parametrize(
+    ("rows", "place"),
+    [
+        (
+            "length = 1\ntwist = 10\n[[link]]\nlength = 1\n[[link]]\nlength = 1\n[[link]]\nlength = 1",
+            "link[1].twist",
+        ),
+        ('joint = "P"\n[[link]]\nlength = 1\n[[link]]\nlength = 1\n[[link]]\nlength = 1', "link[1].joint"),
+    ],
+)
+def test_rows_that_do_not_fit_the_planar_layout_are_refused(rows, place):
+    with pytest.raises(
+        sb.errors.DescriptionError, match=re.escape(place) + ': does not fit layout = "planar"'
+    ):
+        sb.loads(f'format = 1\nlayout = "planar"\n[[link]]\n{rows}\n')

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -115,14 +117,14 @@ def test_flags_say_what_equilibrium_determines(name: str, counts: set[int]) -> N
 def test_a_spatial_rod_needs_nothing_to_hold_its_spin() -> None:
     circuit = sb.load("rssr").motion(36).circuits[0]
     rod = circuit.forces(bodies={2: sb.Body(1.3, solid="rod")}, gravity=(0.0, 0.0, -9.81))
-    assert np.abs(rod.spin["link 2"]).max() < 1e-12 * np.abs(rod.torque).max()
+    assert np.abs(rod.spin["coupler"]).max() < 1e-12 * np.abs(rod.torque).max()
     start, end = np.zeros(3), np.array([float(sb.load("rssr").lengths[1]), 0.0, 0.0])
     thick = sb.Body(1.3, tuple((start + end) / 2), np.diag([2e-3, 0.09, 0.09]))
     thin = sb.Body(1.3, tuple((start + end) / 2), np.diag([0.0, 0.09, 0.09]))
     # balls without friction never turn it about its line
     assert np.array_equal(circuit.forces(bodies={2: thick}).torque, circuit.forces(bodies={2: thin}).torque)
     aside = sb.Body(1.3, (float(end[0] / 2), 20.0, 0.0), np.diag([2e-3, 0.09, 0.09]))
-    assert np.abs(circuit.forces(bodies={2: aside}).spin["link 2"]).max() > 0.01
+    assert np.abs(circuit.forces(bodies={2: aside}).spin["coupler"]).max() > 0.01
 
 
 def test_a_dead_centre_of_the_input_has_no_torque() -> None:
@@ -139,3 +141,26 @@ def test_nothing_that_acts_is_refused() -> None:
     circuit = sb.load("rssr").motion(8).circuits[0]
     with pytest.raises(sb.errors.RequestError, match="nothing has a mass and nothing acts"):
         circuit.forces()
+
+
+def test_a_row_whose_balls_have_no_turns_has_its_forces() -> None:
+    circuit = loaded_circuit("rssr", 36)[1]
+    q, status = circuit.q.copy(), circuit.status.astype("<U20")
+    q[5, 1:7], status[5] = np.nan, "turns-undefined"
+    found, whole = replace(circuit, q=q, status=status).forces(), circuit.forces()
+    assert abs(found.torque[5] - whole.torque[5]) < 1e-12 * np.abs(whole.torque).max()
+    assert np.abs(found.reactions["ball_b"].force[5] - whole.reactions["ball_b"].force[5]).max() < 1e-9
+
+
+def test_a_coupler_that_comes_near_the_axis_of_the_crank_has_the_same_forces_by_both_ways() -> None:
+    """There the general way, which gives what lies between rows, holds the spin by another axis."""
+    rng = np.random.default_rng(3)
+    linkage = sb.rssr(M=150, N=250, L1=185, L2=500, L3=390, D=-475, speed="60 rpm")
+    linkage = linkage.loaded(bodies={link: random_body(rng, 500.0) for link in (1, 2, 3)})
+    circuit = linkage.motion().circuits[0]
+    again = linkage.circuit(circuit.q[0])
+    spin = circuit.columns.index("ball_a.3")
+    assert np.ptp(circuit.q[:, spin]) < 1e-9 < 1 < np.ptp(again.q[:, spin])
+    own = circuit.forces()
+    assert np.abs(again.forces().torque - own.torque).max() < 1e-10 * np.abs(own.torque).max()
+    assert own.sizing().tail < 1e-10

@@ -89,6 +89,8 @@ def test_neighbours_of_right_angles_are_not_taken_for_them_beyond_rounding(off):
     [
         ("2*L1", "length", "'2*L1': no 'L1' is known; give a length, as in 250, '25 cm' or '50*sin(30deg)'"),
         ("30deg", "length", "'30deg': is an angle where a length belongs; give a length"),
+        ("0x10", "length", "'0x10': '0x1' begins no decimal number; write one, as in 16 or 1000"),
+        ("1_000", "length", "'1_000': '1_0' begins no decimal number; write one, as in 16 or 1000"),
         ("5 mm", "angle", "'5 mm': is a length where an angle belongs; give an angle"),
         ("5mm*2cm", "length", "is an area where a length belongs"),
         ("5mm + 2", "length", "it adds a length and a number without a unit; give each its unit"),

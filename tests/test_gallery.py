@@ -59,6 +59,7 @@ FACTS = {
     "bricard_line": Facts("RRRRRR", *alike("crank-rocker", 2), modes=2, gruebler=0, rank=5),
     "bricard_plane": Facts("RRRRRR", *alike("crank-rocker", 2), modes=2, gruebler=0, rank=5),
     "bricard_trihedral": Facts("RRRRRR", *alike("double-rocker", 1), modes=2, gruebler=0, rank=5, turns=0),
+    "engine": Facts("RRRP", *alike("crank-slider", 2), modes=2, gruebler=-2, rank=3),
     "five_bar": Facts("RRSRR", *alike("double-crank", 4), modes=4, gruebler=1, rank=6),
     "goldberg_5r": Facts("RRRRR", *alike("double-crank", 1), modes=1, gruebler=-1, rank=4),
     "myard_5r": Facts("RRRRR", *alike("double-crank", 1), modes=2, gruebler=-1, rank=4, turns=2),
@@ -69,10 +70,12 @@ FACTS = {
     ),
     "rssp": Facts("RSSP", *alike("crank-slider", 2), modes=2, gruebler=2, rank=6, idle=1),
     "rssr": Facts("RSSR", *alike("crank-rocker", 2), modes=2, gruebler=2, rank=6, idle=1),
+    "rssr_press": Facts("RSSR", *alike("crank-rocker", 2), modes=2, gruebler=2, rank=6, idle=1),
     "rsur": Facts("RSUR", *alike("crank-rocker", 4), modes=4, gruebler=1, rank=6),
     "sarrus": Facts("RRRRRR", *alike("crank-rocker", 4), modes=4, gruebler=0, rank=5),
     "screw_drill": Facts("RRRHR", *alike("crank-rocker", 2), modes=2, gruebler=-1, rank=4),
     "seven_r": Facts("RRRRRRR", *alike("double-crank", 8), modes=8, gruebler=1, rank=6),
+    "seven_r_bodies": Facts("RRRRRRR", *alike("double-crank", 8), modes=8, gruebler=1, rank=6),
     "six_bar": Facts("RRRRRC", *alike("crank-rocker", 4), modes=4, gruebler=1, rank=6),
     "spherical_4r": Facts("RRRR", *alike("crank-rocker", 2), modes=2, gruebler=-2, rank=3),
     "swash_plate": Facts("REUP", *alike("crank-slider", 2), modes=2, gruebler=1, rank=6),
@@ -296,7 +299,7 @@ def paper_rocker(alpha: Floats) -> Floats:
     return angles_with(y, np.full_like(y, N), ((x - M) ** 2 + y**2 + N**2 + L3**2 - squared) / (2 * L3))
 
 
-@pytest.mark.parametrize("name", ["rssr", "rsur"])
+@pytest.mark.parametrize("name", ["rssr", "rssr_press", "rsur"])
 def test_the_rocker_of_sun_and_zhou_moves_by_their_equation(name: str) -> None:
     """A universal joint in place of a ball leaves the distance of A and B, and so the rocker's angle, as it is.
 
@@ -305,6 +308,18 @@ def test_the_rocker_of_sun_and_zhou_moves_by_their_equation(name: str) -> None:
     circuits = moved(name).circuits
     beta = paper_rocker(of(circuits[0], "crank")[0])
     assert each_is_one_of(beta, [of(c, "rocker")[0] for c in circuits]).max() < EXACT
+
+
+def test_the_engine_moves_its_piston_by_the_law_of_the_slider_crank() -> None:
+    for circuit, way in zip(moved("engine").circuits, (1, -1), strict=True):
+        crank = of(circuit, "crank")[0]
+        place = 40 * np.cos(crank) + way * np.sqrt(140**2 - (40 * np.sin(crank)) ** 2)
+        assert np.abs(of(circuit, "piston")[0] - (place - 180)).max() < 180 * EXACT
+
+
+def test_seven_r_with_bodies_moves_as_without() -> None:
+    for loaded, bare in zip(moved("seven_r_bodies"), moved("seven_r"), strict=True):
+        assert np.array_equal(loaded.q, bare.q)
 
 
 def rscr_outputs(alpha: float) -> Floats:

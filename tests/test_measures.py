@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 
+import numpy as np
 import pytest
 
 import sevenbar as sb
@@ -67,3 +69,46 @@ def test_wrong_measures_are_told(given: list[str], message: str) -> None:
     with pytest.raises(RequestError) as caught:
         measures_named(given)
     assert message in str(caught.value)
+
+
+def test_rounding_of_a_joint_that_follows_evenly_is_reported_as_zero():
+    """Clemens' joint turns its output as its input: velocity 2 pi throughout, acceleration 0."""
+    told = sb.report.markdown(sb.load("five_bar").motion(72))
+    velocity = next(line for line in told.splitlines() if "output_shaft velocity" in line)
+    assert "| 6.28319 |" in velocity
+    assert "@" not in velocity
+    assert re.search(r"acceleration \[rad/s²\] \| 0 \|", told)
+    assert not re.search(
+        r"\de-1\d", told.replace(next(x for x in told.splitlines() if "closure error" in x), "")
+    )
+    # what is small but no rounding stays
+    slow = sb.report.markdown(sb.load("rssr").motion(72, speed=1e-9))
+    assert "-5.44544e-10" in slow
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "head"),
+    [
+        ("rssr", {}, "mechanical_advantage"),
+        ("rssp", {}, "mechanical_advantage_1_mm"),
+        ("rssp", {"input": "slider"}, "mechanical_advantage_mm"),
+    ],
+)
+def test_the_mechanical_advantage_is_a_column_with_its_unit(name, given, head):
+    motion = sb.load(name).motion(36, **given)
+    columns = motion.columns()
+    assert list(columns)[-2] == head
+    rows = np.concatenate([circuit.mechanical_advantage for circuit in motion])
+    np.testing.assert_array_equal(columns[head], rows)
+    # power in is power out
+    first, second = (
+        "rad_s" if motion.linkage.unit_of(end) == "rad" else "mm_s" for end in (motion.input, motion.output)
+    )
+    speed, follows = columns[f"{motion.input}_{first}"], columns[f"{motion.output}_{second}"]
+    good = np.isfinite(rows) & (rows != 0)
+    np.testing.assert_allclose(rows[good] * follows[good], speed[good], rtol=1e-12)
+    si = motion.columns(si=True)
+    scale = {"mechanical_advantage": 1.0, "mechanical_advantage_1_mm": 1e3, "mechanical_advantage_mm": 1e-3}[
+        head
+    ]
+    np.testing.assert_allclose(si[head.replace("mm", "m")], rows * scale, rtol=1e-15)

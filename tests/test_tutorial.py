@@ -94,7 +94,7 @@ def test_the_tutorial_shows_what_its_commands_print_and_draw_today(tmp_path):
                 for line, other in zip(shown, told, strict=True):
                     assert alike(line, other), f"{command}\nshown {line}\ntoday {other}"
                 count += 1
-    assert count == 17
+    assert count == 18
     for name, source in PICTURES.items():
         make_light(tmp_path / source, tmp_path / name)
         one, other = (np.asarray(Image.open(path / name).convert("L"), int) for path in (IMAGES, tmp_path))

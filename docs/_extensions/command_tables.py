@@ -1,5 +1,6 @@
 """Every command with its arguments and options, from the program's own command line."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
@@ -20,7 +21,11 @@ PAGES = {
     "compare": "measured.md",
     "calibrate": "measured.md",
     "axodes": "theory_measures.md",
+<<<<<<< HEAD
     "free": "theory_free_motion.md",
+=======
+    "forces": "forces.md",
+>>>>>>> main
     "simulate": "simulation.md",
     "export": "export.md",
     "axes": "tables.md#axes-picked-from-a-cad-model",
@@ -60,7 +65,8 @@ def all_commands(_pages: Path, _: str) -> str:
 
 
 def _section(words: str, command: Any) -> str:
-    kinds = get_type_hints(command.callback)
+    # those of the shared options are texts
+    kinds = defaultdict(lambda: str, get_type_hints(command.callback))
     arguments = [param for param in command.params if param.param_type_name == "argument"]
     shown = [param for param in command.params if not param.hidden]
     usage = " ".join([*(_metavar(param) for param in arguments), "[OPTIONS]"])

@@ -165,7 +165,7 @@ def _count(found: Mapping[str, Any]) -> int:
 
 
 def _verdict(rows: Mapping[str, Any]) -> str:
-    """Whether what is asked for is kept, and by whom not."""
+    """Whether what is required is kept, and by whom not."""
     missed = []
     for name, found in rows.items():
         asked = ASKED["closed form" if name == "rssr" else "general"]

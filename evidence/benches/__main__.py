@@ -35,7 +35,7 @@ LONGEST_CASE = 900.0
 
 
 def main() -> None:
-    """All that was asked for; ends with 1 where a case failed."""
+    """All that was requested; ends with 1 where a case failed."""
     arguments = parsed()
     if arguments.child:
         setting = Setting(of_text(sys.stdin.read()), arguments.quick)

@@ -14,7 +14,7 @@ TELLING = 30.0
 
 
 def main() -> int:
-    """Runs what the command line asks for; 1 where something was found."""
+    """Runs what the command line requests; 1 where something was found."""
     from evidence.fuzz.ways import WAYS
 
     parser = argparse.ArgumentParser(prog="python -m evidence.fuzz", description=__doc__)

@@ -37,6 +37,9 @@ VALUES = (
     "[[1, 0, 0], [1, 0, 0]]", "[[1, 0, 0]]", "[nan, 0, 0]", '["1", 0, 0]', "[true, 0, 0]", "1979-05-27",
     "07:32:00", "1979-05-27T07:32:00Z", "{x = 1}", "[{x = 1}, 2]", "'theta_1'", '"theta_2"', '"theta_7"',
     '"crank"', '"\\u0000"', '"\\n"', '"\\u202e"', '"{message}"', '"%s"', "[1, ]", "1 # 2",
+    '"250 g"', '"3 N m"', '"40 N/mm"', '"1 N m/"', '"1 kg^"', '"kg"', '"rod"', '"point"', '"drawn"', '"link"',
+    "[4, 5, 6, 0.1, 0.2, 0.3]", "[1, 1, 3, 0, 0, 0]", "[[0, 0], [30, 1]]", "[[0, 0], [0, 1]]",
+    '"no.csv"', '"."',
 )  # fmt: skip
 
 #: Words that a key or a table may be taken for.
@@ -44,7 +47,9 @@ WORDS = (
     "format", "name", "length_unit", "angle_unit", "drive", "rssr", "joint", "link", "point", "kind", "at",
     "axis", "axes", "pitch", "length", "twist", "offset", "angle", "speed", "output", "input", "M", "N",
     "L1", "L2", "L3", "D", "ground", "Axis", "lenght", "a.b", '"a b"', "''", '"\u00e9"', "1", "__proto__",
-    "model_config", "link.1", "constructor",
+    "model_config", "link.1", "constructor", "forces", "body", "load", "spring", "gravity", "mass_unit",
+    "mass", "centre", "inertia", "solid", "force", "torque", "between", "table", "links", "stiffness",
+    "damping", "free",
 )  # fmt: skip
 
 #: Characters that texts of other programs and languages bring.
@@ -75,6 +80,14 @@ LEAST = (
     'at = [2, 0, 7]\n[[joint]]\nkind = "S"\nat = [7, 5, 0]\n'
     '[[joint]]\nkind = "R"\nat = [7, 0, 0]\naxis = [1, 0, 0]\n'
     '[[point]]\nname = "P"\nlink = 2\nat = [1, 1, 1]\n',
+    "format = 1\n[rssr]\nM = 7\nN = 7\nL1 = 2.5\nL3 = 5.5\nD = 0\n"
+    '[forces]\ngravity = [0, 0, -9.8]\nmass_unit = "g"\n'
+    "[[body]]\nlink = 1\nmass = 3\ncentre = [1, 0, 0]\ninertia = [4, 5, 6, 0, 0, 0]\n"
+    '[[body]]\nlink = 2\nmass = "2 kg"\nsolid = "rod"\n'
+    '[[load]]\nlink = 3\nat = [0, 0, 0]\nforce = [0, 0, "1 kN"]\nbetween = [30, 90]\n'
+    '[[load]]\nlink = 1\ntorque = [0, 0, 1]\naxes = "link"\ntable = [[0, 0], [30, 1]]\n'
+    "[[spring]]\nlinks = [1, 4]\nat = [[0, 0, 0], [1, 2, 3]]\nstiffness = 0.3\nlength = 2\n"
+    '[[spring]]\njoint = "rocker"\nstiffness = "2 N m/rad"\nfree = 20\ndamping = 0.1\n',
     'format = 1\nlength_unit = "in"\nangle_unit = "rad"\n[[joint]]\nkind = "C"\nat = [0, 0, 0]\n'
     "axis = [0, 0, 1]\n"
     '[[joint]]\nkind = "U"\nat = [1, 0, 0]\naxes = [[1, 0, 0], [0, 1, 0]]\n'
@@ -204,6 +217,12 @@ def _head_changed(rng: random.Random, tokens: list[str]) -> None:
             "[[link]]",
             "[point]",
             "[[point]]",
+            "[forces]",
+            "[[forces]]",
+            "[body]",
+            "[[body]]",
+            "[[load]]",
+            "[[spring]]",
             "[drive]",
             "[[drive]]",
         )

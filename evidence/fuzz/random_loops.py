@@ -53,7 +53,7 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """Joints as drawn, for `from_axes`; the drawn pose closes at input 0, `theta` is the input asked for."""
+    """Joints as drawn, for `from_axes`; the drawn pose closes at input 0, `theta` is the input to take."""
 
     joints: tuple[Mapping[str, Any], ...]
     theta: float = 0.0

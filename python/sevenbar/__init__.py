@@ -25,6 +25,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere
 from sevenbar.text.printing import SAID_IN
+from sevenbar.text.words import language
 
 if TYPE_CHECKING:
     from sevenbar.description.families import (
@@ -94,6 +95,7 @@ __all__ = [
     "from_dh",
     "from_table",
     "goldberg",
+    "language",
     "load",
     "load_law",
     "loads",
@@ -152,7 +154,11 @@ _NAMES_ON_DEMAND = {
 
 # what results print is written where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
+<<<<<<< HEAD
 SAID_IN["sevenbar.forces.free_motion"] = "sevenbar.reporting.free_motion"
+=======
+SAID_IN["sevenbar.forces"] = "sevenbar.reporting.force_results"
+>>>>>>> main
 for _folder in ("design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"
 # bodies that are given as drawn are those of exports, which stand above the kinematics

@@ -107,7 +107,7 @@ class Loop:
 
 @final
 class Numbers:
-    """A loop that knows what its numbers move; lengths in parts of the size."""
+    """A loop that knows what its numbers move; lengths relative to the size."""
 
     def __new__(
         cls,
@@ -137,7 +137,7 @@ _Place = tuple[int, _Floats, Sequence[tuple[int, _Floats]]]
 
 @final
 class Acting:
-    """What acts on a loop; lengths in parts of the size, forces in kg size/s^2."""
+    """What acts on a loop; lengths relative to the size, forces in kg size/s^2."""
 
     def __new__(
         cls,

@@ -62,6 +62,10 @@ class AngleUnitWarning(UserWarning):
     """Angles that may have been written in another unit; the answer takes them as they are."""
 
 
+class MissingFontWarning(UserWarning):
+    """No font has the characters of a language, so figures are in English."""
+
+
 @dataclass(frozen=True)
 class Problem:
     """One thing that is wrong in a description: its place and what is the matter."""
@@ -88,6 +92,11 @@ class DescriptionError(SevenbarError):
         if (more := len(self.problems) - MOST_LISTED) > 0:
             lines.append(f"{prefix}and {more} more mistake{'s' * (more > 1)}; mend these first")
         super().__init__("\n".join(lines))
+
+    @classmethod
+    def of_all(cls, source: str, message: str) -> DescriptionError:
+        """The error of a source as a whole, not of a place in it."""
+        return cls([Problem("", message)], source)
 
 
 def shown(value: object, longest: int = 60) -> str:

@@ -93,7 +93,7 @@ impl Acting {
 /// At closed poses (n, columns), with speed and acceleration of the input (n, 2) and the factors of the loads (n, loads), in seats
 /// (joint, frame (4, 4)): torque (n,), what holds idle freedoms (n, held), energies and supplied power (n, 3), wrenches (n, seats, 6),
 /// seats (n, seats, 12), shaking (n, 6), undetermined wrenches (n, redundant, 6); and by the numbers torque (n, numbers) and
-/// wrenches (n, numbers, seats, 6), for no numbers unless asked for. NaN at dead centres of the input.
+/// wrenches (n, numbers, seats, 6), for no numbers unless wanted. NaN at dead centres of the input.
 #[pyfunction]
 #[expect(clippy::too_many_arguments)]
 pub(crate) fn reactions<'py>(

@@ -20,7 +20,7 @@ OFF = 0.3
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A linkage, the input [rad] of which all modes are asked for, and poses (k, 7) known from elsewhere."""
+    """A linkage, the input [rad] of which all modes are wanted, and poses (k, 7) known from elsewhere."""
 
     linkage: sb.Linkage
     theta: float

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
-from sevenbar.commands.given import agreed
+from sevenbar.commands.given import opened
 from sevenbar.commands.options import Agree, Force, InputJoint, Json, OutputJoint, Samples, Source, Speed
 from sevenbar.errors import RequestError
 
@@ -36,7 +35,7 @@ def axodes(
     """Screw axes of links on every row: axodes, in a plane centrodes and instant centres."""
     from sevenbar.reporting.screws import axodes_report
 
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     count = len(loaded.joints)
     against = count if relative_to is None else relative_to
     links = list(dict.fromkeys(link or [n for n in range(1, count + 1) if n not in (against, count)]))
@@ -47,5 +46,5 @@ def axodes(
         raise RequestError(f"--relative-to: link {against} is one of --link; give another")
     report = axodes_report(links, relative_to)
     check_out(report, out, force=force)
-    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed, agree=agreed(agree))
+    motion = loaded.motion(samples, input=input_joint, output=output, speed=speed)
     deliver(motion, report, out, json=json, force=force)

@@ -20,13 +20,13 @@ from sevenbar.commands.command import Command
 from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import (
-    agreed,
     check_law,
     film_of,
     input_column,
     input_value,
     law_of,
     look_of,
+    opened,
     point_of,
 )
 from sevenbar.commands.long_tables import long_motion, table_ahead
@@ -53,7 +53,7 @@ from sevenbar.commands.options import (
     words,
 )
 from sevenbar.commands.progress import STOPPED, progress_bar
-from sevenbar.errors import AngleUnitWarning, RequestError, SevenbarError, shown
+from sevenbar.errors import AngleUnitWarning, MissingFontWarning, RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import sample_count
 from sevenbar.kinematics.motion import chosen_circuit
 from sevenbar.reporting.figures import KINDS, USUAL_KINDS, FigureLook, Places, figures_report
@@ -67,6 +67,7 @@ MOST_DRAWN = 3600
 #: the studio.
 _ELSEWHERE = {
     "axodes": "sevenbar.commands.axodes:axodes",
+    "forces": "sevenbar.commands.forces:forces",
     "studio": "sevenbar.commands.studio:studio",
     "compare": "sevenbar.commands.compare:compare",
     "calibrate": "sevenbar.commands.compare:calibrate",
@@ -178,13 +179,11 @@ def analyze(
     if not json:
         # the report has it
         warnings.simplefilter("ignore", AngleUnitWarning)
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     report = motion_report(formats)
     check_out(report, out, force=force)
     read = law_of(law, loaded, input_joint)
-    moved = partial(
-        loaded.motion, input=input_joint, output=output, speed=speed, law=read, agree=agreed(agree)
-    )
+    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, law=read)
     if out is not None and read is None:
         confirm(table_ahead(moved, samples, "motion.csv"), yes=yes)
     motion = long_motion(moved, samples)
@@ -262,11 +261,11 @@ def modes(
     """Every assembly mode at one value of the input: each way the loop can be put together."""
     from sevenbar.reporting.report import modes_report
 
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     column = input_column(loaded, input_joint)
     check_targets([] if out is None else [out], force=force)
     value = input_value("--at", at, loaded, input_joint)
-    found = loaded.assembly_modes(value, input=loaded.columns[column], agree=agreed(agree))
+    found = loaded.assembly_modes(value, input=loaded.columns[column])
     elsewhere: dict[Path, Callable[[Path], object]] = {}
     if out is not None:
         elsewhere[out] = partial(_draw_modes, loaded, found, loaded.columns[column])
@@ -307,7 +306,7 @@ def plot_(
     formats = figure_formats(figures, out)
     kinds = _kinds(kind)
     look = look_of(view, size, style)
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     points = _points(loaded, point_of(point, link, at))
     if "point" in kinds and not points:
         if kind is not None and "point" in kind:
@@ -316,7 +315,7 @@ def plot_(
     # more rows than that are no better to look at
     motion = loaded.motion(
         min(sample_count("samples", samples), MOST_DRAWN),
-        input=input_joint, output=output, speed=speed, agree=agreed(agree),
+        input=input_joint, output=output, speed=speed,
     )  # fmt: skip
     if "transmission" in kinds and all(found.transmission_angle is None for found in motion):
         if kind is not None and "transmission" in kind:
@@ -384,7 +383,7 @@ def _tell_warning(
     line: str | None = None,
 ) -> None:
     """Writes a warning of ours as one line on the error stream, any other as Python does."""
-    ours = issubclass(category, AngleUnitWarning)
+    ours = issubclass(category, (AngleUnitWarning, MissingFontWarning))
     text = (
         f"sevenbar: {message}\n"
         if ours

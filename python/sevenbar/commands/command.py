@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
-from typing import Any
+from functools import cache
+from typing import Annotated, Any
 
 import typer.core
+import typer.main
 
+from sevenbar.drawing.asked import drawn_as
 from sevenbar.errors import RequestError, SevenbarError, shown
+from sevenbar.text.words import check_language, language
 
 #: What to say of options of which a second one is a mistake in thought, too.
 WHY_ONE = {
@@ -20,6 +24,11 @@ WHY_ONE = {
 
 #: Calls that show what a command does, below its options.
 EXAMPLES = {
+    "forces": (
+        "sevenbar forces rssr_press",
+        "sevenbar forces press.toml --speed '90 rpm' --unevenness 0.02 -o forces",
+        "sevenbar forces engine --speed 0 --json",
+    ),
     "analyze": (
         "sevenbar analyze rssr",
         "sevenbar analyze mine.toml --speed '60 rpm' -o report",
@@ -38,6 +47,10 @@ EXAMPLES = {
     "axodes": (
         "sevenbar axodes rssr --link 2",
         "sevenbar axodes planar_4r --link 2 --relative-to 1 -o axodes",
+    ),
+    "free": (
+        "sevenbar free drop.toml --time 10s --from 30deg",
+        "sevenbar free drop.toml --speed '60 rpm' --film drop.html -o free",
     ),
     "gallery": ("sevenbar gallery", "sevenbar gallery rssr > mine.toml"),
     "studio": ("sevenbar studio seven_r", "sevenbar studio mine.toml --port 9000 --no-open"),
@@ -69,6 +82,67 @@ EXAMPLES = {
 }
 
 
+#: What two options mean, wherever a command has them.
+VIEW_HELP = "plane, space, xy, xz, yz or iso, or elevation and azimuth, as in '30,-60'."
+STYLE_HELP = "Style of the figures: screen, paper or ieee."
+
+#: Commands with the options of `_shared`, besides those that have one of their own.
+_DRAWING = (
+    *("modes", "map", "tolerance", "function", "swing", "path", "point", "inertia"),
+    *("compare", "calibrate", "simulate"),
+)
+SHARED = {
+    "--view": ("modes", "path", "point"),
+    "--style": _DRAWING,
+    "--lang": ("analyze", "plot", "forces", *_DRAWING),
+}
+
+
+def _draw_from(ctx: typer.Context, view: str | None) -> None:
+    if view is not None:
+        from sevenbar.commands.given import view_of
+
+        ctx.with_resource(drawn_as(view=view_of(view)))
+
+
+def _draw_in_style(ctx: typer.Context, style: str | None) -> None:
+    if style is not None:
+        # matplotlib is needed from here on
+        from sevenbar.drawing.style import check_style
+
+        ctx.with_resource(drawn_as(style=check_style(style, "--style")))
+
+
+def _say_language(ctx: typer.Context, lang: str | None) -> None:
+    if lang is not None:
+        ctx.with_resource(language(check_language(lang, "--lang")))
+
+
+def _shared(
+    view: Annotated[str | None, typer.Option(help=VIEW_HELP, callback=_draw_from, expose_value=False)] = None,
+    style: Annotated[
+        str | None, typer.Option(help=STYLE_HELP, callback=_draw_in_style, expose_value=False)
+    ] = None,
+    lang: Annotated[
+        str | None,
+        typer.Option(
+            help="Language of the figures, and of the report of a motion: en (the default) or zh.",
+            callback=_say_language,
+            expose_value=False,
+        ),
+    ] = None,
+) -> None:
+    """Options whose meaning holds for all that is made until the command ends."""
+
+
+@cache
+def _shared_options() -> dict[str, Any]:
+    """The options of `_shared` by their names."""
+    alone = typer.Typer(add_completion=False)
+    alone.command()(_shared)
+    return {option: made for made in typer.main.get_command(alone).params for option in made.opts}
+
+
 class Command(typer.core.TyperCommand):
     """A command of sevenbar."""
 
@@ -77,6 +151,7 @@ class Command(typer.core.TyperCommand):
             # lines of a paragraph would flow into each other
             options["epilog"] = "\n\n".join(("Examples:", *EXAMPLES[name]))
         super().__init__(name, *args, **options)
+        self.params += [_shared_options()[option] for option, commands in SHARED.items() if name in commands]
         for parameter in self.params:
             if "--out" in parameter.opts and "-o" not in parameter.opts:
                 parameter.opts.append("-o")

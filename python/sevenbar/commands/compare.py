@@ -9,7 +9,9 @@ import typer
 
 import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.given import opened
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     Follow,
     Force,
@@ -66,6 +68,7 @@ def compare(
     input_joint: InputJoint = None,
     output: Output = None,
     speed: Speed = None,
+    agree: Agree = None,
     start: Start = "0",
     circuit: ChosenCircuit = None,
     branch: ChosenBranch = None,
@@ -84,7 +87,7 @@ def compare(
     from sevenbar.measuring.report import comparison_report
 
     report = comparison_report(figure_formats(figures, out))
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     check_out(report, out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     found: Comparison | ExtremesComparison
@@ -131,6 +134,7 @@ def calibrate(
     input_joint: InputJoint = None,
     output: Output = None,
     speed: Speed = None,
+    agree: Agree = None,
     start: Start = "0",
     circuit: ChosenCircuit = None,
     branch: ChosenBranch = None,
@@ -154,7 +158,7 @@ def calibrate(
 
     formats = figure_formats(figures, out)
     text = toml_text(linkage)
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     check_out(calibration_report(lambda _: "", formats), out, force=force)
     ends, measured = _measured(loaded, table, input_joint, output, column, unit, skip_nan)
     if isinstance(measured, MeasuredExtremes):
@@ -179,7 +183,7 @@ def calibrate(
             progress=progress,
         )
         # read again before anything of it is reported
-        written = "" if out is None else calibrated_toml(text, found)
+        written = "" if out is None else calibrated_toml(text, found, source=linkage)
     deliver(found, calibration_report(lambda _: written, formats), out, json=json, force=force)
 
 

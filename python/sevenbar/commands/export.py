@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-import sevenbar as sb
 from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import tell_written
-from sevenbar.commands.given import agreed, input_value
+from sevenbar.commands.given import input_value, opened
 from sevenbar.commands.long_tables import long_motion, table_ahead
 from sevenbar.commands.options import Agree, Force, InputJoint, OutputJoint, Samples, Source, Speed, Yes
 from sevenbar.commands.progress import progress_bar
@@ -21,6 +20,7 @@ from sevenbar.reporting.folder import check_targets
 
 if TYPE_CHECKING:
     from sevenbar.export import Bodies, Table
+    from sevenbar.kinematics.linkage import Linkage
 
 
 #: Tables that hold numbers as text.
@@ -80,9 +80,9 @@ def export(
     form = FORMATS[format_of(out, to)]
     # a folder of many parts has no ending
     check_targets([out] if out.suffix else [], force=force)
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     value = None if at is None else input_value("--at", at, loaded, input_joint)
-    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed, agree=agreed(agree))
+    moved = partial(loaded.motion, input=input_joint, output=output, speed=speed)
     if isinstance(form, Table):
         text = out.suffix.lower() in TEXT
         confirm(table_ahead(moved, samples, out.name, text=text), yes=yes)
@@ -103,17 +103,20 @@ def export(
             progress=progress,
         )
     tell_written(written, below=False)
-    for line in _notes(out, form):
+    for line in _notes(out, form, loaded):
         typer.echo(line)
 
 
-def _notes(out: Path, form: Table | Bodies) -> list[str]:
+def _notes(out: Path, form: Table | Bodies, loaded: Linkage) -> list[str]:
     """What to know of a file besides its name."""
     from sevenbar.export import Bodies
+    from sevenbar.export.mass import has_masses
 
     notes = []
     if out.suffix.lower() == ".urdf":
         notes.append("URDF holds trees only: the joint that closes the loop is in the .loop.json file")
-    if isinstance(form, Bodies) and form.masses:
+    if isinstance(form, Bodies) and form.masses and has_masses(loaded):
+        notes.append("masses are the linkage's own; bodies that have none weigh next to nothing")
+    elif isinstance(form, Bodies) and form.masses:
         notes.append(f"masses are assumed: {form.masses}; put in your own where forces matter")
     return notes

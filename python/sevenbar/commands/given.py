@@ -15,13 +15,14 @@ from sevenbar.text.ranges import Place, split_list, split_range, three_numbers, 
 from sevenbar.text.units import amount, examples_of, sizes_of
 
 if TYPE_CHECKING:
+    from sevenbar.description.draft import Draft
     from sevenbar.design.synthesis.limits import Limits
     from sevenbar.kinematics.circuits import Law
     from sevenbar.reporting.figures import FigureLook
 
 
 def check_law(law: Path | None, speed: str | None) -> None:
-    """Refuses a speed beside a law."""
+    """Refuses a speed where there is a law."""
     if law is not None and speed is not None:
         raise RequestError("--speed: a law gives the speed; leave --speed or --law out")
 
@@ -29,6 +30,19 @@ def check_law(law: Path | None, speed: str | None) -> None:
 def agreed(agree: float | None) -> float | None:
     """The closure error of --agree, if one is given."""
     return None if agree is None else closure_tolerance("--agree", agree)
+
+
+def opened(source: str, agree: float | None) -> sb.Linkage:
+    """The linkage of FILE|NAME and --agree."""
+    return sb.load(source, agree=agreed(agree))
+
+
+def drafted(source: str, agree: float | None) -> Draft:
+    """The same to be shaped: with the text of the file."""
+    from sevenbar.description.draft import Draft
+    from sevenbar.description.files import toml_text
+
+    return Draft.of(toml_text(source), source, agree=agreed(agree))
 
 
 def law_of(law: Path | None, linkage: sb.Linkage, input_joint: str | None) -> Law | None:
@@ -68,18 +82,24 @@ def look_of(view: str | None, size: str | None, style: str | None) -> FigureLook
         return FigureLook()
     # matplotlib is needed from here on
     from sevenbar.drawing.style import check_style
-    from sevenbar.drawing.view import check_view
 
-    asked: str | tuple[float, float] | None = view
-    if view is not None and "," in view:
-        angles = [amount_in(word, "deg") for word in split_list(view)]
-        if len(angles) == 2 and None not in angles:
-            asked = angles[0] or 0.0, angles[1] or 0.0
     return FigureLook(
-        check_view(asked, "--view"),
+        None if view is None else view_of(view),
         None if size is None else _page("--size", size),
         None if style is None else check_style(style, "--style"),
     )
+
+
+def view_of(text: str) -> str | tuple[float, float] | None:
+    """The view of --view: a name, or elevation and azimuth [deg]."""
+    from sevenbar.drawing.view import check_view
+
+    asked: str | tuple[float, float] = text
+    if "," in text:
+        angles = [amount(word, sizes_of("deg"), "deg") for word in split_list(text)]
+        if len(angles) == 2 and None not in angles:
+            asked = angles[0] or 0.0, angles[1] or 0.0
+    return check_view(asked, "--view")
 
 
 def _page(option: str, text: str) -> tuple[float, float]:

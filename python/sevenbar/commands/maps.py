@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.given import opened
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     Follow,
     Force,
@@ -46,11 +47,14 @@ def map_(
     ] = None,
     input_joint: InputJoint = None,
     follow: Follow = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for map.json, boundaries.csv, contours.csv and the figures.")
     ] = None,
     figures: Figures = None,
-    size: Annotated[str, typer.Option(help="Sheet of the figures: A4, A3, A2 or A1.")] = "A4",
+    size: Annotated[
+        str | None, typer.Option(help="Sheet of the figures: A4 (the default), A3, A2 or A1.")
+    ] = None,
     no_key: Annotated[
         bool, typer.Option("--no-key", help="Leave out the key and the numbers at the side.")
     ] = False,
@@ -65,13 +69,13 @@ def map_(
     from sevenbar.design.maps.window import split_ranges
 
     formats = figure_formats(figures, out)
-    sheet(size)
+    sheet(size or "A4")
     ranges, at, which = split_ranges(over or []), _levels(levels), _take(take)
     names = words(measure or [])
     if levels is not None and not names:
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
     chosen = with_contours(names) if names else ()
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     report = map_report(names, formats, size=size, side=not no_key)
     check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.heading}") as progress:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from sevenbar.commands.command import count_of
+from sevenbar.commands.command import STYLE_HELP, VIEW_HELP, count_of
 from sevenbar.errors import RequestError, shown
 
 
@@ -52,14 +52,12 @@ Figures = Annotated[
 ]
 FigureView = Annotated[
     str | None,
-    typer.Option("--view", help="plane, space, xy, xz, yz or iso, or elevation and azimuth, as in '30,-60'."),
+    typer.Option("--view", help=VIEW_HELP),
 ]
 FigureSize = Annotated[
     str | None, typer.Option("--size", help="Size of the figures, as in '85x60mm' or '3.3x2.5in'.")
 ]
-FigureStyle = Annotated[
-    str | None, typer.Option("--style", help="Style of the figures: screen, paper or ieee.")
-]
+FigureStyle = Annotated[str | None, typer.Option("--style", help=STYLE_HELP)]
 Agree = Annotated[
     float | None,
     typer.Option(

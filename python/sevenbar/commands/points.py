@@ -9,8 +9,9 @@ import typer
 
 import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
-from sevenbar.commands.given import check_law, law_of
+from sevenbar.commands.given import check_law, drafted, law_of, opened
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     Force,
     InputJoint,
@@ -22,8 +23,6 @@ from sevenbar.commands.options import (
     figure_formats,
 )
 from sevenbar.commands.progress import progress_bar
-from sevenbar.description.draft import Draft
-from sevenbar.description.files import toml_text
 from sevenbar.errors import RequestError, shown
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.ranges import split_list, split_named, split_range, three_numbers
@@ -61,6 +60,7 @@ def point(
     input_joint: InputJoint = None,
     speed: Speed = None,
     law: Law = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for point.toml, point.json, the rows and the figure.")
     ] = None,
@@ -77,10 +77,10 @@ def point(
     check_law(law, speed)
     if least is not None and curve is not None:
         raise RequestError("--least: a path near a curve is looked for with --curve; leave one of them out")
-    loaded = sb.load(linkage)
+    draft = drafted(linkage, agree)
+    loaded = draft.linkage
     sides = parsed_box(box, loaded.length_unit)
     called = name or ("nearest_path" if curve is not None else f"least_{least or 'acceleration'}")
-    draft = Draft.of(toml_text(linkage), linkage)
     if out is not None and called in [point.name for point in draft.linkage.points]:
         raise RequestError(f"--name: {linkage} has a point {shown(called)} already; give another name")
 
@@ -127,6 +127,7 @@ def inertia(
     input_joint: InputJoint = None,
     speed: Speed = None,
     law: Law = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for inertia.json, inertia.csv and the figure.")
     ] = None,
@@ -142,7 +143,7 @@ def inertia(
     check_law(law, speed)
     masses = parsed_masses(mass)
     pull = None if gravity is None else three_numbers("--gravity", gravity, "an acceleration", "0,0,-9.80665")
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     check_out(report, out, force=force)
     motion = _motion(loaded, samples, input_joint, speed, law)
     found = of_masses(motion, masses, gravity=pull, circuit=circuit, branch=branch)

@@ -8,11 +8,12 @@ from typing import Annotated
 
 import typer
 
-import sevenbar as sb
 from sevenbar.commands.command import count_of
 from sevenbar.commands.consent import Ahead, confirm
 from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.given import opened
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     Force,
     InputJoint,
@@ -42,6 +43,7 @@ def simulate(
     input_joint: InputJoint = None,
     output: OutputJoint = None,
     speed: Speed = None,
+    agree: Agree = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the JSON, the CSV and the figures.")] = None,
     figures: Figures = None,
     force: Force = False,
@@ -54,7 +56,7 @@ def simulate(
 
     formats = figure_formats(figures, out)
     ready(engine)
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     report = simulation_report(engine, formats)
     check_out(report, out, force=force)
     ahead = Ahead("--steps", f"{steps} steps in {engine}", seconds=steps / STEPS[engine])

@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+from sevenbar.commands.given import agreed
+from sevenbar.commands.options import Agree
 from sevenbar.description.files import toml_text
 from sevenbar.errors import MissingExtraError, RequestError
 
@@ -29,9 +31,10 @@ def studio(
     open_browser: Annotated[
         bool, typer.Option("--open/--no-open", help="Whether to open the page in the browser.")
     ] = True,
+    agree: Agree = None,
 ) -> None:
     """Shape a linkage in the browser and see it move (extra 'studio'); Ctrl+C ends it."""
-    text = toml_text(linkage)
+    text, error_taken = toml_text(linkage), agreed(agree)
     for name in ("viser", "tomlkit"):
         if importlib.util.find_spec(name) is None:
             raise MissingExtraError(f"studio needs {name}; install it with: pip install 'sevenbar[studio]'")
@@ -41,7 +44,7 @@ def studio(
     # the folder of the file that was opened, else that in which the command was called
     folder = Path(linkage).resolve().parent if Path(linkage).is_file() else Path.cwd()
     try:
-        server = StudioServer(text, linkage, host, port, folder)
+        server = StudioServer(text, linkage, host, port, folder, agree=error_taken)
     except OSError as error:
         reason = (error.strerror or str(error)).lower().partition(" (")[0]
         raise RequestError(

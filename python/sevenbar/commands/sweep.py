@@ -13,7 +13,8 @@ from rich.table import Table
 from rich.text import Text
 
 from sevenbar.commands.deliver import deliver
-from sevenbar.commands.options import Follow, InputJoint, Json, OutputJoint, Source, words
+from sevenbar.commands.given import drafted
+from sevenbar.commands.options import Agree, Follow, InputJoint, Json, OutputJoint, Source, words
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
@@ -64,11 +65,10 @@ def sweep(
     ] = None,
     part_size: Annotated[int | None, typer.Option(help="Linkages of a part.")] = None,
     follow: Follow = None,
+    agree: Agree = None,
     json: Json = False,
 ) -> None:
     """Measure many linkages: dimensions over grids, lists and samples, into Parquet (extra 'sweep')."""
-    from sevenbar.description.draft import Draft
-    from sevenbar.description.files import toml_text
     from sevenbar.sweep.axes import axis_from_text
     from sevenbar.sweep.parts import is_finished
     from sevenbar.sweep.plan import SweepPlan
@@ -82,7 +82,7 @@ def sweep(
     for option, given in (("--resume", resume), ("--mixed", mixed)):
         if given and out is None:
             raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")
-    draft = Draft.of(toml_text(linkage), linkage)
+    draft = drafted(linkage, agree)
     plan = SweepPlan.of(
         draft, axes, words(measure or list(USUAL)), method=method, count=count, seed=seed,
         samples=samples, input=input_joint, output=output, part_size=part_size, follow=words(follow or []),

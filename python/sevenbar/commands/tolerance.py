@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.given import opened
 from sevenbar.commands.options import (
+    Agree,
     Figures,
     Follow,
     Force,
@@ -63,6 +64,7 @@ def tolerance(
     output: OutputJoint = None,
     speed: Speed = None,
     follow: Follow = None,
+    agree: Agree = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for tolerance.json, dimensions.csv, deviation.csv and the figures."),
@@ -75,7 +77,7 @@ def tolerance(
     formats = figure_formats(figures, out)
     if given and wanted is not None:
         raise RequestError("--wanted: --tolerance is given too; give one of them")
-    loaded = sb.load(linkage)
+    loaded = opened(linkage, agree)
     from sevenbar.design.tolerance.inverse import tolerances_for
     from sevenbar.design.tolerance.linear import linear_estimate
     from sevenbar.design.tolerance.report import Findings, tolerance_report

@@ -2,13 +2,13 @@
 
 From n rows at equal steps of the input x, with phi = 2 pi (x - first) / period,
 
-    f(x) = Re sum c_k e^(i k phi),   k = 0, 1, .. floor(n / 2)                                            (20)
+    f(x) = Re sum c_k e^(i k phi),   k = 0, 1, .. floor(n / 2)                                            (10)
 
 passes through the rows. Between neighbouring zeros of f'' the slope f' rises or falls all the way, so each
 change of its sign between them is one extreme. The zeros of f'' are found in the same way between those of
 the third derivative.
 
-Source: docs/theory_forces.md, (20) to (22).
+Source: docs/theory_forces.md, (10) to (12).
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ ORDERS = (3, 2, 1)
 #: Waves smaller than this part of the greatest value are rounding.
 NOISE = 1e-15
 
-#: Waves in the last of so many equal parts of the spectrum are its tail.
+#: Waves in the last of so many equal shares of the spectrum are its tail.
 TAIL_PART = 8
 
 #: A greater tail: the rows are too few for figures to their digits.
@@ -74,7 +74,7 @@ class CycleSeries:
         """The complex coefficients c_k, (n // 2 + 1,) or (n // 2 + 1, k)."""
         count = len(self.rows)
         waves = np.asarray(np.fft.rfft(self.rows, axis=0) / count, dtype=np.complex128)
-        # every wave stands for two, but the constant one and that of every other row
+        # every wave is two, except the constant one and that of every other row
         waves[1 : (count + 1) // 2] *= 2
         return waves
 

@@ -4,7 +4,7 @@ Between two breaks the quantity is smooth. Every stretch is divided until the Ch
 at 16 nodes of each piece ends in rounding. Nodes never lie on a break, so nobody has to say what the value
 there is: the two polynomials give the limits from both sides.
 
-Source: docs/theory_forces.md, (23).
+Source: docs/theory_forces.md, (13).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ HALVINGS = 5
 #: Points of Gauss's rule on each piece for the mean of a power.
 GAUSS = 32
 
-#: Two breaks nearer than this part of the cycle are one.
+#: Two breaks nearer than this part of the cycle are one; a reach lower than a value by less is rounding.
 SAME = 1e-12
 
 
@@ -96,7 +96,7 @@ class Pieces:
         # no piece reaches higher than the sum of the sizes of its terms
         ends = chebyshev.chebval(np.array([-1.0, 0.0, 1.0]), self.series.T)
         reach = self.series[:, 0] + np.abs(self.series[:, 1:]).sum(axis=1)
-        kept = reach >= ends.max()
+        kept = reach >= ends.max() - SAME * self.scale
         some = Pieces(self.rows, self.starts[kept], self.ends[kept], self.series[kept], self.starts)
         return highest_of(*some.extremes())
 

@@ -1,6 +1,6 @@
 """Where a smooth function is stationary: by the polynomial through values at Chebyshev's nodes, and by signs.
 
-The polynomial through values at `NODES` nodes is the function but for a term of its series that is rounding
+The polynomial through values at `NODES` nodes is the function up to a term of its series that is rounding
 where the stretch is short enough; the zeros of its derivative are all places where the function may be
 highest or lowest.
 """

@@ -11,12 +11,16 @@ from typing import Any
 
 from sevenbar.description.files import loads
 from sevenbar.description.forms import from_description
+from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.word import Place
+
+#: Characters of a line from which rows of a load's table are written one below the other.
+LONGEST_ROWS = 110
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,26 +38,28 @@ class Draft:
     source: str
     #: Names of dimensions that the file leaves out and that are held at the value they have there.
     held: tuple[str, ...] = ()
+    #: The closure error up to which redundant constraints of its linkages agree; `None` for the usual one.
+    agree: float | None = None
 
     @staticmethod
-    def of(text: str, source: str) -> Draft:
+    def of(text: str, source: str, *, agree: float | None = None) -> Draft:
         """The draft of a TOML text; `source` is its name in messages. Raises `DescriptionError`."""
         loads(text, source)  # with all that is wrong in it
-        return Draft(text, tomllib.loads(text), source)
+        return Draft(text, _opened(text, source), source, agree=agree)
 
     @staticmethod
     def of_linkage(linkage: Loop) -> Draft:
         """The draft of a linkage's own description, which has no text with comments."""
-        return Draft("", description_of(linkage), linkage.name)
+        return Draft("", description_of(linkage), linkage.name, agree=linkage.agree)
 
     def as_opened(self) -> Draft:
         """The draft as its text has it."""
-        return replace(self, raw=tomllib.loads(self.text))
+        return replace(self, raw=_opened(self.text, self.source))
 
     @cached_property
     def linkage(self) -> Linkage:
         """The linkage described; raises `DescriptionError`."""
-        return from_description(self.raw)
+        return from_description(self.raw).agreeing(self.agree)
 
     def with_value(self, place: Place, value: object) -> Draft:
         """The draft with a value at a place, whose tables are made where the file has none."""
@@ -151,17 +157,39 @@ class Draft:
                 "writing a linkage file needs tomlkit; install it with: pip install 'sevenbar[design]'"
             ) from None
         if not self.text:
-            return tomlkit.dumps(self.raw)
+            return _with_short_lines(tomlkit.dumps(self.raw))
         # tables out of order are put in order by a change only
         if tomllib.loads(self.text) == self.raw:
             return self.text
         document: Any = tomlkit.parse(self.text)
         _settle(document, self.raw)
-        written = tomlkit.dumps(document)
+        written = _with_short_lines(tomlkit.dumps(document))
         if self.text.count("\r\n") == self.text.count("\n"):
             written = written.replace("\r\n", "\n").replace("\n", "\r\n")
         # what is written must be what is shown
-        return written if _says(written, self.raw) else tomlkit.dumps(self.raw)
+        return written if _says(written, self.raw) else _with_short_lines(tomlkit.dumps(self.raw))
+
+
+def _opened(text: str, source: str) -> Mapping[str, Any]:
+    """The tables of a TOML text, with the rows of a load's table: they may be written to another folder."""
+    # most programs that import drafts open none
+    from sevenbar.description.schema import context_of
+
+    raw = tomllib.loads(text)
+    return with_rows(raw, context_of(raw, source))
+
+
+def _with_short_lines(text: str) -> str:
+    """A TOML text with each row of a load's table on a line of its own where they are many."""
+    import tomlkit
+
+    if all(len(line) <= LONGEST_ROWS for line in text.splitlines()):
+        return text
+    document: Any = tomlkit.parse(text)
+    for load in document.get("load", ()):
+        if isinstance(load.get("table"), list):
+            load["table"].multiline(True)
+    return tomlkit.dumps(document)
 
 
 def plain_number(value: float) -> float | int:
@@ -190,7 +218,7 @@ def _settle(table: Any, wanted: Mapping[str, Any]) -> None:
             table.append(key, rows)
         elif key in table and isinstance(value, Mapping):
             _settle(table[key], value)
-        elif key in table and isinstance(value, list):
+        elif isinstance(table.get(key), list) and isinstance(value, list):
             _settle_list(table[key], value)
         elif key not in table or table[key] != value:
             table[key] = value

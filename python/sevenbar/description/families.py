@@ -213,19 +213,25 @@ def four_bar(
 ) -> Linkage:
     """The planar four-bar, as a spatial loop of four parallel axes.
 
-    The links are Denavit-Hartenberg rows without twist, in this order. theta_1 is the angle of the crank from
-    the prolongation of the ground beyond the crank's pivot. Raises `RequestError` where a length is not > 0.
+    It lies in the xy plane as in textbooks: the crank's pivot is the origin, the ground goes along +x to the
+    rocker's pivot, and theta_1 of the crank and theta_4 of the rocker count counter-clockwise from +x. The
+    links are rows without twist, in this order. Raises `RequestError` where a length is not > 0.
 
+        >>> import numpy as np
         >>> import sevenbar as sb
-        >>> sb.four_bar(40, 100, 80, 90).motion().motion_type
-        'crank-rocker'
+        >>> linkage = sb.four_bar(40, 100, 80, 90)
+        >>> circuit = linkage.motion(36).circuits[0]
+        >>> crank, rocker = circuit.q[:, 0], circuit.q[:, 3]
+        >>> left = 90 / 40 * np.cos(rocker) - 90 / 80 * np.cos(crank) - np.cos(crank - rocker)
+        >>> float(np.ptp(left)) < 1e-13  # constant, by Freudenstein's equation
+        True
 
     Source: F. Freudenstein, "Approximate synthesis of four-bar linkages", Trans. ASME 77 (1955), 853.
     """
     others = _head(name, length_unit, speed)
     given = {"crank": crank, "coupler": coupler, "rocker": rocker, "ground": ground}
     lengths = [_length(what, value, others) for what, value in given.items()]
-    return _rows([(length, 0.0) for length in lengths], others)
+    return _rows([(length, 0.0) for length in lengths], {**others, "layout": "planar"})
 
 
 def spherical_four_bar(

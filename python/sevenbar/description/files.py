@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names, nearest, text
-from sevenbar.errors import DescriptionError, Problem, SevenbarError, ends_here, shown
+from sevenbar.errors import DescriptionError, SevenbarError, ends_here, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.workbook import ZIP
 
@@ -31,8 +31,10 @@ LARGEST_TABLE = 20_000_000
 
 
 @ends_here
-def load(source: str | os.PathLike[str]) -> Linkage:
+def load(source: str | os.PathLike[str], *, agree: float | None = None) -> Linkage:
     """The linkage of a TOML file, of a table (CSV or Excel), or of the gallery by its name.
+
+    Redundant constraints `agree` up to a closure error in all that is made of it (`Linkage.agreeing`).
 
     Raises `DescriptionError` with every problem of the file, each with its place, the value and what is
     allowed; `TableError` for a table that cannot be read.
@@ -43,11 +45,11 @@ def load(source: str | os.PathLike[str]) -> Linkage:
     """
     path = Path(source)
     if isinstance(source, str) and source in names() and not path.exists():
-        return loads(text(source), source)
+        return loads(text(source), source).agreeing(agree)
     content = _read(path)
     if _is_table(content, path) and len(content) <= LARGEST_TABLE:
-        return _table(content, str(source)).linkage(from_description, str(source))
-    return loads(decoded(content, str(path)), str(source))
+        return _table(content, str(source)).linkage(from_description, str(source)).agreeing(agree)
+    return loads(decoded(content, str(path)), str(source)).agreeing(agree)
 
 
 def toml_text(source: str | os.PathLike[str]) -> str:
@@ -88,15 +90,17 @@ def loads(content: str, source: str = "text") -> Linkage:
     """
     for number, line in enumerate(content.splitlines(), 1):
         if len(line) > LONGEST_LINE:
-            raise _unreadable(
+            raise DescriptionError.of_all(
                 source, f"line {number} has {len(line)} characters; a linkage file has at most {LONGEST_LINE}"
             )
     try:
         raw = tomllib.loads(content)
     except ValueError as error:  # not TOML, or an integer of thousands of digits
-        raise _unreadable(source, _syntax_problem(error, content.split("\n"))) from None
+        raise DescriptionError.of_all(source, _syntax_problem(error, content.split("\n"))) from None
     except RecursionError:
-        raise _unreadable(source, "nested too deep; a linkage file has tables of plain keys only") from None
+        raise DescriptionError.of_all(
+            source, "nested too deep; a linkage file has tables of plain keys only"
+        ) from None
     linkage = from_description(raw, source)
     warn_of_angles(raw, source)
     return linkage
@@ -114,7 +118,7 @@ _OTHER_KINDS = {
 #: What TOML's reader says of a place.
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)")
 
-#: Slips that people make in TOML, by how the line looks: a unit beside a number, a decimal comma, a text or
+#: Slips that people make in TOML, by how the line looks: a unit next to a number, a decimal comma, a text or
 #: a sign of another language.
 _SLIPS = (
     (
@@ -155,16 +159,18 @@ def _read(path: Path) -> bytes:
         with path.open("rb") as file:
             return file.read(LARGEST_TABLE + 1)
     except FileNotFoundError:
-        raise _unreadable(
+        raise DescriptionError.of_all(
             place,
             f"no such file; {_offer(path)}"
             "give the path of a TOML file, or a name that 'sevenbar gallery' lists",
         ) from None
     except IsADirectoryError:
-        raise _unreadable(place, "is a folder; give the path of a TOML file in it") from None
+        raise DescriptionError.of_all(place, "is a folder; give the path of a TOML file in it") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise _unreadable(place, f"cannot be read: {reason.lower()}; give the path of a TOML file") from None
+        raise DescriptionError.of_all(
+            place, f"cannot be read: {reason.lower()}; give the path of a TOML file"
+        ) from None
 
 
 def _is_table(content: bytes, path: Path) -> bool:
@@ -184,10 +190,10 @@ def decoded(content: bytes, place: str) -> str:
     table = _is_table(content, Path(place))
     kind = next((what for mark, what in _OTHER_KINDS.items() if content.startswith(mark)), "")
     if kind and not table:
-        raise _unreadable(place, kind)
+        raise DescriptionError.of_all(place, kind)
     largest = LARGEST_TABLE if table else LARGEST_FILE
     if len(content) > largest:
-        raise _unreadable(
+        raise DescriptionError.of_all(
             place, f"larger than {largest} bytes, so it is no linkage file; give a TOML file of format 1"
         )
     if table:
@@ -199,11 +205,11 @@ def decoded(content: bytes, place: str) -> str:
         try:
             return content.decode("utf-16").replace("\r\n", "\n")
         except UnicodeDecodeError:
-            raise _unreadable(place, "damaged UTF-16 text; save the file as UTF-8") from None
+            raise DescriptionError.of_all(place, "damaged UTF-16 text; save the file as UTF-8") from None
     try:
         return content.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
-        raise _unreadable(place, _not_utf8(content, error.start)) from None
+        raise DescriptionError.of_all(place, _not_utf8(content, error.start)) from None
 
 
 def _not_utf8(content: bytes, start: int) -> str:
@@ -224,7 +230,3 @@ def _offer(path: Path) -> str:
         files = []
     near = [f"'{path.with_name(name) if name in files else name}'" for name in nearest(path.name, files)]
     return f"did you mean {' or '.join(near)}? " if near else ""
-
-
-def _unreadable(place: str, message: str) -> DescriptionError:
-    return DescriptionError([Problem("", message)], place)

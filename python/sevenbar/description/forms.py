@@ -301,7 +301,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
     elif form.joint is not None:
         linkage = _from_drawing(form, form.joint, source)
     else:
-        linkage = _from_rows(form, form.link or ())
+        linkage = _from_rows(form, form.link or (), source)
     return replace(
         linkage,
         name=form.name,
@@ -364,8 +364,8 @@ def _from_dimensions(form: LinkageForm, rssr: RssrForm) -> Linkage:
     )
 
 
-def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
-    """Classic Denavit-Hartenberg rows: the ground's frame is that of the last link, its axes renamed."""
+def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...], source: str) -> Linkage:
+    """Denavit-Hartenberg rows: the ground's frame is that of the last link, or that of planar textbooks."""
     dimensions: dict[str, float] = {}
     for i, row in enumerate(rows, 1):
         dimensions |= {f"length_{i}": row.length, f"twist_{i}_deg": _degrees(row.twist)}
@@ -376,7 +376,14 @@ def _from_rows(form: LinkageForm, rows: tuple[LinkForm, ...]) -> Linkage:
     joints = tuple(
         Joint(kind, name, pitch=row.pitch) for (name, kind), row in zip(form.joints, rows, strict=True)
     )
-    return _linkage(form, "rows", joints, dimensions=dimensions)
+    if form.layout == "dh":
+        return _linkage(form, "rows", joints, dimensions=dimensions)
+    ends = [f"link[{i + 1}].joint" for i in (0, -1 % len(rows)) if rows[i].joint != "R"]
+    turned = [f"link[{i}].twist" for i, row in enumerate(rows, 1) if row.twist]
+    if place := next(iter([*ends, *turned]), None):
+        what = "the first and the last joint turn" if ends else "all twists are 0"
+        raise DescriptionError([Problem(place, f'does not fit layout = "planar", in which {what}')], source)
+    return _linkage(form, "planar", joints, dimensions=dimensions)
 
 
 def _from_drawing(form: LinkageForm, drawn: tuple[JointForm, ...], source: str) -> Linkage:

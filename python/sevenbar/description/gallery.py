@@ -16,7 +16,7 @@ def names() -> tuple[str, ...]:
     """The names of all linkages of the gallery, in alphabetic order.
 
     >>> len(names()), names()[0]
-    (20, 'bennett')
+    (23, 'bennett')
     """
     folder = resources.files("sevenbar.description") / "gallery"
     return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))

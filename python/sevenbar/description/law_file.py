@@ -22,7 +22,7 @@ DEGREE = 5
 #: they differ by pi / 180 or 2 pi / 60 then, while a coarse table differs by its curvature only.
 UNIT_SLIP = 0.5
 
-#: What a table can hold beside the time, in the order of derivatives.
+#: What a table can hold besides the time, in the order of derivatives.
 QUANTITIES = ("value", "velocity", "acceleration", "jerk")
 
 

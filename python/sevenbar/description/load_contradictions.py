@@ -19,7 +19,7 @@ F = TypeVar("F", bound=TableForm)
 def load_contradictions(
     raw: Mapping[str, Any], joints: Sequence[Written], context: Mapping[str, Any]
 ) -> list[Problem]:
-    """What is wrong with tables whose values are each right; wrong values are told of elsewhere."""
+    """What is wrong with tables whose values are each right; wrong values are reported elsewhere."""
     problems: list[Problem] = []
     units = str(context["mass_unit"]), str(context["length_unit"])
     for place, body in _forms(raw, "body", BodyForm, context):

@@ -7,7 +7,6 @@ from typing import Annotated
 from pydantic import WithJsonSchema
 
 from sevenbar.description.load_values import (
-    ENTRIES,
     Acceleration,
     Between,
     Damping,
@@ -23,7 +22,7 @@ from sevenbar.description.load_values import (
 )
 from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import Number, Text, Vector, one_of
-from sevenbar.forces.bodies import SOLIDS
+from sevenbar.forces.bodies import ENTRIES, SOLIDS
 from sevenbar.text.units import MASSES
 
 #: Along which axes a load may be given.

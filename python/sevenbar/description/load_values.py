@@ -2,37 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
-from sevenbar.arrays import Floats
 from sevenbar.description.values import FORMULA, POSITIVE, Component, NumberKind, number_for, refuse, three
 from sevenbar.errors import RequestError, shown
-from sevenbar.forces.bodies import flaw_of_inertia
+from sevenbar.forces.bodies import ENTRIES, flaw_of_inertia, tensor_of
 from sevenbar.text.units import ANGLES
-
-#: The entries of an inertia in a file.
-ENTRIES = "xx yy zz yz xz xy"
-
-
-def tensor_of(entries: Sequence[float]) -> Floats:
-    """The inertia (3, 3) of its six entries, in the order of a file.
-
-    >>> tensor_of([4, 5, 6, 0.1, 0.2, 0.3]).tolist()
-    [[4.0, 0.3, 0.2], [0.3, 5.0, 0.1], [0.2, 0.1, 6.0]]
-    """
-    xx, yy, zz, yz, xz, xy = entries
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], dtype=np.float64)
-
-
-def entries_of(tensor: Floats) -> list[float]:
-    """The six entries of an inertia (3, 3), in the order of a file."""
-    rows, columns = [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]
-    return [float(value) for value in tensor[rows, columns]]
 
 
 def spring_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, cast
 
-from sevenbar.description.load_values import tensor_of
-from sevenbar.forces.bodies import Body, Solid
+from sevenbar.forces.bodies import Body, Solid, tensor_of
 from sevenbar.forces.loading import Load, Loading, Spring
 from sevenbar.text.units import LENGTHS, MASSES
 

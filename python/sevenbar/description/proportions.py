@@ -1,4 +1,4 @@
-"""Whether the lengths of one loop can be seen beside each other in double precision."""
+"""Whether the lengths of one loop can be seen together in double precision."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ MEANT = 1e-9
 
 
 def disproportions(form: LinkageForm) -> list[Problem]:
-    """What is wrong where lengths as meant are mostly lost beside the greatest: the number that is too great.
+    """What is wrong where most lengths are lost next to the greatest: the number that is too great.
 
-    A loop is closed to a part of its size, so beside 1e15 a length of 1 is nothing, and circuits that differ
+    A loop is closed to a part of its size, so next to 1e15 a length of 1 is nothing, and circuits that differ
     by it are one. A few lengths that are lost do no harm, as zeros that a program computed; where they are
     half of all, it is the great one that is wrong. An RSSR is solved in closed form, without a size.
     """
@@ -70,7 +70,7 @@ def _of_rows(rows: Sequence[LinkForm], unit: str) -> list[Problem]:
 
 
 def _lost(lengths: Sequence[float], greatest: float) -> list[float]:
-    """The lengths that are lost beside the greatest, where they are at least half of those that are meant."""
+    """The lengths lost next to the greatest, where they are at least half of those that are meant."""
     meant = [length for length in lengths if length >= MEANT]
     lost = [length for length in meant if length < LEAST_SHARE * greatest]
     return lost if 2 * len(lost) >= len(meant) else []

@@ -191,6 +191,10 @@ class LinkageForm(TableForm):
         tuple[LinkForm, ...] | None,
         key("Denavit-Hartenberg rows in loop order, the last is the ground"),
     ] = None
+    layout: Annotated[
+        Literal["dh", "planar"],
+        key("of [[link]] rows: where the frame lies and angles begin"),
+    ] = "dh"
     point: Annotated[tuple[PointForm, ...], key("points to be traced")] = ()
     forces: Annotated[ForcesForm, key("gravity, and the unit of masses")] = ForcesForm()
     body: Annotated[tuple[BodyForm, ...], key("masses on links")] = ()

@@ -27,6 +27,7 @@ SPELLINGS: Mapping[str, tuple[str, ...]] = {
     "order": ("order", "sequence", "loop order"),
     "input": ("input", "drive", "driver", "driven", "driving"),
     "output": ("output", "out"),
+    "layout": ("layout",),
     "speed": ("speed", "drive speed", "input speed"),
     **{letter: tuple(f"{head}{letter}" for head in _PLACES) for letter in "xyz"},
     **{letter: (letter,) for letter in "uvw"},

@@ -9,24 +9,16 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from sevenbar.description.table_columns import (
-    DIMENSIONS,
-    PLACES,
-    ROWS,
-    has_dimensions,
-    is_modified,
-    key_of,
-    slip_of,
-)
+from sevenbar.description.table_cells import TableCells
+from sevenbar.description.table_columns import DIMENSIONS, PLACES, ROWS
 from sevenbar.description.toml_text import toml_text
 from sevenbar.description.written import meant_kind, names_ground
 from sevenbar.errors import DescriptionError, Problem, RequestError, shown
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.text.amounts import Kind, value_of
+from sevenbar.text.amounts import Kind
 from sevenbar.text.grid import CellTable, grid_of_frame
 from sevenbar.text.table import number
-from sevenbar.text.units import ANGLES, LENGTHS, MeasuredUnit, measured_unit
 
 #: What marks a row as the input or the output.
 MARKS = frozenset({"x", "yes", "y", "true", "1", "1.0", "input", "in", "output", "out", "drive", "driven"})
@@ -122,132 +114,13 @@ def add_points(found: TableDescription, grid: CellTable, source: str) -> None:
         found.raw["point"] = [*found.raw.get("point", []), *points]
 
 
-class _Reader:
-    """Reads one table, and collects what is wrong in it."""
-
-    def __init__(self, grid: CellTable, source: str) -> None:
-        self.grid, self.source = grid, source
-        self.problems: list[Problem] = []
-        self.places: dict[str, str] = {}
-        self.columns: dict[str, int] = {}
-        self.unread: list[str] = []
-        self._units_refused: set[int] = set()
-        labels = [grid.label(column) for column in range(len(grid.names))]
-        self.dimensions = has_dimensions(labels)
-        for column, label in enumerate(labels):
-            self._take(column, label)
-        self.filled = [row for row in range(len(grid.rows)) if any(self.grid.cell(row, c) for c in self._own)]
-        self.length_unit = self._unit_of("slide", LENGTHS) or "mm"
-        self.angle_unit = self._unit_of("turn", ANGLES) or "deg"
-
-    def _take(self, column: int, label: str) -> None:
-        if not label and not any(row[column] for row in self.grid.rows):
-            return
-        if is_modified(label):
-            self._wrong(
-                "is of modified (Craig's) Denavit-Hartenberg rows; give classic ones, "
-                "A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha): length and twist of the link after joint i",
-                column=column,
-            )
-            return
-        key = label if self.dimensions and label in DIMENSIONS else key_of(label)
-        if key in self.columns:
-            self._wrong(
-                f"is {key}, as is {shown(self.grid.names[self.columns[key]])}; leave one out", column=column
-            )
-        elif key:
-            self.columns[key] = column
-        elif near := slip_of(label):
-            self._wrong(f"is not known here; did you mean {shown(near)}?", column=column)
-        else:
-            self.unread.append(self.grid.names[column])
-
-    @property
-    def _own(self) -> list[int]:
-        """The columns that make a row one of the table."""
-        marks = ("joint", "order", "input", "output", "speed")
-        return [column for key, column in self.columns.items() if key not in marks] or list(
-            self.columns.values()
-        )
-
-    def _wrong(self, message: str, row: int | None = None, column: int | None = None) -> None:
-        self.problems.append(Problem(self.grid.place(row, column), message))
-
-    def finish(self) -> None:
-        """Raises `DescriptionError` if something is wrong."""
-        if self.problems:
-            raise DescriptionError(self.problems, self.source)
-
-    def _unit_of(self, kind: str, known: Mapping[str, float]) -> str:
-        """The first unit of lengths or angles that the columns have."""
-        units = [measured_unit(self._unit(column)) for column in self.columns.values()]
-        sizes = [u.size for u in units if u is not None and (u.kind, u.order) == (kind, 0)]
-        return next((name for size in sizes[:1] for name, own in known.items() if own == size), "")
-
-    def text(self, row: int, key: str) -> str:
-        """The cell of a row in a column; empty where there is no such column."""
-        return self.grid.cell(row, self.columns[key]) if key in self.columns else ""
-
-    def amount(self, row: int, key: str, kind: Kind) -> float | None:
-        """The number of a cell in the units of the table; `None` for an empty one, and one that is wrong."""
-        text = self.text(row, key)
-        if not text:
-            return None
-        column = self.columns[key]
-        if column in self._units_refused or not self._has_right_unit(column, kind):
-            return None
-        unit = measured_unit(self._unit(column)) if kind != "number" else None
-        value = number(text)
-        own = {"length": self.length_unit, "angle": self.angle_unit}
-        try:
-            if value is None:
-                value = (
-                    value_of(text, kind, length_unit=own["length"], angle_unit=own["angle"])
-                    if unit is None
-                    else value_of(text, kind, **_in(kind, self._unit(column), unit)) * self._scale(unit)
-                )
-            elif not math.isfinite(value):
-                raise RequestError(f"{shown(text)} is not a finite number; give a finite number")
-            elif unit is not None:
-                value *= self._scale(unit)
-            elif kind == "angle" and value != 0:
-                name = self.grid.label(column)
-                raise RequestError(
-                    f"{text} has no unit; write it in the header, as in '{name} [deg]' or '{name} [rad]'"
-                )
-        except RequestError as error:
-            self._wrong(str(error), row, column)
-            return None
-        return value
-
-    def _unit(self, column: int) -> str:
-        """The unit of a column as written; of a pitch without `/turn`."""
-        unit = self.grid.unit(column)
-        return re.sub(r"/\s*(turn|rev)$", "", unit) if column == self.columns.get("pitch") else unit
-
-    def _has_right_unit(self, column: int, kind: Kind) -> bool:
-        """Whether the unit of a column is one of its kind, or none; else it is reported, once."""
-        written = self._unit(column)
-        unit = measured_unit(written)
-        wanted = {"length": ("slide", 0), "pitch": ("slide", 0), "angle": ("turn", 0)}.get(kind)
-        if not written or (unit is not None and (unit.kind, unit.order) == wanted):
-            return True
-        what = {"number": "directions", "pitch": "pitches"}.get(kind, f"{kind}s")
-        give = {"number": "leave it out", "angle": "give one like deg"}.get(kind, "give one like mm")
-        self._wrong(f"{shown(written)} is not a unit of {what}; {give}", column=column)
-        self._units_refused.add(column)
-        return False
-
-    def _scale(self, unit: MeasuredUnit) -> float:
-        if unit.kind == "slide":
-            return unit.size_in(self.length_unit)
-        own = ANGLES[self.angle_unit]
-        return 1.0 if unit.size == own else unit.size / own
+class _Reader(TableCells):
+    """Makes the description of one table."""
 
     def description(self) -> TableDescription:
         """The description of the table."""
         if not self.filled and not self.problems:
-            self._wrong("has a header but no rows; give one for each joint")
+            self.wrong("has a header but no rows; give one for each joint")
         self.finish()
         described = {
             "format": 1,
@@ -261,7 +134,7 @@ class _Reader:
             mixed = [key for key in ("twist", "offset") if key in self.columns]
             if mixed:
                 both = " and ".join(shown(self.grid.names[self.columns[key]]) for key in mixed)
-                self._wrong(f"{both}: of Denavit-Hartenberg rows, x, y, z of joints as drawn; leave one out")
+                self.wrong(f"{both}: of Denavit-Hartenberg rows, x, y, z of joints as drawn; leave one out")
                 self.finish()
             # columns of rows say nothing of a joint as drawn, such as the radius r of a part's hole
             for key in ("length", "angle", "joint" if "name" in self.columns else ""):
@@ -271,7 +144,7 @@ class _Reader:
         elif any(key in self.columns for key in ROWS):
             found = self._of_joints("link")
         else:
-            self._wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
+            self.wrong(f"the columns describe no linkage; name them as in {EXAMPLES}")
             found = {}, ""
         if not found[0]:
             self.finish()
@@ -281,7 +154,7 @@ class _Reader:
 
     def _of_dimensions(self) -> tuple[dict[str, Any], str]:
         if len(self.filled) != 1:
-            self._wrong(f"{len(self.filled)} rows; an RSSR has one row of dimensions")
+            self.wrong(f"{len(self.filled)} rows; an RSSR has one row of dimensions")
         row = self.filled[0]
         numbers = {key: self.amount(row, key, "length") for key in DIMENSIONS if key in self.columns}
         self.places |= {f"rssr.{key}": self.grid.place(row, self.columns[key]) for key in numbers}
@@ -317,6 +190,8 @@ class _Reader:
             raw["point"] = [self.point(row, k) for k, row in enumerate(points)]
         count = f"{len(tables)} "
         if form == "link":
+            if layout := next((word for row in joints if (word := self.text(row, "layout"))), ""):
+                raw["layout"] = layout
             what = f"{count}classic Denavit-Hartenberg rows (Rz Tz Tx Rx, the last link is the ground)"
             return raw, f"read as {what}, lengths in {self.length_unit}, angles in {self.angle_unit}"
         left = len(self.filled) - len(rows)
@@ -337,7 +212,7 @@ class _Reader:
             value = number(self.text(row, "order"))
             if value is None or not math.isfinite(value) or value in places.values():
                 given = shown(self.text(row, "order"))
-                self._wrong(
+                self.wrong(
                     f"{given} is no place in the loop; give 1, 2, 3 .., each once", row, self.columns["order"]
                 )
             else:
@@ -353,7 +228,7 @@ class _Reader:
         if words and None not in counts and not math.isnan(sum(count or 0.0 for count in counts)):
             first = counts[0] or 0.0
             if counts != [first + i for i in range(len(rows))]:
-                self._wrong(
+                self.wrong(
                     "its numbers are not in order; give the rows in loop order", None, self.columns["joint"]
                 )
             return dict.fromkeys(rows, "")
@@ -404,23 +279,23 @@ class _Reader:
         if not kind:
             column = self.columns.get("kind")
             letters = ", ".join(KINDS)
-            self._wrong(f"no kind of joint; give one of {letters}", row, column)
+            self.wrong(f"no kind of joint; give one of {letters}", row, column)
         table: dict[str, Any] = self._head(row, place, name, "kind", kind, key)
-        table["at"] = self._vector(row, "", "length")
+        table["at"] = self.vector(row, "", "length")
         for key, wanted in (("axis", "axis "), ("axis 2", "axis 2 ")):
             if any(self.text(row, f"{wanted}{letter}") for letter in "xyz"):
-                table[key] = self._vector(row, wanted, "number")
-                self.places[f"{place}.{key}"] = self._span(row, wanted)
+                table[key] = self.vector(row, wanted, "number")
+                self.places[f"{place}.{key}"] = self.span(row, wanted)
         if "axis 2" in table:
             table["axes"] = [table.pop("axis", [0.0, 0.0, 0.0]), table.pop("axis 2")]
-            self.places[f"{place}.axes"] = self._span(row, "axis ")
+            self.places[f"{place}.axes"] = self.span(row, "axis ")
         if "pitch" in self.columns and (pitch := self.amount(row, "pitch", "pitch")) is not None:
             table["pitch"] = pitch
             self.places[f"{place}.pitch"] = self.grid.place(row, self.columns["pitch"])
         # a ball has no axis, whatever a list of axes holds
         if kind in KINDS and not KINDS[kind].drawn_keys:
             table.pop("axis", None)
-        self.places[f"{place}.at"] = self._span(row, "")
+        self.places[f"{place}.at"] = self.span(row, "")
         return table
 
     def _head(self, row: int, place: str, name: str, kind_key: str, kind: str, key: str) -> dict[str, Any]:
@@ -435,23 +310,6 @@ class _Reader:
             self.places[f"{place}.{kind_key}"] = self.grid.place(row, self.columns[key])
         return table
 
-    def _vector(self, row: int, head: str, kind: Kind, letters: str = "xyz") -> list[float]:
-        found = []
-        for letter in letters:
-            value = self.amount(row, f"{head}{letter}", kind)
-            if value is None and f"{head}{letter}" in self.columns and not self.text(row, f"{head}{letter}"):
-                self._wrong(
-                    "is empty; give a number, 0 where it is none", row, self.columns[f"{head}{letter}"]
-                )
-            found.append(0.0 if value is None else value)
-        return found
-
-    def _span(self, row: int, head: str) -> str:
-        """The place of a vector's cells."""
-        columns = [self.columns[f"{head}{letter}"] for letter in "xyz" if f"{head}{letter}" in self.columns]
-        names = ", ".join(shown(self.grid.names[column]) for column in columns)
-        return f"{self.grid.place(row)}, columns {names}" if columns else self.grid.place(row)
-
     def point(self, row: int, k: int) -> dict[str, Any]:
         """A named point carried by a link."""
         place = f"point[{k + 1}]"
@@ -464,11 +322,11 @@ class _Reader:
         whole = link is not None and math.isfinite(link) and link.is_integer()
         if not whole:
             given = shown(self.text(row, "link"))
-            self._wrong(
+            self.wrong(
                 f"{given} is not a link; give its number, counted from 1", row, self.columns.get("link")
             )
         name = self.text(row, "name") or self.text(row, "joint") or f"P{k + 1}"
-        at = self._vector(row, "", "length", letters)
+        at = self.vector(row, "", "length", letters)
         return {"name": name, "link": int(link or 1) if whole else 1, "at": at}
 
     def _drive(self, names: Mapping[int, str]) -> dict[str, Any]:
@@ -479,7 +337,7 @@ class _Reader:
                 continue
             marked = [row for row in names if self.text(row, key).lower() not in NO_MARKS]
             for row in marked[1:]:
-                self._wrong(f"is a second {key}; mark one row", row, self.columns[key])
+                self.wrong(f"is a second {key}; mark one row", row, self.columns[key])
             if not marked:
                 continue
             word = self.text(marked[0], key)
@@ -496,24 +354,16 @@ class _Reader:
                 drive["speed"] = word
                 self.places["drive.speed"] = self.places[f"drive.{target}"]
             else:
-                self._wrong(f"{shown(word)} marks nothing; write x, or a speed as in '60 rpm'", marked[0],
+                self.wrong(f"{shown(word)} marks nothing; write x, or a speed as in '60 rpm'", marked[0],
                             self.columns[key])  # fmt: skip
         spoken = [row for row in names if self.text(row, "speed")]
         for row in spoken[:1]:
             column = self.columns["speed"]
-            drive["speed"] = f"{self.text(row, 'speed')} {self._unit(column)}".strip()
+            drive["speed"] = f"{self.text(row, 'speed')} {self.unit_of_column(column)}".strip()
             self.places["drive.speed"] = self.grid.place(row, column)
         for row in spoken[1:]:
-            self._wrong("is a second speed; give one, in the row of the input", row, self.columns["speed"])
+            self.wrong("is a second speed; give one, in the row of the input", row, self.columns["speed"])
         return drive
-
-
-def _in(kind: Kind, written: str, unit: MeasuredUnit) -> dict[str, str]:
-    """The unit in which a formula of a column is read."""
-    known = ANGLES if kind == "angle" else LENGTHS
-    name = next((name for name, size in known.items() if size == unit.size), written)
-    key = "angle_unit" if kind == "angle" else "length_unit"
-    return {key: name} if kind != "number" and name in known else {}
 
 
 def _kind(word: str) -> str:

@@ -32,7 +32,7 @@ def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
     drive = ["input", "output", "speed"]
     marks = [_marks(linkage, i) for i in range(len(linkage.joints))]
     names = [joint.name for joint in linkage.joints]
-    if linkage.form == "rows":
+    if linkage.in_rows:
         units = {"length": length, "twist": angle, "offset": length, "angle": angle, "pitch": length}
         tables = raw["link"]
         used = [key for key in units if key in ("length", "twist") or any(key in row for row in tables)]
@@ -41,6 +41,8 @@ def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
             [name, row.get("joint", "R"), *(_of_row(row, key) for key in used), *mark]
             for name, row, mark in zip(names, tables, marks, strict=True)
         ]
+        if layout := raw.get("layout"):
+            return [*head, "layout"], [[*row, None if i else layout] for i, row in enumerate(rows)]
         return head, rows
     tables = raw["joint"]
     crossed = any("axes" in table for table in tables)
@@ -58,7 +60,7 @@ def linkage_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
 
 def points_table(linkage: Loop) -> tuple[list[str], list[list[Cell]]]:
     """The head and the rows of the points that a person has added; no rows where there are none."""
-    letters = "uvw" if linkage.form == "rows" else "xyz"
+    letters = "uvw" if linkage.in_rows else "xyz"
     head = ["name", "link", *(f"{letter} [{linkage.length_unit}]" for letter in letters)]
     return head, [[point.name, point.link, *point.at] for point in linkage.added_points]
 

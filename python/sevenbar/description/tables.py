@@ -19,7 +19,7 @@ from sevenbar.description.table_reader import (
     described,
     described_frame,
 )
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.errors import DescriptionError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.grid import grid_of_sheet, grid_of_text
 from sevenbar.text.table import read_bytes, text_of_bytes
@@ -64,12 +64,14 @@ def description_of_bytes(content: bytes, source: str) -> TableDescription:
     """What a file's bytes describe; `source` is its name in messages."""
     stem = Path(source).stem
     if not content.strip():
-        raise _refused(source, "is empty; give a table with a header and a row for each joint")
+        raise DescriptionError.of_all(source, "is empty; give a table with a header and a row for each joint")
     if not content.startswith(ZIP):
         text = text_of_bytes(content, source).replace("\r\n", "\n").replace("\r", "\n")
         grid = grid_of_text(text, is_header)
         if grid is None:
-            raise _refused(source, f"no header of a linkage's table; name the columns as in {EXAMPLES}")
+            raise DescriptionError.of_all(
+                source, f"no header of a linkage's table; name the columns as in {EXAMPLES}"
+            )
         return described(grid, source, stem or "linkage")
     sheets = sheets_of(content, source)
     grids = {sheet.title: grid_of_sheet(sheet, is_header) for sheet in sheets}
@@ -77,7 +79,7 @@ def description_of_bytes(content: bytes, source: str) -> TableDescription:
     first = first or next((title for title, grid in grids.items() if grid is not None), None)
     if first is None:
         known = ", ".join(map(shown, grids))
-        raise _refused(
+        raise DescriptionError.of_all(
             source,
             f"no sheet has the header of a linkage's table ({known}); name the columns as in {EXAMPLES}",
         )
@@ -92,7 +94,3 @@ def description_of_bytes(content: bytes, source: str) -> TableDescription:
     if points is not None:
         add_points(found, points, source)
     return found
-
-
-def _refused(source: str, message: str) -> DescriptionError:
-    return DescriptionError([Problem("", message)], source)

@@ -34,6 +34,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import Walk, walk
 from sevenbar.text.progress import Progress, silent
+from sevenbar.text.words import say
 
 Picture = npt.NDArray[np.uint8]
 
@@ -90,7 +91,8 @@ def animate(
     with written_whole(target) as file, styled(style):
         frame = skeleton(motion, chosen)
         seen = view_of(view, motion.linkage, scene.shown_places(frame))
-        heading = title_text(title, f"{title_of(motion)}\ncircuit {chosen.index}")
+        usual = f"{title_of(motion)}\n{say('circuit {number}', number=chosen.index)}"
+        heading = title_text(title, usual)
         if ending == ".html":
             rows = _rows(motion, walk(chosen), frames)
             text = film_page(motion, chosen, frame, seen, rows, fps=float(fps), title=heading)

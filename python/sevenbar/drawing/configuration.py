@@ -34,6 +34,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Modes, Motion, chosen_circuit
 from sevenbar.kinematics.poses import frames_of, walk
+from sevenbar.text.words import say
 
 #: Width [inch] of a picture, of one mode in a row of two, and in a row of more.
 WIDTH, MODE, SMALL_MODE = 6.4, 3.7, 2.9
@@ -89,7 +90,10 @@ def configuration(
         seen = view_of(view, motion.linkage, shown_places(frame), ax)
         if ax is None:
             page = page_size(style, figsize, (WIDTH, WIDTH), wide=False)
-            which = f"circuit {chosen.index}, {len(poses)} position{'s' * (len(poses) > 1)}"
+            which = say(
+                "circuit {number}, {count} position{s}",
+                number=chosen.index, count=len(poses), s="s" * (len(poses) > 1),
+            )  # fmt: skip
             heading = title_text(title, f"{title_of(motion)}\n{which}")
             shown_keys = keys(frame, ends, seen) if legend else []
             box = frame_box(frame, seen)
@@ -164,13 +168,16 @@ def modes_overview(
                 prepare_given(space, poses)
                 _draw_mode(space, poses, index, ends, 1.0)
                 if title:
-                    axes.set_title(f"mode {index}")
+                    axes.set_title(say("mode {number}", number=index))
             return given[0].figure.figure  # type: ignore[no-any-return]
         usual = across * (MODE if across < 3 else SMALL_MODE)
         usual = max(usual, 5.0)
         figure = new_figure(*page_size(style, figsize, (usual, usual), wide=across > 1))
-        word = "mode" if count == 1 else "modes"
-        named = f"{short(linkage.heading, 60)}: {count} assembly {word}\nat {shown_name(ends[0])} = {value}"
+        named = say(
+            "{linkage}: {count} assembly mode{s}\nat {joint} = {value}",
+            linkage=short(linkage.heading, 60), count=count, s="s" * (count > 1),
+            joint=shown_name(ends[0]), value=value,
+        )  # fmt: skip
         top = write_title(figure, title_text(title, named))
         foot = write_legend(figure, keys(one_pose(poses, 0), ends, seen) if legend else [])
         width, height = figure.get_size_inches()
@@ -187,7 +194,9 @@ def modes_overview(
             space = ViewAxes(own_axes(figure, seen), seen)
             prepare(space, poses, (left, bottom, side[0], side[1] - heading))
             _draw_mode(space, poses, index, ends, SMALLER if across > 2 else 0.85)
-            space.heading(f"mode {index}", left + side[0] / 2, bottom + side[1] - heading + EDGE / 2)
+            space.heading(
+                say("mode {number}", number=index), left + side[0] / 2, bottom + side[1] - heading + EDGE / 2
+            )
     return figure
 
 

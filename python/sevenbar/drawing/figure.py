@@ -17,16 +17,20 @@ from matplotlib.figure import Figure
 from sevenbar.arrays import Floats
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.space import measuring
-from sevenbar.drawing.style import STYLE
+from sevenbar.drawing.style import STYLE, page_size
 from sevenbar.errors import OutputError, RequestError, shown
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
+from sevenbar.text.words import say
 
 #: What a figure can be written as.
 FORMATS = ("png", "svg", "pdf", "eps")
 
 
 PNG_DPI = 200
+
+#: A figure that is usually wider than this [inch] takes both columns of a paper.
+BOTH_COLUMNS = 7.5
 
 
 #: Rates that grow without bound are cut at these percentiles (low end; the high end mirrors it).
@@ -58,7 +62,7 @@ def column_label(motion: Motion, column: str) -> str:
 def new_figure(width: float, height: float, *, pads: tuple[float, float] | None = None) -> Figure:
     """An empty white figure [inch] with a canvas of its own, outside pyplot's register.
 
-    With `pads` its panels are laid out by matplotlib, with this room [inch] above and beside each.
+    With `pads` its panels are laid out by matplotlib, with this room [inch] above and at the sides of each.
     """
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
@@ -67,9 +71,15 @@ def new_figure(width: float, height: float, *, pads: tuple[float, float] | None 
     return figure
 
 
+def page_figure(width: float, height: float, *, pads: tuple[float, float] | None = None) -> Figure:
+    """`new_figure` of a usual size [inch], or of the style's width: both columns where it is wide."""
+    return new_figure(*page_size(None, None, (width, height), wide=width > BOTH_COLUMNS), pads=pads)
+
+
 def title_of(motion: Motion) -> str:
     """The linkage's name and motion type."""
-    return f"{short(motion.linkage.heading, 60)}: {motion.motion_type}"
+    heading = short(motion.linkage.heading, 60)
+    return say("{linkage}: {motion_type}", linkage=heading, motion_type=say(motion.motion_type))
 
 
 def title_text(title: bool | str, usual: str) -> str:
@@ -99,7 +109,9 @@ def key_below(figure: Figure, handles: Sequence[Any], heading: str = "") -> None
 def circuits_text(numbers: Sequence[int]) -> str:
     """Circuits by their numbers: "circuit 3", "circuits 1 and 5", "circuits 0, 1 and 2"."""
     *first, last = map(str, numbers)
-    return f"circuits {', '.join(first)} and {last}" if first else f"circuit {last}"
+    if not first:
+        return say("circuit {number}", number=last)
+    return say("circuits {numbers} and {last}", numbers=say(", ").join(first), last=last)
 
 
 def given_axes(ax: Any, count: int, what: str) -> list[Any]:
@@ -139,12 +151,15 @@ def note(motion: Motion, cut: bool) -> str:
     """How the input is driven, and whether rates were cut."""
     name = shown_name(motion.input)
     unit = motion.linkage.unit_of(motion.input)
-    note = f"{name} at {motion.speed_written or f'{motion.speed:g} {unit}/s'}"
+    speed = motion.speed_written or f"{motion.speed:g} {unit}/s"
+    if not all(circuit.goes_round for circuit in motion):
+        speed = f"±{abs(motion.speed):g} {unit}/s"
+    driven = say("{joint} at {speed}", joint=name, speed=speed)
     if motion.law is not None:
-        note = f"{name} driven by a law"
-    elif not all(circuit.goes_round for circuit in motion):
-        note = f"{name} at ±{abs(motion.speed):g} {unit}/s"
-    return note + ("; rates grow without bound at dead centres: axes cut" if cut else "")
+        driven = say("{joint} driven by a law", joint=name)
+    if not cut:
+        return driven
+    return say("{driven}; rates grow without bound at dead centres: axes cut", driven=driven)
 
 
 def save(figure: Figure, path: str | os.PathLike[str]) -> Path:

@@ -20,6 +20,7 @@ from sevenbar.drawing.view import Projection
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.poses import walk
+from sevenbar.text.words import say, spoken
 
 #: Digits that places [share of the extent] and values keep.
 DIGITS = 5
@@ -42,6 +43,11 @@ def film_page(
             "linkage": _linkage(motion, frame, view, rows),
             "curves": _curves(motion, circuit, rows),
             "reading": _reading(circuit, rows),
+            "words": {
+                "play": say("Play"),
+                "pause": say("Pause"),
+                "cut": say("{quantity}, cut at dead centres"),
+            },
         },
         allow_nan=False,
         separators=(",", ":"),
@@ -51,7 +57,9 @@ def film_page(
     # a closing tag within a name would end the script
     found = found.replace("</", "<\\/")
     return (
-        page.replace("@TITLE@", escape(motion.linkage.heading))
+        page.replace("@LANGUAGE@", spoken())
+        .replace("@PAUSE@", say("Pause"))
+        .replace("@TITLE@", escape(motion.linkage.heading))
         .replace("@HEADING@", heading)
         .replace("@FILM@", found)
     )

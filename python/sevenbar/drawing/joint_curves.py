@@ -31,6 +31,7 @@ from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import along, walk
+from sevenbar.text.words import say
 
 #: Circuits whose curves lie on each other: how much wider each is than the one on it.
 WIDER = 2.0
@@ -67,7 +68,7 @@ def joints(
             panels = given_axes(ax, len(drawn), "one for each column")
             figure: Figure = panels[0].figure.figure
         else:
-            across = _across(len(drawn))
+            across = panels_across(len(drawn))
             down = math.ceil(len(drawn) / across)
             usual = 3.4 * across + 0.4, 2.0 * down + 1.0
             figure = new_figure(*page_size(style, figsize, usual, wide=across > 1), pads=(0.05, 0.06))
@@ -85,13 +86,15 @@ def joints(
             axes.set_xlabel(input_label(motion) if last else "")
         headline(figure, title, title_of(motion))
         if legend:
-            lines = [Line2D([], [], **_look(c, 0), label=f"circuit {c.index}") for c in motion]
+            lines = [
+                Line2D([], [], **_look(c, 0), label=say("circuit {number}", number=c.index)) for c in motion
+            ]
             key_below(figure, lines)
         tidy(figure)
     return figure
 
 
-def _across(count: int) -> int:
+def panels_across(count: int) -> int:
     """Columns of a grid of panels: few empty places, and as high as wide."""
     return min(
         (1, 2, 3, 4), key=lambda n: (-count % n) + abs(math.ceil(count / n) - 1.3 * n) + 9 * (n > count)

@@ -35,6 +35,7 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import walk
+from sevenbar.text.words import say
 
 #: The least transmission angle [deg] that textbooks recommend.
 RECOMMENDED = 40.0
@@ -101,7 +102,9 @@ def transmission(
             colour = CIRCUIT_COLOURS[numbers[0] % len(CIRCUIT_COLOURS)]
             look: dict[str, Any] = {"color": colour, "ls": LINE_STYLES[place % len(LINE_STYLES)]}
             axes.plot(across, values, lw=1.6 * stroke(), label=circuits_text(numbers), **look)
-        axes.axhline(RECOMMENDED, color=QUIET, lw=0.9 * stroke(), ls=":", label=f"{RECOMMENDED:g}°")
+        axes.axhline(
+            RECOMMENDED, color=QUIET, lw=0.9 * stroke(), ls=":", label=say("{angle:g}°", angle=RECOMMENDED)
+        )
         ends = np.concatenate([across for _, across, _ in groups])
         if np.ptp(ends) > 0:
             axes.set_xlim(ends.min(), ends.max())
@@ -110,7 +113,7 @@ def transmission(
         if not slides(motion, motion.input):
             axes.xaxis.set_major_locator(DegreeLocator(9))
         axes.set_xlabel(input_label(motion))
-        axes.set_ylabel("transmission angle [deg]")
+        axes.set_ylabel(say("transmission angle [deg]"))
         if ax is None:
             headline(figure, title, title_of(motion))
             if legend:
@@ -169,20 +172,27 @@ def axodes(
     with styled(style):
         given = None if ax is None else given_axes(ax, 1, "or none")[0]
         seen = view_of(view, motion.linkage, solid, given)
-        word = "centrode" if seen.planar else "axode"
+        fixed, moving = say("fixed axode"), say("moving axode")
+        if seen.planar:
+            fixed, moving = say("fixed centrode"), say("moving centrode")
         lines = [_axode(point, way, middle, size, planar=seen.planar) for point, way in both]
         every = np.concatenate([solid, *(line.reshape(-1, 3) for line in lines)])
         box = box_round(every[np.isfinite(every).all(axis=1)], seen)
         handles = [
-            Line2D([], [], color=FIXED, lw=1.6 * stroke(), label=f"fixed {word}"),
-            Line2D([], [], color=MOVING, lw=1.6 * stroke(), label=f"moving {word}"),
-            Line2D([], [], color="black", lw=1.6 * stroke(), label="screw axis"),
+            Line2D([], [], color=FIXED, lw=1.6 * stroke(), label=fixed),
+            Line2D([], [], color=MOVING, lw=1.6 * stroke(), label=moving),
+            Line2D([], [], color="black", lw=1.6 * stroke(), label=say("screw axis")),
         ]
         if seen.planar:
-            handles[2] = Line2D([], [], color="black", ls="", marker="o", ms=5, label="instant centre")
+            handles[2] = Line2D([], [], color="black", ls="", marker="o", ms=5, label=say("instant centre"))
         if given is None:
             page = page_size(style, figsize, (6.4, 6.4), wide=False)
-            heading = title_text(title, f"{title_of(motion)}\n{word}s of link {link}, circuit {chosen.index}")
+            which = (
+                say("centrodes of link {link}, circuit {number}", link=link, number=chosen.index)
+                if seen.planar
+                else say("axodes of link {link}, circuit {number}", link=link, number=chosen.index)
+            )
+            heading = title_text(title, f"{title_of(motion)}\n{which}")
             shown = handles if legend else []
             figure, space, room = page_of_one(page, seen, box, heading, shown, fixed=figsize is not None)
             prepare_box(space, box, motion.linkage.length_unit, room)

@@ -7,6 +7,7 @@ import re
 
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.text.units import LENGTHS, length_sizes
+from sevenbar.text.words import say
 
 #: The name of a joint that nobody named, as the descriptions make it, and the number of a column of its own.
 _UNNAMED = re.compile(r"theta_(\d+)(\.\d+)?")
@@ -52,8 +53,9 @@ def quantity_label(name: str, quantity: str, unit: str) -> str:
     ('rocker angle [deg]', 'θ₇ [deg]')
     """
     said = shown_name(name)
-    plain = _UNNAMED.fullmatch(name) and quantity in ("angle", "position")
-    return f"{said} [{unit}]" if plain else f"{said} {quantity} [{unit}]"
+    if _UNNAMED.fullmatch(name) and quantity in ("angle", "position"):
+        return f"{said} [{unit}]"
+    return say("{joint} {quantity} [{unit}]", joint=said, quantity=say(quantity), unit=unit)
 
 
 def handy_unit(unit: str, largest: float) -> tuple[float, str]:

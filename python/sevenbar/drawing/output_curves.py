@@ -35,6 +35,7 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import walk
+from sevenbar.text.words import say
 
 #: Marks in the curves' legend.
 EXTREME, LIMIT, CHANGE_POINT = "extreme", "input limit", "change point"
@@ -52,6 +53,8 @@ class DrawnPass:
 
     circuit: Circuit
     label: str
+    #: The branch and how the input goes on it, where the circuit has several.
+    way: str
     style: dict[str, Any]
     input: Floats
     time: Floats
@@ -75,12 +78,18 @@ def passes(motion: Motion) -> list[DrawnPass]:
             shown_value(motion, motion.output, path.output), NATURAL_ANGLE if circuit.output_turns else size
         )
         for branch, part in enumerate(path.passes):
-            label = f"circuit {circuit.index}"
+            label = say("circuit {number}", number=circuit.index)
+            way = ""
             if len(path.passes) > 1:
-                label += f", branch {branch}"
+                way = say("branch {number}", number=branch)
                 if motion.law is None:
                     rise = path.input[part][-1] - path.input[part][0]
-                    label += ": input rising" if rise > 0 else ": input falling"
+                    way = (
+                        say("{branch}: input rising", branch=way)
+                        if rise > 0
+                        else say("{branch}: input falling", branch=way)
+                    )
+                label = say("{circuits}, {branch}", circuits=label, branch=way)
             colour = CIRCUIT_COLOURS[circuit.index % len(CIRCUIT_COLOURS)]
             style = {
                 "color": colour,
@@ -89,7 +98,9 @@ def passes(motion: Motion) -> list[DrawnPass]:
             }
             places = shown_value(motion, motion.input, path.input[part]), path.time[part]
             made.append(
-                DrawnPass(circuit, label, style, *places, angle[part], velocity[part], acceleration[part])
+                DrawnPass(
+                    circuit, label, way, style, *places, angle[part], velocity[part], acceleration[part]
+                )
             )
     return made
 
@@ -115,12 +126,13 @@ def drawn_once(motion: Motion, drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
             groups.append([line])
     made = []
     for place, group in enumerate(groups):
-        alone, _, branch = group[0].label.partition(",")
-        label = alone if len(group) == 1 else circuits_text([line.circuit.index for line in group])
+        label = circuits_text([line.circuit.index for line in group])
+        if group[0].way:
+            label = say("{circuits}, {branch}", circuits=label, branch=group[0].way)
         style = group[0].style
         if len(groups) < len(drawn):
             style = style | {"ls": LINE_STYLES[(place + place // 8) % len(LINE_STYLES)]}
-        made.append(replace(group[0], label=label + ("," + branch if branch else ""), style=style))
+        made.append(replace(group[0], label=label, style=style))
     return made
 
 
@@ -218,7 +230,7 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
                 for v, (_, at) in zip(values, sides, strict=True)
             ]
             ring = {"ms": 4.5 * stroke(), "mfc": "white", "mec": own[0].style["color"], "mew": 1.2 * stroke()}
-            axes.plot(places, factor * np.array(values), "o", ls="", label=EXTREME, zorder=4, **ring)
+            axes.plot(places, factor * np.array(values), "o", ls="", label=say(EXTREME), zorder=4, **ring)
     ends = np.concatenate([getattr(line, over) for line in drawn])
     room = 0.02 * np.ptp(ends) if over == "input" and motion.limits.size else 0.0
     if np.ptp(ends) > 0:
@@ -231,13 +243,13 @@ def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str,
             (motion.change_point_inputs, ":", CHANGE_POINT),
         ):
             for place in inputs_between(motion, inputs, ends.min(), ends.max()):
-                axes.axvline(place, color=QUIET, lw=1.0 * stroke(), ls=dashes, zorder=1, label=name)
+                axes.axvline(place, color=QUIET, lw=1.0 * stroke(), ls=dashes, zorder=1, label=say(name))
     if quantity == "angle" and not slides(motion, motion.output):
         axes.yaxis.set_major_locator(DegreeLocator(7))
     else:
         axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     widen(axes.yaxis, factor * _natural(motion, quantity))
-    axes.set_xlabel(input_label(motion) if over == "input" else "time [s]")
+    axes.set_xlabel(input_label(motion) if over == "input" else say("time [s]"))
     axes.set_ylabel(_label(motion, quantity, length))
 
 
@@ -316,17 +328,14 @@ def _time_above(axes: Axes, motion: Motion, line: DrawnPass) -> None:
         return start + time * rate
 
     above = axes.secondary_xaxis("top", functions=(time, angle))
-    above.set_xlabel("time [s]")
+    above.set_xlabel(say("time [s]"))
 
 
 def curve_keys(panels: Iterable[Axes], drawn: Sequence[DrawnPass]) -> list[Line2D]:
     """One legend entry for each pass and for each kind of mark."""
     lines = {str(line.get_label()): line for axes in panels for line in axes.lines}
-    if EXTREME in lines:  # drawn in each circuit's colour
+    marks = [say(mark) for mark in (EXTREME, LIMIT, CHANGE_POINT)]
+    if marks[0] in lines:  # drawn in each circuit's colour
         ring: dict[str, Any] = {"ms": 4.5 * stroke(), "mfc": "white", "mec": "#404040"}
-        lines[EXTREME] = Line2D([], [], ls="", marker="o", label=EXTREME, **ring)
-    return [
-        lines[label]
-        for label in (*(line.label for line in drawn), EXTREME, LIMIT, CHANGE_POINT)
-        if label in lines
-    ]
+        lines[marks[0]] = Line2D([], [], ls="", marker="o", label=marks[0], **ring)
+    return [lines[label] for label in (*(line.label for line in drawn), *marks) if label in lines]

@@ -49,6 +49,7 @@ from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.circuits import Circuit, Integers, Trace
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import walk
+from sevenbar.text.words import say
 
 #: Arrows along a path, and the length of the longest as a share of the path's extent.
 ARROWS, LONGEST_ARROW = 36, 0.35
@@ -100,7 +101,6 @@ def point_path(
     trace = chosen.point(link, at)
     if not np.isfinite(trace.position).all(axis=1).any():
         raise RequestError(f"point: it has no place along circuit {chosen.index}; nothing to draw")
-    called = short(name or f"link {link} at ({', '.join(f'{x:g}' for x in at)})", 40)
     rows = walk(chosen).rows
     places = trace.position[rows]
     arrows = {what: arrows_along(places, getattr(trace, what)[rows]) for what in ("velocity", "acceleration")}
@@ -130,7 +130,13 @@ def point_path(
         wide = len(pictures) > 1
         usual = WIDTH if wide else ALONE
         figure = new_figure(*page_size(style, figsize, (usual, usual), wide=wide))
-        heading = f"{title_of(motion)}\npoint {called}, circuit {chosen.index}, {note(motion, False)}"
+        where = f"({', '.join(f'{x:g}' for x in at)})"
+        which = say(
+            "point {name}, circuit {number}, {driven}",
+            name=short(name or say("link {number} at {place}", number=link, place=where), 40),
+            number=chosen.index, driven=note(motion, False),
+        )  # fmt: skip
+        heading = f"{title_of(motion)}\n{which}"
         top = write_title(figure, title_text(title, heading))
         width, height = figure.get_size_inches()
         line = 0.024 * letters()
@@ -150,24 +156,25 @@ def point_path(
             fit_picture(space, box, room)
             draw_frame(space, box, unit)
             _arrows(space, places, arrows[part], part)
-            words = f"{letter[part]}{part}, {_greatest(chosen, arrows[part][2], unit, part)}"
+            greatest = _greatest(chosen, arrows[part][2], unit, part)
+            words = letter[part] + say("{quantity}, {greatest}", quantity=say(part), greatest=greatest)
             space.heading(words, room[0] + across / 2, height - top - line + EDGE / 4)
         if "speed" in parts:
             left, under = 0.075 * letters(), 0.052 * letters()
             room = (left, under, width - left - 0.2, below - under - line - 0.1)
             axes = figure.add_axes((room[0] / width, room[1] / height, room[2] / width, room[3] / height))
             _speed(axes, motion, chosen, trace)
-            axes.set_title(f"{letter['speed']}speed along the path", fontsize=letters() + 1)
+            axes.set_title(letter["speed"] + say("speed along the path"), fontsize=letters() + 1)
     return figure
 
 
 def _greatest(circuit: Circuit, largest: float, unit: str, part: str) -> str:
     """The greatest size of a rate along a path, in words."""
     if not largest > 0:
-        return "zero"
+        return say("zero")
     if circuit.turns_back:
-        return "without bound at dead centres"
-    return f"at most {amount_text(largest, unit, '/s' if part == 'velocity' else '/s²')}"
+        return say("without bound at dead centres")
+    return say("at most {amount}", amount=amount_text(largest, unit, "/s" if part == "velocity" else "/s²"))
 
 
 def _arrows(space: ViewAxes, places: Floats, arrows: tuple[Integers, Floats, float], part: str) -> None:
@@ -213,7 +220,7 @@ def _speed(axes: Axes, motion: Motion, circuit: Circuit, trace: Trace) -> None:
         axes.xaxis.set_major_locator(DegreeLocator(10))
     axes.set_ylim(0, 1.08 * factor * (most or 1.0))
     axes.set_xlabel(input_label(motion))
-    axes.set_ylabel(f"speed [{unit}/s]")
+    axes.set_ylabel(say("speed [{unit}/s]", unit=unit))
 
 
 def arrows_along(places: Floats, vectors: Floats) -> tuple[Integers, Floats, float]:

@@ -1,4 +1,4 @@
-"""Figures of a motion: the linkage in space or in its plane, its curves, its joints, paths, assembly modes.
+"""Figures of a motion: the linkage in space or in its plane, its curves, joints, paths, modes, forces.
 
 The public place of all figures: each makes a figure of its own, or draws in axes that are given as `ax`, so
 that a figure of several panels can be composed. `save` writes one by the ending of its name.
@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from sevenbar.drawing.configuration import configuration, modes_overview
 from sevenbar.drawing.figure import FORMATS, save
+from sevenbar.drawing.force_figures import bearings, energies, reactions, shaking, torque
 from sevenbar.drawing.joint_curves import joints
 from sevenbar.drawing.measure_figures import axodes, transmission
 from sevenbar.drawing.output_curves import curves
@@ -29,12 +30,17 @@ __all__ = [
     "STYLES",
     "VIEWS",
     "axodes",
+    "bearings",
     "configuration",
     "curves",
+    "energies",
     "joints",
     "modes_overview",
     "point_path",
+    "reactions",
     "save",
+    "shaking",
+    "torque",
     "transmission",
 ]
 

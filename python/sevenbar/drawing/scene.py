@@ -18,6 +18,7 @@ from sevenbar.drawing.view import Projection, wide_view
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.rigid import perpendicular, unit
+from sevenbar.text.words import say
 
 #: A path shorter than this share of the linkage's extent is none.
 SAME = 1e-6
@@ -303,12 +304,14 @@ def put(space: ViewAxes, made: Bars, pose: Floats) -> None:
 def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2D]:
     """The legend's entries: the links, the kinds of joints, and the paths where there are several poses."""
     colours, _ = link_colours(frame.linkage, ends)
-    links = [(INPUT, f"input: {shown_name(ends[0], 24)}"), (OUTPUT, f"output: {shown_name(ends[1], 24)}")]
+    first, second = (shown_name(end, 24) for end in ends)
+    links = [(INPUT, say("input: {joint}", joint=first)), (OUTPUT, say("output: {joint}", joint=second))]
     if COUPLER in colours:
-        links.append((COUPLER, "coupler" if colours.count(COUPLER) == 1 else "other moving links"))
+        alone = colours.count(COUPLER) == 1
+        links.append((COUPLER, say("coupler") if alone else say("other moving links")))
     thick = stroke()
     found = [Line2D([], [], color=colour, lw=5 * thick, label=name) for colour, name in links]
-    found.append(Line2D([], [], color=paler(GROUND, 0.35), lw=4 * thick, label="ground"))
+    found.append(Line2D([], [], color=paler(GROUND, 0.35), lw=4 * thick, label=say("ground")))
     for letter, kind in KINDS.items():
         if letter in frame.linkage.kind:
             style = {
@@ -323,20 +326,25 @@ def keys(frame: Skeleton, ends: tuple[str, str], seen: Projection) -> list[Line2
                 style = {"marker": "o", "ms": 7, "mfc": "white", "mew": 2.0, "mec": "#303030"}
             look = {"color": JOINT, "ls": ""} | style
             look = {k: v * thick if k in ("ms", "mew") else v for k, v in look.items()}
-            found.append(Line2D([], [], **look, label=kind.legend))
+            found.append(Line2D([], [], **look, label=say(kind.legend)))
     if frame.sphere is not None and not frame.sphere.free:
         radius = amount_text(frame.sphere.radius, frame.linkage.length_unit)
         look = {"color": "#f4f6f8", "mec": "#b9c0c7", "ms": 8 * thick}
-        found.append(Line2D([], [], ls="", marker="o", **look, label=f"sphere, radius {radius}"))
+        found.append(
+            Line2D([], [], ls="", marker="o", **look, label=say("sphere, radius {radius}", radius=radius))
+        )
     names = {}
     for place, colour in paths(frame, ends) if len(frame.places) > 1 else ():
         line = frame.places[:, place]
         extent = np.ptp(line[~np.isnan(line).any(axis=1)], axis=0).max()
         if place in frame.points or extent > SAME * frame.span:
-            word = "joint " if frame.names[place].isdecimal() and place not in frame.points else ""
-            name = "paths of the joints" if colour == PATH else f"path of {word}{frame.names[place]}"
+            name = say("path of {name}", name=frame.names[place])
+            if frame.names[place].isdecimal() and place not in frame.points:
+                name = say("path of joint {name}", name=frame.names[place])
+            if colour == PATH:
+                name = say("paths of the joints")
             if place in frame.far:
-                name = f"{frame.names[place]} is far off, not shown"
+                name = say("{name} is far off, not shown", name=frame.names[place])
             names[name] = Line2D(
                 [], [], color=colour, lw=(0.8 if colour == PATH else 1.4) * thick, label=name
             )

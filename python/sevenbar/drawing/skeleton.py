@@ -126,7 +126,7 @@ def skeleton_of(
     before, after = joint_frames(linkage, frames)
     origins = np.concatenate([before[..., :3, 3], after[..., :3, 3]])
     spread = _extent(origins)
-    in_rows = linkage.form == "rows"
+    in_rows = linkage.in_rows
     at = [linkage.point_frames[point.link - 1] @ (*point.at, 1.0) for point in points]
     carried = [
         (after[:, point.link - 1] @ place if point.link < count else np.broadcast_to(place, (rows, 4)))[:, :3]

@@ -10,7 +10,10 @@ from typing import Any
 from matplotlib import rc_context, rcParams
 from matplotlib.font_manager import get_font_names
 
+from sevenbar.drawing.asked import asked_style
+from sevenbar.drawing.fonts import chinese_font
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.text.words import language, spoken
 
 #: Links, from the colours of Okabe and Ito, which colour-blind readers can distinguish.
 INPUT, OUTPUT, COUPLER, GROUND = "#0072B2", "#D55E00", "#009E73", "#808080"
@@ -26,6 +29,9 @@ CIRCUIT_COLOURS = ("#332288", "#CC6677", "#6B8E23", "#882255", "#44AA99", "#B886
 
 #: Vectors of a point.
 VELOCITY, ACCELERATION = "#7A3E9D", "#B5651D"
+
+#: The force in a joint.
+REACTION = "#C2185B"
 
 #: What is computed, where it is compared with what comes from elsewhere: measured, wanted, another program's.
 COMPUTED, OTHER = CIRCUIT_COLOURS[0], "#C77700"
@@ -117,14 +123,21 @@ def check_style(name: str, key: str = "style") -> str:
 
 @contextmanager
 def styled(name: str | None = None) -> Iterator[None]:
-    """Draws in a style, "screen" where none is given, and leaves matplotlib as it was."""
-    chosen = STYLES[check_style(name or "screen")]
+    """Draws in a style, that of `drawn_as` or "screen" where none is given, and leaves matplotlib as it was.
+
+    In Chinese with a font that has its characters; where none is installed, in English, with a warning.
+    """
+    chosen = STYLES[check_style(name or asked_style() or "screen")]
     fonts: dict[Any, Any] = {}
-    if chosen.fonts:
+    chinese = chinese_font() if spoken() == "zh" else None
+    if chosen.fonts or chinese:
         there = set(get_font_names())
-        # letters that the font lacks, such as subscripts, are taken from the last one
-        fonts = {"font.family": [*[font for font in chosen.fonts if font in there][:1], "DejaVu Sans"]}
-    with rc_context({**STYLE, "lines.linewidth": USUAL_LINE, **chosen.settings, **fonts}):
+        latin = [font for font in chosen.fonts if font in there][:1]
+        # letters that a font lacks, such as subscripts, are taken from the next one
+        last = ["DejaVu Sans", chinese] if chinese and not latin else [chinese, "DejaVu Sans"]
+        fonts = {"font.family": [*latin, *(font for font in last if font)]}
+    settings = {**STYLE, "lines.linewidth": USUAL_LINE, **chosen.settings, **fonts}
+    with rc_context(settings), language("zh" if chinese else "en"):
         yield
 
 
@@ -147,7 +160,7 @@ def page_size(
     """
     if figsize is not None:
         return checked_size(figsize)
-    widths = STYLES[style or "screen"].widths
+    widths = STYLES[style or asked_style() or "screen"].widths
     if widths is None:
         return usual
     width = widths[wide]

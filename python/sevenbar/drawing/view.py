@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.drawing.asked import asked_view
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.plane_and_sphere import plane_of
@@ -63,6 +64,8 @@ def view_of(asked: Asked, loop: Loop, places: Floats, axes: Any = None) -> Proje
     """
     solid = axes is not None and hasattr(axes, "get_zlim")
     flat = axes is not None and not solid
+    if asked is None and axes is None:
+        asked = asked_view()
     if asked is None:
         plane = None if solid else plane_of(loop)
         asked = "space" if plane is None else "plane"

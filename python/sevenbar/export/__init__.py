@@ -43,7 +43,7 @@ class Bodies:
 
     endings: tuple[str, ...]
     write: Callable[[Assembly, Path, Progress], None]
-    #: Whose masses it holds, for nothing states what links are made of.
+    #: Whose masses it holds where the linkage has none.
     masses: str = ""
 
 

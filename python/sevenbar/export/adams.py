@@ -13,13 +13,13 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown
-from sevenbar.export.mass import BodyMass, masses
+from sevenbar.export.adams_forces import AdamsForces, file_scale, number
+from sevenbar.export.mass import MASSLESS, BodyMass, has_masses, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.joints import KINDS, Step
 from sevenbar.kinematics.rigid import about, half_turn, inverse
 from sevenbar.kinematics.rigid import pose as matrix
-from sevenbar.text.units import LENGTHS
 
 #: The names ADAMS has for length units; micrometres are written in millimetres.
 UNITS = {"mm": "mm", "cm": "cm", "m": "meter", "in": "inch", "ft": "foot", "um": "mm"}
@@ -36,7 +36,7 @@ def write_cmd(assembly: Assembly, path: Path) -> None:
 
     A part for each moving link, in place in the pose, its frame that of the link; at each joint a marker on
     either part, so that `AZ(I, J)` is the joint's angle as Sevenbar counts it and `DZ(I, J, J)` its slide.
-    No gravity acts.
+    What acts on the linkage acts in the file too, except loads by tables.
     """
     path.write_text(_AdamsCommands(assembly).text(), encoding="utf-8")
 
@@ -49,12 +49,15 @@ class _AdamsCommands:
         self.pose: Pose = assembly.pose
         self.linkage = self.pose.linkage
         unit = self.linkage.length_unit
-        self.scale = LENGTHS[unit] / LENGTHS["mm"] if unit == "um" else 1.0
+        self.scale = file_scale(unit)
         self.model = "." + _word(self.linkage.name, "linkage")
         self.lines: list[str] = []
         self.joints = _distinct([_word(joint.name, "joint") for joint in self.linkage.joints])
         #: Each column's joint, its markers, and its step; none for turns of Hooke joints and balls.
         self.columns: dict[str, tuple[str, str, str, Step]] = {}
+        self.forces = AdamsForces(self.pose, self.model, self.say, self.marker, self.columns)
+        #: The input as a function of time.
+        self.input = ""
 
     def text(self) -> str:
         drive = self._drive()
@@ -70,8 +73,10 @@ class _AdamsCommands:
             body = point.link - 1
             frame = self.linkage.point_frames[body]
             place = frame[:3, :3] @ np.array(point.at) + frame[:3, 3]
-            self._marker(body, f"point_{_word(point.name, 'p')}", matrix(np.eye(3), place))
+            self.marker(body, f"point_{_word(point.name, 'p')}", matrix(np.eye(3), place))
         self._motion(drive)
+        self.forces.add(self.input)
+        self._simulate(drive)
         return "\n".join(self.lines) + "\n"
 
     def _drive(self) -> tuple[float, float, int]:
@@ -104,31 +109,36 @@ class _AdamsCommands:
 
     def _hooke(self, i: int) -> bool:
         joint = self.linkage.joints[i]
-        ends = (self.pose.motion.input, self.pose.motion.output)
-        return abs(joint.angle - math.pi / 2) < RIGHT and not set(joint.columns) & set(ends)
+        motion, springs = self.pose.motion, self.linkage.loading.springs
+        given = {motion.input, motion.output, *(spring.joint for spring in springs)}
+        return abs(joint.angle - math.pi / 2) < RIGHT and not set(joint.columns) & given
 
-    def _say(self, keywords: str, **parameters: str) -> None:
+    def say(self, keywords: str, **parameters: str) -> None:
         words = [f"{key} = {value}" for key, value in parameters.items()]
         self.lines += [" &\n   ".join([keywords, *words]), "!"]
 
     def _head(self) -> None:
         unit = self.linkage.length_unit
         written = "mm" if unit == "um" else unit
+        own = f"the linkage; parts that have none weigh {MASSLESS:g} of the heaviest"
+        whose = own if has_masses(self.linkage) else "the drawn bodies in steel"
         self.lines += [
             f"! {_ascii(self.linkage.name)}",
             "! An ADAMS/View command file written by Sevenbar from the documentation of the language;",
             "! it has not been run in ADAMS. Lengths in " + written + ", masses in kg; masses are those of",
-            "! the drawn bodies in steel. Plain angles in functions are in radians. No gravity.",
+            f"! {whose}. Plain angles in functions are in radians."
+            + " No gravity." * (not any(self.linkage.loading.gravity)),
+            *(f"! Left out, for it follows a table: {words}." for words in self.forces.left_out()),
             *(f"! Idle freedom: {_ascii(words)}." for words in self.linkage.idle),
             *(f"! Redundant constraint, which the solver takes out itself: {_ascii(words)}."
               for words in self.pose.motion.redundant),
             "!",
         ]  # fmt: skip
-        self._say("defaults units", length=UNITS[unit], angle="deg", force="newton", mass="kg", time="sec")
-        self._say("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
-        self._say("model create", model_name=self.model)
-        self._say("defaults model", model_name=self.model)
-        self._say("defaults coordinate_system", default_coordinate_system=f"{self.model}.ground")
+        self.say("defaults units", length=UNITS[unit], angle="deg", force="newton", mass="kg", time="sec")
+        self.say("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
+        self.say("model create", model_name=self.model)
+        self.say("defaults model", model_name=self.model)
+        self.say("defaults coordinate_system", default_coordinate_system=f"{self.model}.ground")
 
     def _name(self, body: int) -> str:
         return f"{self.model}.{_word(self.assembly.bodies[body], 'link')}"
@@ -137,7 +147,7 @@ class _AdamsCommands:
         name = self._name(body)
         if self.assembly.bodies[body] != "ground":
             location, orientation = self._place(self.assembly.frames[body])
-            self._say(
+            self.say(
                 "part create rigid_body name_and_position",
                 part_name=name,
                 location=location,
@@ -146,14 +156,14 @@ class _AdamsCommands:
             # about its main axes, so that no products of inertia are left
             moments, axes = np.linalg.eigh(mass.inertia)
             axes[:, 2] *= np.linalg.det(axes)
-            self._marker(body, "cm", matrix(axes, mass.centre))
+            self.marker(body, "cm", matrix(axes, mass.centre))
             moments = self.scale**2 * moments
-            self._say(
+            self.say(
                 "part modify rigid_body mass_properties",
                 part_name=name,
-                mass=_number(mass.mass),
+                mass=number(mass.mass),
                 center_of_mass_marker=f"{name}.cm",
-                ixx=_number(moments[0]), iyy=_number(moments[1]), izz=_number(moments[2]),
+                ixx=number(moments[0]), iyy=number(moments[1]), izz=number(moments[2]),
                 ixy="0.0", izx="0.0", iyz="0.0",
             )  # fmt: skip
         solids = [s for part in self.assembly.parts if part.body == body for s in part.add]
@@ -164,9 +174,9 @@ class _AdamsCommands:
         name = self._name(body)
         marker = f"shape_{k}"
         if isinstance(solid, Ball):
-            self._marker(body, marker, matrix(np.eye(3), solid.centre))
-            across = _number(2 * self.scale * solid.radius)
-            self._say(
+            self.marker(body, marker, matrix(np.eye(3), solid.centre))
+            across = number(2 * self.scale * solid.radius)
+            self.say(
                 "geometry create shape ellipsoid",
                 ellipsoid_name=f"{name}.ball_{k}",
                 center_marker=f"{name}.{marker}",
@@ -177,31 +187,31 @@ class _AdamsCommands:
         frame[:3, 3] = solid.start
         length = self.scale * length_of(solid)
         if isinstance(solid, Rod):
-            self._marker(body, marker, frame)
-            self._say(
+            self.marker(body, marker, frame)
+            self.say(
                 "geometry create shape cylinder",
                 cylinder_name=f"{name}.rod_{k}",
                 center_marker=f"{name}.{marker}",
                 angle_extent="360.0",
-                length=_number(length),
-                radius=_number(self.scale * solid.radius),
+                length=number(length),
+                radius=number(self.scale * solid.radius),
             )
             return
         frame[:3, 3] -= solid.width / 2 * (frame[:3, 0] + frame[:3, 1])
-        self._marker(body, marker, frame)
+        self.marker(body, marker, frame)
         width = self.scale * solid.width
-        self._say(
+        self.say(
             "geometry create shape block",
             block_name=f"{name}.bar_{k}",
             corner_marker=f"{name}.{marker}",
-            diag_corner_coords=", ".join(map(_number, (width, width, length))),
+            diag_corner_coords=", ".join(map(number, (width, width, length))),
         )
 
-    def _marker(self, body: int, word: str, frame: Floats) -> str:
+    def marker(self, body: int, word: str, frame: Floats) -> str:
         """A marker on a body, by its frame (4, 4) on it."""
         name = f"{self._name(body)}.{word}"
         location, orientation = self._place(frame)
-        self._say(
+        self.say(
             "marker create",
             marker_name=name,
             location=location,
@@ -224,8 +234,8 @@ class _AdamsCommands:
             # as written: the link, from the ground, about the axis as drawn
             row, turned = KINDS[joint.kind], half_turn(joint.row.half_turn)
             j_side, i_side = (after, on_after @ turned), (before, on_before @ turned)
-        j_marker = self._marker(j_side[0], f"{word}_j", j_side[1])
-        i_marker = self._marker(i_side[0], f"{word}_i", i_side[1])
+        j_marker = self.marker(j_side[0], f"{word}_j", j_side[1])
+        i_marker = self.marker(i_side[0], f"{word}_i", i_side[1])
         name = self._connect(joint.row.adams, word, i_marker, j_marker)
         if joint.row.is_screw:
             # a screw joint ties the slide to the turn and nothing else; the cylindrical one holds the axis
@@ -247,23 +257,23 @@ class _AdamsCommands:
             turn_i = np.stack([second, np.cross(square, second), square], axis=1)
             frame_j = inverse(self.pose.frames[before]) @ matrix(turn_j, self.pose.near[i, :3, 3])
             frame_i = inverse(self.pose.frames[i]) @ matrix(turn_i, self.pose.far[i, :3, 3])
-            j_marker = self._marker(before, f"{word}_j", frame_j)
-            i_marker = self._marker(i, f"{word}_i", frame_i)
+            j_marker = self.marker(before, f"{word}_j", frame_j)
+            i_marker = self.marker(i, f"{word}_i", frame_i)
             self._connect("hooke", word, i_marker, j_marker)
             return
         tilt = joint.before(joint.row.steps[-1])
         for k, (j_body, j_frame, i_body, i_frame) in enumerate(
             ((before, on_before, body, np.eye(4)), (body, tilt, i, on_after)), 1
         ):
-            j_marker = self._marker(j_body, f"{word}_{k}_j", j_frame)
-            i_marker = self._marker(i_body, f"{word}_{k}_i", i_frame)
+            j_marker = self.marker(j_body, f"{word}_{k}_j", j_frame)
+            i_marker = self.marker(i_body, f"{word}_{k}_i", i_frame)
             name = self._connect("revolute", f"{word}_{k}", i_marker, j_marker)
             self.columns[joint.columns[k - 1]] = (name, i_marker, j_marker, joint.row.steps[k - 1])
 
     def _connect(self, kind: str, word: str, i_marker: str, j_marker: str, pitch: float | None = None) -> str:
         name = f"{self.model}.{word}"
-        more = {} if pitch is None else {"pitch": _number(pitch)}
-        self._say(
+        more = {} if pitch is None else {"pitch": number(pitch)}
+        self.say(
             f"constraint create joint {kind}",
             joint_name=name,
             i_marker_name=i_marker,
@@ -273,17 +283,17 @@ class _AdamsCommands:
         return name
 
     def _motion(self, drive: tuple[float, float, int]) -> None:
-        speed, end, steps = drive
         motion = self.pose.motion
         joint, _, _, step = self.columns[motion.input]
         turns = step.freedom == "turn"
         unit = 1.0 if turns else self.scale
-        self._say(
+        self.input = f"{number(unit * self.pose.input)} + {number(unit * drive[0])}*time"
+        self.say(
             "constraint create motion_generator",
             motion_name=f"{self.model}.drive",
             type_of_freedom="rotational" if turns else "translational",
             joint_name=joint,
-            function=f'"{_number(unit * self.pose.input)} + {_number(unit * speed)}*time"',
+            function=f'"{self.input}"',
         )
         for column in (motion.input, motion.output):
             if column not in self.columns:
@@ -308,18 +318,21 @@ class _AdamsCommands:
                     "angular_acceleration" if turns else "acceleration",
                 ),
             ):
-                self._say(
+                self.say(
                     "measure create function",
                     measure_name=f"{self.model}.{word}_{quantity}",
                     function=f'"{function}"',
                     units=f'"{units}"',
                     create_measure_display="no",
                 )
-        self._say(
+
+    def _simulate(self, drive: tuple[float, float, int]) -> None:
+        _, end, steps = drive
+        self.say(
             "simulation single_run transient",
             type="auto_select",
             initial_static="no",
-            end_time=_number(end),
+            end_time=number(end),
             number_of_steps=str(steps),
             model_name=self.model,
         )
@@ -332,13 +345,8 @@ class _AdamsCommands:
         turn = about(2, -first) @ turn
         second = math.atan2(-turn[1, 2], turn[2, 2])
         third = math.atan2(-turn[0, 1], turn[0, 0])
-        location = ", ".join(map(_number, self.scale * frame[:3, 3]))
-        return location, ", ".join(f"{_number(math.degrees(a))}d" for a in (first, second, third))
-
-
-def _number(value: float) -> str:
-    """A number to its last digit, with the point that makes it a real one."""
-    return repr(float(value) + 0.0).replace("e", "E")
+        location = ", ".join(map(number, self.scale * frame[:3, 3]))
+        return location, ", ".join(f"{number(math.degrees(a))}d" for a in (first, second, third))
 
 
 def _word(name: str, otherwise: str) -> str:

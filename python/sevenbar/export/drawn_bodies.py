@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sevenbar.arrays import Floats
 from sevenbar.export.layout import arrange
-from sevenbar.export.mass import masses
+from sevenbar.export.mass import drawn_masses
 from sevenbar.export.pose import take
 from sevenbar.kinematics.linkage import Linkage
 
@@ -16,4 +16,4 @@ def drawn_bodies(linkage: Linkage, circuit: int) -> list[tuple[float, Floats, Fl
     circuit.
     """
     assembly = arrange(take(linkage.motion(), circuit))
-    return [(one.mass, one.centre, one.inertia) for one in masses(assembly)[: len(linkage.links)]]
+    return [(one.mass, one.centre, one.inertia) for one in drawn_masses(assembly)[: len(linkage.links)]]

@@ -1,4 +1,4 @@
-"""Mass and inertia of bodies from the rods, bars and balls they are drawn with."""
+"""Mass and inertia of bodies: the linkage's own, or from the rods, bars and balls they are drawn with."""
 
 from __future__ import annotations
 
@@ -10,7 +10,15 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.link_bodies import resolved
+from sevenbar.simulation.acting import in_links
+from sevenbar.simulation.prototype import GYRATION
 from sevenbar.text.units import LENGTHS
+
+#: The mass of a body that has none where others do, as a part of the heaviest one's: programs take none
+#: without.
+MASSLESS = 1e-6
 
 #: Of steel [kg/m^3].
 DENSITY = 7850.0
@@ -26,6 +34,29 @@ class BodyMass:
 
 
 def masses(assembly: Assembly) -> list[BodyMass]:
+    """The mass of each body: the linkage's own where it has any, else that of the drawn bodies in steel.
+
+    Of a linkage that has some, bodies without, crosses too, have a very small one.
+    """
+    linkage, size = assembly.pose.linkage, assembly.pose.circuit.size
+    if not has_masses(linkage):
+        return drawn_masses(assembly)
+    metre = LENGTHS[linkage.length_unit]
+    radius = GYRATION * size
+    own = in_links(linkage, resolved(linkage.loading, linkage, circuit=assembly.pose.circuit.index))
+    light = MASSLESS * max(one.mass for one in own.values())
+    found = [BodyMass(light, np.zeros(3), light * radius**2 * np.eye(3)) for _ in assembly.frames]
+    for link, one in own.items():
+        found[link - 1] = BodyMass(one.mass, one.centre, one.never_thin(metre * radius) / metre**2)
+    return found
+
+
+def has_masses(linkage: Loop) -> bool:
+    """Whether a linkage has bodies of its own."""
+    return any(linkage.loading.bodies.values())
+
+
+def drawn_masses(assembly: Assembly) -> list[BodyMass]:
     """The mass of each body, as if its solids of steel did not overlap and had no holes."""
     scale = LENGTHS[assembly.pose.linkage.length_unit]
     density = DENSITY * scale**3

@@ -10,12 +10,13 @@ from xml.etree import ElementTree as Xml
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.export.left_out import left_out
 from sevenbar.export.mass import BodyMass, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.kinematics.rigid import half_turn, zyx_turns
 from sevenbar.text.units import LENGTHS
 
-#: The mass of a link that only joins the freedoms of one joint, as a share of the next link's.
+#: The mass of a link that only joins the freedoms of one joint, as a share of the heaviest link's.
 JOINING = 1e-6
 #: What `limit` must tell of a slide and and a linkage does not know [N, m/s].
 EFFORT, VELOCITY = 1e6, 1e3
@@ -39,12 +40,17 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
             "Lengths in metres, angles in radians. ".replace("--", "-")
         )
     )
+    loading = linkage.loading
+    missing = left_out(loading, gravity=True, loads=len(loading.loads), springs=len(loading.springs))
+    if missing:
+        robot.append(Xml.Comment(f" Left out, for URDF has no place for it: {missing}. "))
     for colour in dict.fromkeys(part.colour for part in assembly.parts):
         channels = " ".join(f"{c / 255:.6g}" for c in bytes.fromhex(colour[1:]))
         Xml.SubElement(
             Xml.SubElement(robot, "material", name=_material(colour)), "color", rgba=f"{channels} 1"
         )
     weights = masses(assembly)
+    heaviest = max(weights[: count - 1], key=lambda one: one.mass)
     _add_link(robot, assembly, assembly.bodies.index("ground"), "ground", None, scale)
     parent, mount = "ground", linkage.base
     cross = count
@@ -76,7 +82,7 @@ def write_urdf(assembly: Assembly, path: Path) -> None:
             elif joint.row.has_cross:
                 _add_link(robot, assembly, cross, child, weights[cross], scale)
             else:
-                light = BodyMass(JOINING * weights[i].mass, np.zeros(3), JOINING * weights[i].inertia)
+                light = BodyMass(JOINING * heaviest.mass, np.zeros(3), JOINING * heaviest.inertia)
                 _add_link(robot, assembly, None, child, light, scale)
             parent, mount = child, np.eye(4)
         cross += joint.row.has_cross

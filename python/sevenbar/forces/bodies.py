@@ -18,6 +18,9 @@ Solid = Literal["rod", "point", "drawn"]
 
 SOLIDS: tuple[str, ...] = get_args(Solid)
 
+#: The order of the entries of an inertia where six numbers give it.
+ENTRIES = "xx yy zz yz xz xy"
+
 #: By this part of its greatest principal moment an inertia may break a rule by rounding.
 ROUNDING = 1e-9
 
@@ -81,6 +84,22 @@ def flaw_of_inertia(tensor: Floats) -> str:
     if principal[0] + principal[1] < principal[2] - slack:
         return f"principal moments {listed}: no body has one greater than the sum of the others"
     return ""
+
+
+def tensor_of(entries: Sequence[float]) -> Floats:
+    """The inertia (3, 3) of its six entries, in the order of `ENTRIES`.
+
+    >>> tensor_of([4, 5, 6, 0.1, 0.2, 0.3]).tolist()
+    [[4.0, 0.3, 0.2], [0.3, 5.0, 0.1], [0.2, 0.1, 6.0]]
+    """
+    xx, yy, zz, yz, xz, xy = entries
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], dtype=np.float64)
+
+
+def entries_of(tensor: Floats) -> list[float]:
+    """The six entries of an inertia (3, 3), in the order of `ENTRIES`."""
+    rows, columns = [0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]
+    return [float(value) for value in tensor[rows, columns]]
 
 
 def _tensor(values: npt.ArrayLike) -> Floats:

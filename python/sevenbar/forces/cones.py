@@ -1,11 +1,11 @@
 """The least greatest size of vectors that are affine in numbers which cones bound.
 
-    minimise t   subject to   |c_k + G_k x| <= t  for all k,   right - matrix x  in cones                 (31)
+    minimise t   subject to   |c_k + G_k x| <= t  for all k,   right - matrix x  in cones                 (21)
 
 Clarabel's interior-point method finds x and the dual vectors, from which callers compute a lower bound of
 their own.
 
-Source: docs/theory_forces.md, (31); Boyd and Vandenberghe, Convex Optimization, 4.4.2.
+Source: docs/theory_forces.md, (21); Boyd and Vandenberghe, Convex Optimization, 4.4.2.
 """
 
 from __future__ import annotations

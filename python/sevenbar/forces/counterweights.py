@@ -1,18 +1,18 @@
 """Counterweights on links: the least shaking by least squares, or within bounds by cones, with a proof.
 
-A counterweight of mass m in c adds U (m c, m) to the shaking (27). Counted from a pivot p of its link, with
+A counterweight of mass m in c adds U (m c, m) to the shaking (17). Counted from a pivot p of its link, with
 the mass times radius g = m (c - p),
 
-    W = W_0 + U_g g + (U_m + U_g p) m                                                                    (29)
+    W = W_0 + U_g g + (U_m + U_g p) m                                                                    (19)
 
 where a mass in the pivot does nothing for a link that turns about an axis of the ground. Least squares over
 g, and over m where it does something:
 
-    minimise  sum_j share_j |w W_j|^2,   by singular values; those below 1e-8 of the greatest do nothing  (30)
+    minimise  sum_j share_j |w W_j|^2,   by singular values; those below 1e-8 of the greatest do nothing  (20)
 
 With bounds, `|g| <= r m` and `0 <= m <= m_most` are second-order cones, so that the optimum is proved.
 
-Source: docs/theory_forces.md, (27) to (33); R. S. Berkof, G. G. Lowen, J. Eng. Ind. 91 (1969) 21, for the
+Source: docs/theory_forces.md, (17) to (23); R. S. Berkof, G. G. Lowen, J. Eng. Ind. 91 (1969) 21, for the
 planar four-bar.
 """
 
@@ -36,11 +36,11 @@ from sevenbar.text.printing import Printed
 NONE = 1e-9
 
 
-@dataclass(frozen=True, eq=False)
-class Counterweight:
+@dataclass(frozen=True, eq=False, repr=False)
+class Counterweight(Printed):
     """What to add to a link: mass times radius `product` [kg length] in `direction` (3,) from `pivot`.
 
-    `mass` [kg] is that at the radius asked for; `None` where the shaking is the same for any and no radius is
+    `mass` [kg] is that at the wanted radius; `None` where the shaking is the same for any and no radius is
     given. `body` is a point of this mass; `None` without one, and where least squares take mass away, which
     `mass` < 0 says.
     """
@@ -169,7 +169,7 @@ def _within(
 ) -> tuple[Floats, float, str]:
     """Numbers (links, 4) within limits (links, 2) of radius and mass, the lower bound, Clarabel's status.
 
-    Source: docs/theory_forces.md, (31) to (33).
+    Source: docs/theory_forces.md, (21) to (23).
     """
     # y = g / (r m_most) and z = m / m_most, so that the cones are |y| <= z <= 1
     reach = np.column_stack([np.repeat(limits.prod(axis=1)[:, None], 3, axis=1), limits[:, 1]])
@@ -210,7 +210,7 @@ def lower_bound(constant: Floats, slopes: Floats, duals: Floats) -> float:
 
     `constant` (n, d), `slopes` (n, d, 4 links), dual vectors (n, d) with `sum |dual| <= 1`.
 
-    Source: docs/theory_forces.md, (33).
+    Source: docs/theory_forces.md, (23).
     """
     slope = np.einsum("ki,kij->j", duals, slopes).reshape(-1, 4)
     least = np.minimum(0.0, slope[:, 3] - np.linalg.norm(slope[:, :3], axis=1))

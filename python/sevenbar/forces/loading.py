@@ -137,6 +137,11 @@ class Loading:
         """Whether nothing has a mass, and nothing acts."""
         return not (any(self.bodies.values()) or self.loads or self.springs)
 
+    def breaks(self, *, turns: int) -> tuple[float, ...]:
+        """Inputs [rad] in so many turns at which a load sets in, ends, or its table has a corner."""
+        corners = [x for load in self.loads for x in (load.between or (load.table or ((),))[0])]
+        return tuple(x + math.tau * turn for turn in range(turns) for x in corners)
+
 
 #: What acts on a linkage that was given no bodies and no loads.
 UNLOADED = Loading()

@@ -1,6 +1,6 @@
 """Links that may carry a counterweight, and which numbers of it act on the shaking at all.
 
-Source: docs/theory_forces.md, (29) and (30).
+Source: docs/theory_forces.md, (19) and (20).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Mount:
     def columns(self) -> Floats:
         """What g and a mass in the pivot do, (n, 6, 4).
 
-        Source: docs/theory_forces.md, (29).
+        Source: docs/theory_forces.md, (19).
         """
         moved = np.concatenate([np.eye(3), [self.pivot]])
         moved = np.column_stack([moved, [0.0, 0.0, 0.0, 1.0]])
@@ -57,7 +57,7 @@ class Acting:
 
     @staticmethod
     def of(columns: list[Floats]) -> Acting:
-        """Of columns whose lengths are of one unit."""
+        """From columns (rows, 4) whose numbers are of one unit, each over the root of the rows."""
         # the mass has its own threshold: in the pivot of a link that turns about the ground it is rounding
         sizes = [np.linalg.norm(own, axis=0) for own in columns]
         whole = max(float(own.max(initial=0.0)) for own in sizes)
@@ -70,7 +70,7 @@ class Acting:
     def least_squares(self, target: Floats) -> Floats:
         """The shortest numbers (links, 4) with the least |target + columns @ numbers|.
 
-        Source: docs/theory_forces.md, (30).
+        Source: docs/theory_forces.md, (20).
         """
         left, values, right = np.linalg.svd(np.hstack(self.columns)[:, self.used], full_matrices=False)
         kept = slice(0, self.rank)
@@ -80,19 +80,21 @@ class Acting:
 
     def names(self, mounts: Sequence[Mount]) -> list[str]:
         """What does nothing: of each link, then how many combinations of several links."""
-        told, single = [], 0
+        idle, single = [], 0
         for mount, own, acts in zip(mounts, self.columns, self.mass_acts, strict=True):
             _, values, right = np.linalg.svd(own[:, :3], full_matrices=True)
             values = np.pad(values, (0, 3 - len(values)))
-            idle = tidied(right[values <= RANK * self.greatest])
-            told += [f"link {mount.link}: mass times radius along {_along(mount, vector)}" for vector in idle]
-            single += len(idle)
+            nothing = tidied(right[values <= RANK * self.greatest])
+            idle += [
+                f"link {mount.link}: mass times radius along {_along(mount, vector)}" for vector in nothing
+            ]
+            single += len(nothing)
             if not acts:
-                told.append(f"link {mount.link}: a mass in the pivot")
+                idle.append(f"link {mount.link}: a mass in the pivot")
         several = int(self.used.sum()) - self.rank - single
         if several > 0:
-            told.append(f"{several} combination{'s' * (several > 1)} of several numbers")
-        return told
+            idle.append(f"{several} combination{'s' * (several > 1)} of several numbers")
+        return idle
 
 
 def _along(mount: Mount, vector: Floats) -> str:

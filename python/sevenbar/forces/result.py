@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.cycle_series import CycleSeries
+from sevenbar.errors import RequestError, ends_here
+from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Loading
-from sevenbar.text.printing import Printed
+from sevenbar.forces.sizing import Sizing, sizing
+from sevenbar.text.printing import Drawable, Printed
+
+#: Which rows are meant: a mask, their numbers or a slice.
+Rows = npt.NDArray[np.bool_] | npt.NDArray[np.integer[Any]] | slice
 
 #: The components of a reaction, in the frame of its joint, whose z is the joint's axis.
 COMPONENTS = ("Mx", "My", "Mz", "Fx", "Fy", "Fz")
@@ -23,14 +32,16 @@ OPEN = 1e-8
 class Reaction(Printed):
     """What the link before a joint puts on the link after it, row by row; the last joint's is the ground.
 
-    `force` (n, 3) [N] and `moment` (n, 3) [N m] about `at` (n, 3) [length], in the joint's own frame on the
-    side of the link before it, whose `axes` (n, 3, 3) are columns in the report frame; z is the joint's axis.
+    `joint` and `kind` are its name and kind (R, S ..). `force` (n, 3) [N] and `moment` (n, 3) [N m] about
+    `at` (n, 3) [length], in the joint's own frame on the side of the link before it, whose `axes` (n, 3, 3)
+    are columns in the report frame; z is the joint's axis.
     `determinate` (6,) says which of Mx, My, Mz, Fx, Fy, Fz equilibrium determines; the others are NaN.
     `known` (n, k, 6) are the combinations of these six that it does determine, as orthonormal rows with
     moments by the linkage's size, and `known_values` (n, k) [N] their values.
     """
 
     joint: str
+    kind: str
     force: Floats
     moment: Floats
     at: Floats
@@ -49,19 +60,24 @@ class Reaction(Printed):
         """The moment (n, 3) [N m] in the report frame; NaN unless all three components are determinate."""
         return np.asarray(np.einsum("nij,nj->ni", self.axes, self.moment))
 
+    def on(self, rows: Rows) -> Reaction:
+        """The same on some rows: a mask, numbers of rows or a slice."""
+        arrays = ("force", "moment", "at", "axes", "known", "known_values")
+        return replace(self, **{name: getattr(self, name)[rows] for name in arrays})
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Forces(Printed):
+class Forces(Drawable):
     """What the input has to give, and what the joints bear, on the n rows of a circuit.
 
-    `input` [rad, or length], `time` [s], `speed` [rad/s, or length/s] and `status` are those of the rows
-    (n,). `torque` (n,) is what the input has to give, along its own positive turn [N m], or as it slides the
-    force [N]; `power` [W] is that by the input's speed, `kinetic` and `potential` [J] the energies of bodies,
-    weights and springs, `supplied` [W] the power of loads and dampers, `shaking` (n, 6) the moment about the
-    report's origin [N m] and the force [N] of all inertia on the ground. `reactions` has each joint's by its
-    name. `spin` has for each link that spins idly the moment (n,) [N m] that the rule of its spin needs and
-    no ball gives: 0 for a rod. `indeterminate` names the redundant constraints, whose share of the reactions
-    rigid bodies leave open. Rows without rates, as dead centres of the input, are NaN.
+    `input` [rad, or length], `time` [s], `speed` [rad/s, or length/s], `status` and `branch` are those of the
+    rows (n,). `torque` (n,) is what the input has to give, along its own positive turn [N m], or as it slides
+    the force [N]; `power` [W] is that by the input's speed, `kinetic` and `potential` [J] the energies of
+    bodies, weights and springs, `supplied` [W] the power of loads and dampers, `shaking` (n, 6) the moment
+    about the report's origin [N m] and the force [N] of all inertia on the ground. `reactions` has each
+    joint's by its name. `spin` has for each link that spins idly the moment (n,) [N m] that the rule of its
+    spin needs and no ball gives: 0 for a rod. `indeterminate` names the redundant constraints, whose share of
+    the reactions rigid bodies leave open. Rows without rates, as dead centres of the input, are NaN.
 
     Source: docs/theory_forces.md, (1) to (9).
     """
@@ -70,6 +86,7 @@ class Forces(Printed):
     time: Floats
     speed: Floats
     status: npt.NDArray[np.str_]
+    branch: npt.NDArray[np.int64]
     torque: Floats
     power: Floats
     kinetic: Floats
@@ -85,6 +102,15 @@ class Forces(Printed):
     #: Whether the rows are one period of a closed cycle at constant speed, evenly spaced.
     periodic: bool
     loading: Loading = field(repr=False)
+    #: The body of each link that has one, as it acted: of several one, a rod or drawn solids worked out.
+    bodies: Mapping[int, Body]
+    #: The joint that drives, and the linkage.
+    driver: str
+    heading: str
+    #: Whether the linkage is held still on every row: statics, without inertia and damping.
+    at_rest: bool = False
+    #: The same at any inputs (m,) of the cycle, where it is periodic.
+    between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
 
     @property
     def unit(self) -> str:
@@ -92,23 +118,108 @@ class Forces(Printed):
         return "N" if self.slides else "N m"
 
     @property
+    def period(self) -> float | None:
+        """The way of the input [rad] round a periodic cycle, negative where it falls from row to row."""
+        return float(self.input[1] - self.input[0]) * len(self.input) if self.periodic else None
+
+    def on(self, rows: Rows) -> Forces:
+        """The same on some rows, as `forces.on(forces.branch == 1)`: a mask, numbers of rows or a slice."""
+        arrays = ("input", "time", "speed", "status", "branch", "torque", "power", "kinetic", "potential")
+        chosen: dict[str, Any] = {
+            name: getattr(self, name)[rows] for name in (*arrays, "supplied", "shaking")
+        }
+        if len(chosen["input"]) != len(self.input):
+            chosen["periodic"] = False
+        return replace(
+            self,
+            reactions={name: reaction.on(rows) for name, reaction in self.reactions.items()},
+            spin={link: moment[rows] for link, moment in self.spin.items()},
+            **chosen,
+        )
+
+    @ends_here
+    def sizing(self, *, unevenness: float | None = None) -> Sizing | None:
+        """Peaks of torque and power with their places, means, fluctuation of energy, bearing loads.
+
+        With an `unevenness`, (highest less lowest speed) / mean speed, also the flywheel for it. `None` for
+        rows without a torque, as of a circuit that rocks at constant speed: there it has no bound.
+
+            >>> import sevenbar as sb
+            >>> circuit = sb.load("rssr").motion().circuits[0]
+            >>> found = circuit.forces(bodies={3: sb.Body(2.0, solid="rod")}).sizing(unevenness=0.01)
+            >>> found.found, bool(found.flywheel > 0), bool(abs(found.mean_torque) < 1e-12)
+            ('series', True, True)
+
+        Source: docs/theory_forces.md, (10) to (16).
+        """
+        period = self.period
+        passes = len(np.unique(self.branch))
+        if period is None and passes > 1 and np.isfinite(self.torque).all():
+            raise RequestError(
+                "sizing: the rows are passes one after the other; give one, as in "
+                "forces.on(forces.branch == 0).sizing()"
+            )
+        return sizing(
+            self,
+            period=period,
+            speed=float(self.speed[0]) if period is not None else None,
+            evaluate=self.between,
+            breaks=() if period is None else self.loading.breaks(turns=round(abs(period) / math.tau)),
+            unevenness=unevenness,
+        )
+
+    @property
     def balance(self) -> float | None:
         """How far power closes along the cycle, as a part of its peak: `torque q' + supplied - d(T + V)/dt`.
 
         The derivative by time is that of the trigonometric polynomial through all rows. `None` where the rows
-        are no closed cycle at constant speed, or a row has no value.
+        are no closed cycle at constant speed, or a row has no value. At rest it is that of work: how far the
+        torque is from the slope of the potential energy, `None` where loads act.
 
         Source: docs/theory_forces.md, (7).
         """
-        total = self.power + self.supplied
+        total = self.torque if self.at_rest else self.power + self.supplied
+        if self.at_rest and self.loading.loads:
+            return None
         if not self.periodic or len(total) < 3 or not np.isfinite(total).all():
             return None
-        energy = self.kinetic + self.potential
-        count = len(energy)
-        period = (self.time[1] - self.time[0]) * count
-        waves = np.fft.rfft(energy) * (2j * np.pi * np.arange(count // 2 + 1) / period)
-        if count % 2 == 0:
-            waves[-1] = 0.0
-        change = np.fft.irfft(waves, count)
-        peak = max(np.abs(change).max(), np.abs(self.power).max())
+        # by time, or at rest by the input
+        way = self.period if self.at_rest else float(self.time[1] - self.time[0]) * len(total)
+        change = CycleSeries(self.kinetic + self.potential, 0.0, way or 1.0).finer(1, 1)
+        peak = max(np.abs(change).max(), np.abs(total if self.at_rest else self.power).max())
         return float(np.abs(total - change).max() / peak) if peak else 0.0
+
+    @property
+    def ground_balance(self) -> float | None:
+        """How far the ground's reactions are from weights, loads and shaking, as a part of the greatest.
+
+        The ground's forces on the linkage in its first and last joint, weights, loads and inertia forces add
+        up to zero. `None` where equilibrium leaves one of the two open, a spring ends on the ground, or a
+        load turns with its link.
+
+        Source: docs/theory_forces.md, (2).
+        """
+        first, *_, last = self.reactions.values()
+        ground = len(self.reactions)
+        loads = [load for load in self.loading.loads if load.link != ground and any(load.force)]
+        if (
+            not (first.determinate[3:].all() and last.determinate[3:].all())
+            or any(load.axes == "link" for load in loads)
+            or any(ground in (spring.links or ()) for spring in self.loading.springs)
+        ):
+            return None
+        weight = sum(body.mass for body in self.bodies.values()) * np.array(self.loading.gravity)
+        outer = weight + sum(
+            (
+                load.factors(self.input, turns=not self.slides)[:, None] * np.array(load.force)
+                for load in loads
+            ),
+            np.zeros(3),
+        )
+        ends = first.force_in_report, last.force_in_report
+        known = np.isfinite(ends[0]).all(axis=1)
+        if not known.any():
+            return None
+        left = (ends[0] - ends[1] + outer + self.shaking[:, 3:])[known]
+        greatest = max(float(np.abs(end[known]).max()) for end in ends)
+        return float(np.abs(left).max() / greatest) if greatest else 0.0

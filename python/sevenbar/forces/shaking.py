@@ -3,12 +3,12 @@
 Shaking is the wrench (moment about the report origin, force) of all inertia forces. It is linear in each
 link's mass m and first moments m c:
 
-    W = W_0 + U (m c_x, m c_y, m c_z, m)                                                                 (27)
+    W = W_0 + U (m c_x, m c_y, m c_z, m)                                                                 (17)
 
 with U (6, 4) the link's wrenches for unit first moments and a unit mass at its origin; for the moment the
 link's inertia about its origin stays as it is.
 
-Source: docs/theory_forces.md, (27) and (28).
+Source: docs/theory_forces.md, (17) and (18).
 """
 
 from __future__ import annotations

@@ -2,12 +2,12 @@
 
 At constant speed, with torque M over the input x and its mean,
 
-    E(x) = integral (M - mean M) dx,   dE = max E - min E,   J = dE / (delta w^2)                         (24)
+    E(x) = integral (M - mean M) dx,   dE = max E - min E,   J = dE / (delta w^2)                         (14)
 
 A drive that gives the mean torque runs slowest where E is highest and fastest where it is lowest. A bearing's
-loads are the sizes of parts of the force and moment in its joint, as peak and as cubic mean.
+loads are the sizes of components of the force and moment in its joint, as peak and as cubic mean.
 
-Source: docs/theory_forces.md, (23) to (26); ISO 281 for the third power.
+Source: docs/theory_forces.md, (14) to (16); ISO 281 for the third power.
 """
 
 from __future__ import annotations
@@ -98,8 +98,8 @@ class Burden:
     mean_cube: float
 
 
-@dataclass(frozen=True, eq=False)
-class Bearing:
+@dataclass(frozen=True, eq=False, repr=False)
+class Bearing(Printed):
     """What the bearing of a joint bears, in the joint's frame on the side of the link before, z its axis.
 
     `force` [N] is the whole force, `radial` its part square to the axis, `axial` that along it; `tilting`
@@ -124,8 +124,8 @@ class Sizing(Printed):
     `braking_power` [W] the highest and the lowest; the lowest is `None` where the drive never brakes.
     `fluctuation` [J] is that of the energy about a drive of constant torque, of a law's rows about constant
     power; such a drive runs `fastest` and `slowest` at these inputs. `flywheel` [kg m^2] keeps the unevenness
-    `(highest - lowest) / mean speed` at `unevenness`: all inertia that turns with the input, and a little too
-    much as the linkage's own is counted again. `None` without a constant speed.
+    `(highest - lowest) / mean speed` at `unevenness`: all inertia that is needed, of which the mean of the
+    linkage's own may be taken off. `None` without a constant speed.
 
     `found` says how: by a "series" through the rows, in "pieces" between jumps, or from the "rows" as they
     are; `tail` how much may lie between the rows, as a part of the greatest torque, force or moment.
@@ -227,7 +227,7 @@ def sizing(
 def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:
     """The inertia [kg m^2] that keeps a drive of constant torque as even as wanted, `dE / (delta w^2)`.
 
-    Source: docs/theory_forces.md, (24).
+    Source: docs/theory_forces.md, (14).
     """
     return fluctuation / (unevenness * speed**2)
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Loading
@@ -22,12 +23,21 @@ from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.plane_and_sphere import plane_of
 from sevenbar.kinematics.transmission import best_row, transmission_angle, transmission_extremes
 
+if TYPE_CHECKING:
+    from sevenbar.kinematics.forces import ForceSolver
+
 
 @dataclass(frozen=True, eq=False)
 class LinkageAnswers:
     """The answers of a linkage; its circuits keep them and ask when they are asked."""
 
     linkage: Solvable
+    #: What solves for its forces, by the driving column, made at the first asking.
+    _solvers: dict[int, ForceSolver] = field(default_factory=dict, repr=False)
+
+    def __reduce__(self) -> tuple[type[LinkageAnswers], tuple[Solvable]]:
+        """Copied and pickled by the linkage."""
+        return LinkageAnswers, (self.linkage,)
 
     def point(self, name: str) -> Point:
         """A named point; `RequestError` where there is none of the name."""
@@ -76,12 +86,27 @@ class LinkageAnswers:
             low_at, high_at = low_at % math.tau, high_at % math.tau
         return Extremes(low, low_at, high, high_at)
 
-    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on a circuit's rows, with what is given in place of what the linkage has."""
         # the engine by numbers is for those who ask
-        from sevenbar.kinematics.forces import forces_of
+        from sevenbar.kinematics.forces import ForceSolver, forces_of
 
-        return forces_of(self.linkage, circuit, loading_with(self.linkage, **given))
+        if given:
+            loading = loading_with(self.linkage, **given)
+            solver = ForceSolver(self.linkage, loading, circuit.input_column)
+            return forces_of(solver, circuit, at_rest=at_rest)
+        if circuit.input_column not in self._solvers:
+            solver = ForceSolver(self.linkage, self.linkage.loading, circuit.input_column)
+            self._solvers[circuit.input_column] = solver
+        return forces_of(self._solvers[circuit.input_column], circuit, at_rest=at_rest)
+
+    def counterweights(
+        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
+    ) -> Balance:
+        """Counterweights on links for the least shaking, with what is given in place of what is written."""
+        from sevenbar.kinematics.balance import balance_of
+
+        return balance_of(self.linkage, circuit, self.forces(circuit, given), links, how)
 
     def free_motion(
         self, circuit: Circuit, given: Mapping[str, Any], options: Mapping[str, Any]

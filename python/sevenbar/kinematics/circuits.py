@@ -15,6 +15,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
+from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Load, Spring
@@ -196,11 +197,17 @@ class Answers(Protocol):
         """The lowest and the highest mechanical advantage."""
         ...
 
+    def counterweights(
+        self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
+    ) -> Balance:
+        """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
+        ...
+
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) in the plane of a planar loop (..., 2)."""
         ...
 
-    def forces(self, circuit: Circuit, given: Mapping[str, Any]) -> Forces:
+    def forces(self, circuit: Circuit, given: Mapping[str, Any], *, at_rest: bool = False) -> Forces:
         """The forces on its rows, with what is given in place of what the linkage has."""
         ...
 
@@ -432,12 +439,14 @@ class Circuit(Printed):
         gravity: tuple[float, float, float] | None = None,
         loads: Sequence[Load] | None = None,
         springs: Sequence[Spring] | None = None,
+        at_rest: bool = False,
     ) -> Forces:
         """What the input has to give, and what every joint bears, on each row.
 
         Bodies (by their link), gravity [m/s^2], loads and springs are those of the linkage's file, or the
-        given ones. Rates are those of the circuit: for statics, ask a motion with a law that rests. Raises
-        `RequestError` where nothing has a mass and nothing acts.
+        given ones. Rates are those of the circuit, or with `at_rest` zero: statics on every row, where
+        nothing has inertia and dampers do nothing. Raises `RequestError` where nothing has a mass and nothing
+        acts.
 
             >>> import sevenbar as sb
             >>> crank = sb.Body(mass=2.0, centre=(125, 0, 0))
@@ -448,7 +457,44 @@ class Circuit(Printed):
         Source: docs/theory_forces.md, (1) to (7).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
-        return self._answers.forces(self, {key: value for key, value in given.items() if value is not None})
+        known = {key: value for key, value in given.items() if value is not None}
+        return self._answers.forces(self, known, at_rest=at_rest)
+
+    @ends_here
+    def counterweights(
+        self,
+        links: Sequence[int],
+        *,
+        radius: float | Mapping[int, float] | None = None,
+        most_mass: float | Mapping[int, float] | None = None,
+        measure: Literal["rms", "greatest"] = "rms",
+        force: float = 1.0,
+        moment: float = 0.0,
+        bodies: Mapping[int, Body | Sequence[Body]] | None = None,
+    ) -> Balance:
+        """Counterweights on some links for the least shaking of all bodies, the linkage's or those given.
+
+        Least squares over the cycle give mass times radius for each link, and the mass at a `radius` [length]
+        from its joint at the ground, or from the joint before it. With `most_mass` [kg] no mass is above and
+        none farther than `radius`, each a number or one by link; then the `measure` "rms" over the cycle or
+        the "greatest" of the rows is the least there is, with its proof. What counts is the size of `force`
+        times the force and `moment` [1/m] times the moment about the report's origin, without that of the
+        counterweights' own inertia.
+
+        Raises `RequestError` for arguments that do not fit, and where the shaking has no bound.
+
+            >>> import sevenbar as sb
+            >>> rod = {2: sb.Body(mass=1.3, solid="rod")}
+            >>> found = sb.load("rssr").motion().circuits[0].counterweights([1, 3], bodies=rod)
+            >>> found.rank, found.unknowns, bool(found.after < 1e-12 * found.before)
+            (4, 6, True)
+            >>> [round(one.product, 6) for one in found.counterweights]  # half of 1.3 kg at 250 and 550 mm
+            [162.5, 357.5]
+
+        Source: docs/theory_forces.md, (17) to (23).
+        """
+        how = {"radius": radius, "most_mass": most_mass, "measure": measure, "force": force, "moment": moment}
+        return self._answers.counterweights(self, links, {} if bodies is None else {"bodies": bodies}, how)
 
     @ends_here
     def free_motion(
@@ -480,8 +526,8 @@ class Circuit(Printed):
         Raises `RequestError` where nothing has a mass, and for a start that the circuit does not have.
 
             >>> import sevenbar as sb
-            >>> linkage = sb.four_bar(crank=50, coupler=130, rocker=80, ground=100)
-            >>> crank = sb.Body(mass=2.0, centre=(25, 0, 0))
+            >>> linkage = sb.four_bar(crank=40, coupler=100, rocker=80, ground=90)
+            >>> crank = sb.Body(mass=2.0, centre=(0, 20, 0))
             >>> circuit = linkage.motion().circuits[0]
             >>> fall = circuit.free_motion("10s", start="30deg", bodies={1: crank}, gravity=(0, -9.81, 0))
             >>> fall.kind

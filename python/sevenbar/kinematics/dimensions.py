@@ -118,7 +118,7 @@ def dimensions_of(description: Mapping[str, Any], linkage: Loop) -> tuple[Dimens
             found.append(Dimension(f"{key}_{i + 1}", ("link", i, key), key, group, unit, value))
     for i, table in enumerate(description.get("joint", ())):
         found += _of_drawn(i, table, joints[i], length)
-    letters = "uvw" if linkage.form == "rows" else "xyz"
+    letters = "uvw" if linkage.in_rows else "xyz"
     for i, table in enumerate(description.get("point", ())):
         name = table["name"]
         found += _vector(("point", i, "at"), table["at"], letters, (name, f"point {name}"), length)

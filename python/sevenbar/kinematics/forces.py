@@ -2,7 +2,7 @@
 
     A^T W = Q - c                                                                                         (4)
 
-The core (`crates/sevenbar-core/src/loops/forces`) counts lengths in parts of the size, so forces in
+The core (`crates/sevenbar-core/src/loops/forces`) counts lengths relative to the size, so forces in
 kg size/s^2; here they become newtons.
 
 Source: docs/theory_forces.md, (1) to (6).
@@ -10,8 +10,9 @@ Source: docs/theory_forces.md, (1) to (6).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 
 import numpy as np
 import numpy.typing as npt
@@ -23,15 +24,13 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.link_bodies import joint_places, resolved
+from sevenbar.kinematics.driven import driven
+from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.word import Product
 from sevenbar.text.units import LENGTHS
-
-#: A body within this part of its size, or inertia, of a line is one that is symmetric about the line.
-SYMMETRIC = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +40,9 @@ class ForceSolver:
     linkage: Solvable
     loading: Loading
     input: int
+    #: Whether derivatives by the description's numbers are wanted.
+    by_numbers: bool = False
+    _frames: dict[int, Floats] = field(default_factory=dict, repr=False)
 
     @cached_property
     def numbers(self) -> Numbers:
@@ -50,7 +52,7 @@ class ForceSolver:
     @cached_property
     def loop(self) -> NumberedLoop:
         """The loop that this input drives."""
-        return self.numbers.loop(self.input, only=())
+        return self.numbers.loop(self.input, only=None if self.by_numbers else ())
 
     @cached_property
     def size(self) -> float:
@@ -60,32 +62,7 @@ class ForceSolver:
     @cached_property
     def bodies(self) -> dict[int, Body]:
         """The bodies of the links, one each; where a link spins idly, as balls without friction move them."""
-        found = resolved(self.loading, self.linkage)
-        return {link: self._unspun(link, body) for link, body in found.items()}
-
-    def _unspun(self, link: int, body: Body) -> Body:
-        """A body symmetric about the line of the balls between which it spins, without inertia about it.
-
-        Balls without friction never begin to turn it about that line, so it moves as if it had none.
-        """
-        balls = [joint.row.is_ball for joint in self.linkage.joints]
-        if link not in self.linkage.idle_links or not (balls[link - 1] and balls[link]):
-            return body
-        ends = joint_places(self.linkage, link)
-        along = ends[1] - ends[0]
-        length = float(np.linalg.norm(along))
-        if not length:
-            return body
-        z = along / length
-        arm = np.asarray(body.centre) - ends[0]
-        tensor = body.tensor
-        axial = float(z @ tensor @ z)
-        across = (float(np.trace(tensor)) - axial) / 2
-        round_it = across * (np.eye(3) - np.outer(z, z)) + axial * np.outer(z, z)
-        rest = np.abs(tensor - round_it).max() > SYMMETRIC * max(axial, across)
-        if np.linalg.norm(arm - (arm @ z) * z) > SYMMETRIC * length or rest:
-            return body
-        return Body(body.mass, body.centre, across * (np.eye(3) - np.outer(z, z)))
+        return as_moved(self.linkage, resolved(self.loading, self.linkage))
 
     def _carrier(self, link: int) -> tuple[int, Product]:
         """The steps before a link, and the frame there in which its points are written."""
@@ -96,16 +73,22 @@ class ForceSolver:
             )
         return self.numbers.word.carrier(int(link))
 
+    def _frame(self, link: int) -> Floats:
+        """The frame (4, 4) in which points of a link are written, against the steps before it."""
+        if link not in self._frames:
+            self._frames[link] = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))
+        return self._frames[link]
+
     def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
         steps, product = self._carrier(link)
-        frame = product.pose(self.numbers.values(self.loop.p))
+        frame = self._frame(link)
         place = (frame[:3, :3] @ np.asarray(at) + frame[:3, 3]) / self.numbers.size
-        return steps, place, self.loop.twists_of(product)
+        return steps, place, self.loop.twists_of(product) if self.by_numbers else []
 
     def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
         assert body.centre is not None
         steps, centre, ways = self._place(link, body.centre)
-        axes = self._carrier(link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
+        axes = self._frame(link)[:3, :3]
         return steps, body.mass, centre, axes @ body.tensor @ axes.T / self.size**2, ways
 
     def _load(self, load: Load) -> tuple[tuple[int, Floats, list[tuple[int, Floats]]], Floats, Floats, bool]:
@@ -113,7 +96,7 @@ class ForceSolver:
         force, torque = np.array(load.force) / self.size, np.array(load.torque) / self.size**2
         turns = load.axes == "link"
         if turns:
-            axes = self._carrier(load.link)[1].pose(self.numbers.values(self.loop.p))[:3, :3]
+            axes = self._frame(load.link)[:3, :3]
             force, torque = axes @ force, axes @ torque
         return self._place(load.link, load.at), force, torque, turns
 
@@ -168,15 +151,7 @@ class ForceSolver:
             step += len(word.freedoms[i])
         return steps, np.array(frames)
 
-    def solved(
-        self,
-        inputs: Floats,
-        poses: Floats,
-        speeds: Floats,
-        *,
-        by: int | None = None,
-        by_numbers: bool = False,
-    ) -> list[Floats]:
+    def solved(self, inputs: Floats, poses: Floats, speeds: Floats, *, by: int | None = None) -> list[Floats]:
         """What the core finds at closed poses (n, columns) of the word, with speeds of the input (n, 2).
 
         Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given.
@@ -193,45 +168,74 @@ class ForceSolver:
             np.ascontiguousarray(np.reshape(factors, (-1, len(inputs))).T),
             steps,
             frames,
-            by_numbers,
+            self.by_numbers,
         )
 
 
-def forces_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> Forces:
+def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -> Forces:
     """The forces on the rows of a circuit; see `Circuit.forces`."""
+    linkage, loading = solver.linkage, solver.loading
     if loading.is_empty:
         raise RequestError(
             "forces: nothing has a mass and nothing acts; give bodies, loads or springs, or write [[body]]"
         )
-    solver = ForceSolver(linkage, loading, circuit.input_column)
-    poses = solver.numbers.poses(circuit.q)
+    poses = _poses(solver, circuit)
     poses[np.isin(circuit.status, ("dead-centre", "change-point", "no-solution"))] = np.nan
     speeds = np.stack([rate[:, circuit.input_column] for rate in (circuit.dq, circuit.ddq)], axis=1)
+    if at_rest:
+        # rows without rates stay without
+        speeds = np.where(np.isfinite(speeds), 0.0, np.nan)
     torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
     size, metre = solver.size, LENGTHS[linkage.length_unit]
     slides = linkage.column_kinds[circuit.input_column] == "slide"
     torque = torque * (size if slides else size**2)
     speed = speeds[:, 0]
     energies = energies * size**2
+    reactions = _reactions(solver, wrenches, seats, free)
     return Forces(
         input=circuit.input,
         time=circuit.time,
         speed=speed,
         status=circuit.status,
+        branch=circuit.branch,
         torque=torque,
         power=torque * speed * (metre if slides else 1.0),
         kinetic=energies[:, 0],
         potential=energies[:, 1],
         supplied=energies[:, 2],
         shaking=shaking * np.repeat([size**2, size], 3),
-        reactions=_reactions(solver, wrenches, seats, free),
-        spin=_spins(solver, spin * size**2),
+        reactions=reactions,
+        spin=_spins(solver, spin * size**2, reactions),
         indeterminate=linkage.mobility().redundant if free.shape[1] else (),
         slides=slides,
         length_unit=linkage.length_unit,
         periodic=circuit.goes_round and not np.isnan(circuit.speed) and not _winds_up(circuit, loading),
         loading=loading,
+        bodies=solver.bodies,
+        driver=linkage.columns[circuit.input_column],
+        heading=linkage.heading,
+        at_rest=at_rest,
+        between=partial(_between, solver, circuit, at_rest),
     )
+
+
+def _poses(solver: ForceSolver, circuit: Circuit) -> Floats:
+    """The rows (n, columns) of a circuit as poses of the word.
+
+    Where a ball's turns are undefined the pose is found anew, from the nearest row that has them all.
+    """
+    poses = solver.numbers.poses(circuit.q)
+    undefined = np.flatnonzero(circuit.status == "turns-undefined")
+    known = np.flatnonzero(np.isfinite(poses).all(axis=1))
+    if len(undefined) and len(known):
+        near = known[np.abs(undefined[:, None] - known).argmin(axis=1)]
+        poses[undefined] = solver.loop.closed(circuit.input[undefined], poses[near])
+    return poses
+
+
+def _between(solver: ForceSolver, circuit: Circuit, at_rest: bool, inputs: Floats) -> Forces:
+    """The forces of a circuit that goes round, at any inputs (n,)."""
+    return forces_of(solver, driven(solver.linkage, circuit, inputs, speed=circuit.speed), at_rest=at_rest)
 
 
 def _winds_up(circuit: Circuit, loading: Loading) -> bool:
@@ -251,6 +255,7 @@ def _reactions(solver: ForceSolver, wrenches: Floats, seats: Floats, free: Float
         known, determinate = _known(_in_seat(axes, place, free))
         found[joint.name] = Reaction(
             joint=joint.name,
+            kind=joint.kind,
             force=np.where(determinate[3:], wrench[:, 3:], np.nan),
             moment=np.where(determinate[:3], wrench[:, :3] * size, np.nan),
             at=place * solver.numbers.size,
@@ -286,14 +291,22 @@ def _known(open_ways: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
     return known, determinate
 
 
-def _spins(solver: ForceSolver, spin: Floats) -> dict[str, Floats]:
-    """The moment that holds each idle spin (n,) [N m], by its link."""
+def _spins(solver: ForceSolver, spin: Floats, reactions: Mapping[str, Reaction]) -> dict[str, Floats]:
+    """The size of the moment (n,) [N m] in each ball that the rule of an idle spin needs, by its link.
+
+    The ball is held to two axes, so its moment is square to both; what the core has is its part about the
+    third axis of the word.
+    """
     linkage = solver.linkage
     spun, *_ = linkage.held
-    columns = list(solver.numbers.held)
     found = {}
     for ball in sorted(spun):
         column = linkage.places[ball].stop - 1
-        if column in columns:
-            found[f"link {ball + 1}"] = spin[:, columns.index(column)]
+        reaction = reactions[linkage.joints[ball].name]
+        if column not in solver.numbers.held:
+            continue
+        own = np.abs(spin[:, solver.numbers.held.index(column)])
+        name = "coupler" if linkage.kind == "RSSR" else f"link {ball + 1}"
+        known = bool(reaction.determinate[:3].all())
+        found[name] = np.linalg.norm(reaction.moment, axis=1) if known else own
     return found

@@ -43,7 +43,7 @@ def four_bar_of(loop: Loop, input: str, output: str) -> FourBar | None:
         if sphere_of(loop) is None or parts.letters != "RRRR":
             return None
         moves: tuple[int, ...] = (0, 1, 2, 3)
-    elif found.held is not None and loop.form == "rows":
+    elif found.held is not None and loop.in_rows:
         # where it is held is not known before the loop is closed
         return None
     else:

@@ -37,7 +37,7 @@ STILL = np.eye(4)
 #: An angle [rad] short of a full turn by less is zero.
 ROUNDING = 1e-12
 
-#: Limits [rad, or parts of the size] nearer than this are one.
+#: Limits [rad, or relative to the size] nearer than this are one.
 SAME_LIMIT = 1e-6
 
 

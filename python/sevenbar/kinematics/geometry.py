@@ -15,12 +15,13 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
-from sevenbar.kinematics.joints import KINDS, Freedom, JointKind, Step, X, Z
+from sevenbar.kinematics.joints import Freedom, JointKind, Step, X, Z, kind_row
 from sevenbar.kinematics.rigid import about, inverse, pose
 from sevenbar.text.printing import Drawable
 
-#: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, joints as drawn.
-Form = Literal["rssr", "rows", "drawn"]
+#: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, the same in the
+#: layout of planar textbooks, joints as drawn.
+Form = Literal["rssr", "rows", "planar", "drawn"]
 
 
 #: What a linkage is called that was made without a name.
@@ -44,7 +45,7 @@ class Joint:
     @cached_property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
+        return kind_row(self.kind, backwards=self.backwards)
 
     @cached_property
     def columns(self) -> tuple[str, ...]:
@@ -120,7 +121,9 @@ class Loop(Drawable):
     both in the report frame. `links` (n - 1, 4, 4) are the G's of the moving links, from each joint's frame
     to the next one's. `point_frames` (n, 4, 4) take a point as it is written to its link's own frame.
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
-    tables and keys of a file, from which a linkage with other numbers is made. `loading` is what acts on it.
+    tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
+    up to a closure error [rad, or relative to the size], the usual one where it is `None`;
+    `loading` is what acts on it.
 
     Source: docs/theory.md, (1).
     """
@@ -138,6 +141,7 @@ class Loop(Drawable):
     form: Form = "drawn"
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
     loading: Loading = field(default=UNLOADED, repr=False)
+    agree: float | None = None
 
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):
@@ -156,6 +160,11 @@ class Loop(Drawable):
     def kind(self) -> str:
         """The joints' letters in loop order."""
         return "".join(joint.kind for joint in self.joints)
+
+    @property
+    def in_rows(self) -> bool:
+        """Whether it is written as rows, a row a link."""
+        return self.form in ("rows", "planar")
 
     @property
     def heading(self) -> str:

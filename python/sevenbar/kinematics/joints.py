@@ -210,3 +210,8 @@ def column_names(joint: str, freedoms: Sequence[Freedom]) -> tuple[str, ...]:
 def letters_with(key: str) -> str:
     """The letters of the kinds that are drawn with a key, as in "R P H C"."""
     return " ".join(letter for letter, kind in KINDS.items() if key in kind.drawn_keys)
+
+
+def kind_row(letter: str, *, backwards: bool) -> JointKind:
+    """The row of a kind; `backwards` for values of the link before the joint against the link after it."""
+    return KINDS[letter].backwards if backwards else KINDS[letter]

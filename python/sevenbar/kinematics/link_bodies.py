@@ -10,12 +10,17 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError
+from sevenbar.errors import RequestError, shown
 from sevenbar.forces.bodies import Body, as_one, triple
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import inverse
 from sevenbar.text.units import LENGTHS
+
+#: A centre within this part of a line's length, and an inertia within this part of itself, are symmetric
+#: about the line.
+SYMMETRIC = 1e-9
 
 #: The module whose `drawn_bodies(linkage, circuit)` gives what exports draw; filled by the package.
 DRAWN_IN: dict[str, str] = {}
@@ -50,12 +55,46 @@ def resolved(loading: Loading, linkage: Loop, *, circuit: int = 0) -> dict[int, 
     return found
 
 
-def refuse_no_link(key: str, link: int, linkage: Loop) -> None:
-    """`RequestError` for a link that does not exist or is the ground."""
+def as_moved(linkage: Solvable, bodies: Mapping[int, Body]) -> dict[int, Body]:
+    """The bodies as balls without friction move them, where a link spins idly.
+
+    Such balls never begin to turn a body that is symmetric about their line about it, so it moves as if it
+    had no inertia about the line.
+
+    Source: docs/theory_forces.md, (6).
+    """
+    return {link: _without_spin(linkage, link, body) for link, body in bodies.items()}
+
+
+def _without_spin(linkage: Solvable, link: int, body: Body) -> Body:
+    balls = [joint.row.is_ball for joint in linkage.joints]
+    if link not in linkage.idle_links or not (balls[link - 1] and balls[link]):
+        return body
+    start, end = joint_places(linkage, link)
+    length = float(np.linalg.norm(end - start))
+    if not length:
+        return body
+    z = (end - start) / length
+    arm = np.asarray(body.centre) - start
+    axial = float(z @ body.tensor @ z)
+    across = (float(np.trace(body.tensor)) - axial) / 2
+    thin = across * (np.eye(3) - np.outer(z, z))
+    apart = float(np.abs(body.tensor - thin - axial * np.outer(z, z)).max())
+    off = float(np.linalg.norm(arm - (arm @ z) * z))
+    if off > SYMMETRIC * length or apart > SYMMETRIC * max(axial, across):
+        return body
+    return Body(body.mass, body.centre, thin)
+
+
+def refuse_no_link(key: str, link: object, linkage: Loop, *, or_ground: bool = False) -> None:
+    """`RequestError` for a link that does not exist, or is the ground where that is none."""
     moving = len(linkage.links)
-    if not 1 <= link <= moving:
+    last = moving + or_ground
+    whole = isinstance(link, (int, np.integer)) and not isinstance(link, bool)
+    if not whole or not 1 <= link <= last:  # type: ignore[operator]
         what = "is the ground, which does not move" if link == moving + 1 else "is not a link"
-        raise RequestError(f"{key}: link {link} {what}; give 1 to {moving}")
+        more = ", the last is the ground" if or_ground else ""
+        raise RequestError(f"{key}: link {shown(link)} {what}; give 1 to {last}{more}")
 
 
 def _worked_out(body: Body, link: int, linkage: Loop, solids: Callable[[], Mapping[int, Body]]) -> Body:

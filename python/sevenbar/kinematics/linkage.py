@@ -71,19 +71,31 @@ class Linkage(Solvable):
 
     @cached_property
     def _general(self) -> GeneralLoop:
-        return GeneralLoop(self)
+        return GeneralLoop(self, AGREE if self.agree is None else self.agree)
 
     @cached_property
-    def _agreeing(self) -> dict[float, GeneralLoop]:
-        return {}
+    def _agreeing(self) -> dict[float | None, Linkage]:
+        return {self.agree: self}
 
-    def _general_at(self, agree: float | None) -> GeneralLoop:
-        """The general solver with redundant constraints that agree up to a closure error."""
-        if agree is None or agree == AGREE:
-            return self._general
+    @ends_here
+    def agreeing(self, agree: float | None) -> Linkage:
+        """The same linkage, whose redundant constraints agree up to a closure error; `None` changes nothing.
+
+        Its motion, its modes and linkages made of it with other numbers take that error; see `motion`.
+
+            >>> import sevenbar as sb
+            >>> rows = {"length": [50, 98.48] * 2, "twist": ["30 deg", "100 deg"] * 2, "offset": [0] * 4}
+            >>> rounded = sb.from_dh("RRRR", **rows)
+            >>> rounded.motion().motion_type, rounded.agreeing(1e-5).motion().motion_type
+            ('rigid', 'double-crank')
+        """
+        if agree is None:
+            return self
         value = closure_tolerance("agree", agree)
+        if value == AGREE and self.agree is None:
+            return self
         if value not in self._agreeing:
-            self._agreeing[value] = GeneralLoop(self, value)
+            self._agreeing[value] = replace(self, agree=value)
         return self._agreeing[value]
 
     def _rssr(self, what: str) -> ClosedForm:
@@ -181,7 +193,7 @@ class Linkage(Solvable):
         """
         column = self._input(input)
         value = joint_number("theta", theta, self, column)
-        general = self._general_at(agree)
+        general = self.agreeing(agree)._general
         if self._has_closed_form(method):
             return self._closed_form.modes(column, value)
         self._refuse_unheld()
@@ -196,7 +208,7 @@ class Linkage(Solvable):
         >>> print(sb.load("bennett").mobility())
         Gruebler -2, redundant constraints 3, moves with 1
         """
-        return self._general_at(agree).mobility(self.columns.index(self.drive.joint))
+        return self.agreeing(agree)._general.mobility(self.columns.index(self.drive.joint))
 
     @cached_property
     def plane(self) -> MotionPlane | None:
@@ -305,8 +317,9 @@ class Linkage(Solvable):
         joints. `method` "general" takes the general way for an RSSR too, which has a closed form.
 
         Redundant constraints, those of an overconstrained loop, agree up to a closure error of 1e-9 (rad, or
-        relative to the linkage size). With more for `agree`, up to 1e-3, a loop of rounded dimensions moves
-        as the exact one next to it would; rows then close up to the error that `residual` gives.
+        relative to the linkage size), or the linkage's own. With more for `agree`, up to 1e-3, a loop of
+        rounded dimensions moves as the exact one next to it would; rows then close up to the error that
+        `residual` gives, and `linkage` of the motion is `agreeing(agree)`.
 
         Raises `RequestError` for an argument that does not fit, `NotCoveredError` for a loop in which links
         spin idly between two balls with a screw among them.
@@ -319,7 +332,7 @@ class Linkage(Solvable):
             [('crank-rocker', 1), ('double-rocker', 0), ('crank-rocker', 1)]
         """
         column, output_column, samples, rate = self._asked(samples, input, output, speed)
-        general = self._general_at(agree)
+        general = self.agreeing(agree)._general
         if self._has_closed_form(method):
             found = self._closed_form.motion(column, samples, rate, law)
         else:
@@ -361,7 +374,7 @@ class Linkage(Solvable):
                 f"give one for each of {', '.join(self.columns)}"
             )
         self._refuse_unheld()
-        return self._general_at(agree).circuit(values, column, output_column, samples, rate, law)
+        return self.agreeing(agree)._general.circuit(values, column, output_column, samples, rate, law)
 
     def _asked(
         self, samples: int, input: str | None, output: str | None, speed: float | str | None

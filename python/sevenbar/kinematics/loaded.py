@@ -8,8 +8,7 @@ from typing import Any, TypeVar
 
 import numpy.typing as npt
 
-from sevenbar.errors import RequestError
-from sevenbar.forces.bodies import Body, triple
+from sevenbar.forces.bodies import Body, entries_of, triple
 from sevenbar.forces.loading import Load, Loading, Spring
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.link_bodies import refuse_no_link
@@ -72,11 +71,7 @@ def loading_with(
     found = []
     for i, spring in enumerate(given.springs):
         for link in spring.links or ():
-            if not 1 <= link <= len(linkage.joints):
-                raise RequestError(
-                    f"springs[{i}]: link {link} is not a link; "
-                    f"give 1 to {len(linkage.joints)}, the last is the ground"
-                )
+            refuse_no_link(f"springs[{i}]", link, linkage, or_ground=True)
         if spring.joint is not None:
             column = linkage.column(spring.joint, f"springs[{i}].joint")
             spring = replace(spring, joint=linkage.columns[column])
@@ -87,7 +82,7 @@ def loading_with(
 def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any]:
     """A body as a table of a file has it."""
     kilogram, metre = MASSES[mass_unit], LENGTHS[linkage.length_unit]
-    table: dict[str, Any] = {"link": link}
+    table: dict[str, Any] = {"link": int(link)}
     if body.mass:
         table["mass"] = body.mass / kilogram
     if body.solid is not None:
@@ -95,14 +90,13 @@ def _body(link: int, body: Body, mass_unit: str, linkage: Loop) -> dict[str, Any
     if body.centre is not None:
         table["centre"] = list(body.centre)
     if body.tensor.any():
-        (xx, xy, xz), (_, yy, yz), (_, _, zz) = (body.tensor / (kilogram * metre**2)).tolist()
-        table["inertia"] = [xx, yy, zz, yz, xz, xy]
+        table["inertia"] = entries_of(body.tensor / (kilogram * metre**2))
     return table
 
 
 def _load(load: Load, linkage: Loop) -> dict[str, Any]:
     size = _size_of_input(linkage)
-    table: dict[str, Any] = {"link": load.link}
+    table: dict[str, Any] = {"link": int(load.link)}
     if any(load.force):
         table |= {"at": list(load.at or ()), "force": list(load.force)}
     if any(load.torque):
@@ -124,7 +118,7 @@ def _spring(spring: Spring, linkage: Loop) -> dict[str, Any]:
         table |= {"joint": spring.joint, "free": spring.length / size}
     elif spring.links is not None and spring.at is not None:
         ends = [list(end) for end in spring.at]
-        table |= {"links": list(spring.links), "at": ends, "length": spring.length}
+        table |= {"links": [int(link) for link in spring.links], "at": ends, "length": spring.length}
     table |= {key: value for key in ("stiffness", "damping") if (value := getattr(spring, key))}
     return table | ({"name": spring.name} if spring.name else {})
 

@@ -8,14 +8,30 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.forces.sizing import Bearing, Sizing
 from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.gradients import MeasureSlopes, measure_slopes
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.sensitivity import Numbers
 
 #: What a measure is a number of: of angles and lengths by the output.
-Quantity = Literal["word", "count", "ratio", "angle", "output", "velocity", "acceleration", "jerk"]
+Quantity = Literal[
+    "word",
+    "count",
+    "ratio",
+    "angle",
+    "output",
+    "velocity",
+    "acceleration",
+    "jerk",
+    "torque",
+    "force",
+    "moment",
+    "power",
+    "energy",
+]
 
 
 @dataclass(frozen=True)
@@ -34,7 +50,8 @@ class Measure:
 
     def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
         """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
-        if MEASURES.get(self.name) is self:
+        own = (MEASURES | FORCE_MEASURES).get(self.name) is self
+        if own or self.name.partition(":")[0] in JOINT_MEASURES:
             return _measure, (self.name,)
         return Measure, (self.name, self.per, self.quantity, self.value, self.title)
 
@@ -49,6 +66,12 @@ class Measure:
             "velocity": f"{rate}_s",
             "acceleration": f"{rate}_s2",
             "jerk": f"{rate}_s3",
+            # of a sliding input the torque is a force
+            "torque": "N_m",
+            "force": "N",
+            "moment": "N_m",
+            "power": "W",
+            "energy": "J",
         }.get(self.quantity, "")
 
     def column(self, linkage: Loop, output: str) -> str:
@@ -88,7 +111,17 @@ def _ends(rate: Literal["velocity", "acceleration", "jerk"]) -> list[Measure]:
     ]
 
 
-#: Every measure that has a name.
+def _of_sizing(name: str, quantity: Quantity, pick: Callable[[Sizing], float], title: str) -> Measure:
+    """A number of a circuit's sizing; none where its torque has no bound."""
+
+    def value(circuit: Circuit) -> float | None:
+        found = sized(circuit)
+        return None if found is None else pick(found)
+
+    return Measure(name, "circuit", quantity, value, title)
+
+
+#: Every measure of the motion that has a name: the core's batches have them, too.
 MEASURES: dict[str, Measure] = {
     measure.name: measure
     for measure in (
@@ -121,6 +154,44 @@ MEASURES: dict[str, Measure] = {
     )
 }
 
+#: Measures of what acts on the linkage; they come from the forces of each circuit.
+FORCE_MEASURES: dict[str, Measure] = {
+    measure.name: measure
+    for measure in (
+        _of_sizing(
+            "peak_torque", "torque", lambda s: abs(s.peak_torque.value), "greatest torque of the input"
+        ),
+        _of_sizing("rms_torque", "torque", lambda s: s.rms_torque, "root mean square of the input's torque"),
+        _of_sizing("peak_power", "power", lambda s: s.peak_power.value, "greatest power of the input"),
+        _of_sizing(
+            "energy_fluctuation", "energy", lambda s: s.fluctuation, "fluctuation of energy, for a flywheel"
+        ),
+        Measure("peak_shaking", "circuit", "force", peak_shaking, "greatest shaking force of the rows"),
+    )
+}
+
+#: Measures of a joint, as in peak_force:crank: quantity, what of its bearing, title.
+JOINT_MEASURES: dict[str, tuple[Quantity, Callable[[Bearing], float], str]] = {
+    "peak_force": ("force", lambda b: b.force.peak.value, "greatest force in joint {}"),
+    "mean_cube_force": ("force", lambda b: b.force.mean_cube, "cubic mean of the force in joint {}"),
+    "peak_tilting": ("moment", lambda b: b.tilting.peak.value, "greatest tilting moment in joint {}"),
+}
+
+
+def _of_joint(name: str) -> Measure | None:
+    """The measure of a joint by its name; `None` where the name is of none."""
+    kind, colon, joint = name.partition(":")
+    if not colon or kind not in JOINT_MEASURES or not joint:
+        return None
+    quantity, pick, title = JOINT_MEASURES[kind]
+
+    def value(circuit: Circuit) -> float | None:
+        found = sized(circuit, (joint,))
+        number = math.nan if found is None else pick(found.bearings[joint])
+        return number if math.isfinite(number) else None
+
+    return Measure(name, "circuit", quantity, value, title.format(joint))
+
 
 def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -> tuple[Measure, ...]:
     """The measures of names, or of functions of the Motion, which are measures of a linkage.
@@ -140,15 +211,20 @@ def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -
 def _measure(given: object) -> Measure:
     if isinstance(given, Measure):
         return given
-    if isinstance(given, str) and given in MEASURES:
-        return MEASURES[given]
+    if isinstance(given, str) and given in (every := MEASURES | FORCE_MEASURES):
+        return every[given]
+    of_joint = _of_joint(given) if isinstance(given, str) else None
+    if of_joint is not None:
+        return of_joint
     if callable(given):
         name = getattr(given, "__name__", "measure").strip("<>")
         about = (getattr(given, "__doc__", None) or name).splitlines()[0]
         return Measure(name, "linkage", "ratio", given, about)
+    known = [*MEASURES, *FORCE_MEASURES, *(f"{kind}:JOINT" for kind in JOINT_MEASURES)]
     raise RequestError(
-        f"measure: {shown(given)} is not a measure; {suggestion(str(given), list(MEASURES))}"
-        f"give some of {', '.join(MEASURES)}, or a function of the Motion"
+        f"measure: {shown(given)} is not a measure; {suggestion(str(given), known)}"
+        f"give some of {', '.join(known)}, "
+        "or a function of the Motion"
     )
 
 
@@ -186,5 +262,24 @@ def gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
     Source: docs/theory_design.md, (6).
     """
     chosen = chosen_circuit(motion, circuit)
-    found = measure_slopes(Numbers(motion.linkage), chosen, motion.speed)
+    numbers = Numbers(motion.linkage)
+    found = [*measure_slopes(numbers, chosen, motion.speed), *force_slopes(numbers, chosen, motion.speed)]
     return {one.name: one for one in found}
+
+
+def mass_gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
+    """Peak and RMS torque and the peak force of each joint, with derivatives by each link's mass [1/kg].
+
+    In the order of the links that have a body; a body's inertia grows along with its mass. Nothing where no
+    link has a body, or the circuit does not go round at constant speed.
+
+        >>> import sevenbar as sb
+        >>> rod = sb.load("rssr").loaded(bodies={2: sb.Body(1.3, solid="rod")})
+        >>> found = mass_gradient(rod.motion())["peak_torque"]
+        >>> bool(abs(found.slopes[0] * 1.3 - found.value) < 1e-9 * found.value)  # it is linear in the mass
+        True
+
+    Source: docs/theory_forces.md, (9).
+    """
+    numbers = Numbers(motion.linkage)
+    return {one.name: one for one in mass_slopes(numbers, chosen_circuit(motion, circuit), motion.speed)}

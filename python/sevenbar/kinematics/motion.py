@@ -108,7 +108,7 @@ class Modes(Printed):
     completeness: Literal["closed-form", "algebraic", "searched"]
     columns: tuple[str, ...]
     input: float
-    #: Other poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    #: Other poses that redundant constraints alone keep open: how much [rad, relative to the size], rising.
     misfits: Floats = field(default_factory=_none)
     #: The closure error [rad, relative to the size] up to which they agree; NaN where nothing is redundant.
     agree: float = math.nan
@@ -165,7 +165,7 @@ class Search:
     unfollowed: int = 0
     rank: int | None = None
     freedoms: int | None = None
-    #: Poses that redundant constraints alone keep open: by how much [rad, parts of the size], rising.
+    #: Poses that redundant constraints alone keep open: by how much [rad, or relative to the size], rising.
     misfits: Floats = field(default_factory=_none)
     #: How the circuits were counted; `None` where they were not.
     count: Count | None = None
@@ -443,8 +443,21 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
     if circuit.transmission_angle is not None:
         transmission = circuit.transmission_angle
         columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
+    head, factor = _advantage_column(circuit, length, scale)
+    columns[head] = circuit.mechanical_advantage * factor
     columns[f"residual_{length}"] = circuit.residual * scale
     return columns
+
+
+def _advantage_column(circuit: Circuit, length: str, scale: float) -> tuple[str, float]:
+    """The column of the mechanical advantage, and a factor: torque over force is a length, and backwards."""
+    match circuit.input_turns, circuit.output_turns:
+        case True, False:
+            return f"mechanical_advantage_1_{length}", 1.0 / scale
+        case False, True:
+            return f"mechanical_advantage_{length}", scale
+        case _:
+            return "mechanical_advantage", 1.0
 
 
 def chosen_circuit(motion: Motion, index: int) -> Circuit:

@@ -28,15 +28,18 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.circuits import Circuit, Sensitivity
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import about, adjoint, cross
+from sevenbar.kinematics.rigid import about, adjoint, cross, zyx_turns
 from sevenbar.kinematics.word import Carried, Place, Product, Values, holding_axis, points_of, vector, word_of
 
-#: Part of what one of a number moves [rad, or parts of the size, for a radian or the size of it] that no
+#: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
 OPENING = 1e-9
 
 #: Share of a column, or of a point [share of the size], in an idle motion that is more than rounding.
 TAKES_PART = 1e-9
+
+#: Sine by which two turns miss a ball's rotation that is more than rounding.
+SPUN = 1e-9
 
 #: Steps in which a change of numbers or inputs is made where it is too great for one.
 PARTS = (1, 2, 4, 8)
@@ -131,14 +134,24 @@ class Numbers:
     def poses(self, q: Floats, p: Floats | None = None) -> Floats:
         """Rows of an analysis (n, columns) as poses of the word.
 
-        In it a ball that holds a spin has two turns, about the axis before and one square to it.
+        In it a ball that holds a spin has two turns, about the axis before and one square to it. Where an
+        analysis has held the spin by another axis, the next ball takes it back.
         """
         q = q.copy()
         values = self.values(self.nominal if p is None else p)
-        for joint in self.spun:
-            a, b = (self.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in (0, 1))
+        for joint in sorted(self.spun):
+            a, b, line = (self.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in range(3))
             column = self.word.freedoms[joint][0].columns[0]
             turn = ball_rotations(q[:, column : column + 3])
+            if joint + 1 < len(self.word.links):
+                # two turns leave b square to a
+                rows = np.flatnonzero(np.abs(turn @ b @ a) > SPUN)
+                spin = _spin_beyond(turn[rows], a, b, line)
+                behind = self.word.links[joint].pose(values)[:3, :3]
+                beyond = slice(column + 3, column + 6)
+                taken = behind.T @ spin @ behind @ ball_rotations(q[rows, beyond])
+                q[rows, beyond] = zyx_turns(taken)
+                turn[rows] = turn[rows] @ np.swapaxes(spin, 1, 2)
             square = np.cross(a, b)
             first = np.arctan2(turn @ b @ square, turn @ b @ b)
             rest = np.swapaxes(turn, 1, 2) @ a
@@ -374,9 +387,25 @@ def sensitivity_of(linkage: Solvable, circuit: Circuit) -> Sensitivity:
     )
 
 
+def _spin_beyond(turn: Floats, a: Floats, b: Floats, line: Floats) -> Floats:
+    """What of a ball's rotations (n, 3, 3) is spin about a line, behind turns about a and then b.
+
+    Of the link's directions across the line the one nearest to a is at the same side of it as unturned.
+    """
+    ahead = turn @ line
+    across = np.cross(ahead, a) * math.copysign(1.0, float(np.cross(line, a) @ b))
+    carried = across / np.linalg.norm(across, axis=1, keepdims=True)
+    # the frame of line and b, before and after the two turns
+    before = np.stack([line, b, np.cross(line, b)], axis=1)
+    after = np.stack([ahead, carried, np.cross(ahead, carried)], axis=2)
+    spin: Floats = np.swapaxes(after @ before.T, 1, 2) @ turn
+    return spin
+
+
 def ball_rotations(turns: Floats) -> Floats:
     """The rotations (n, 3, 3) of turns (n, 3) about z, y and x, one after the other."""
-    return np.array([about(2, z) @ about(1, y) @ about(0, x) for z, y, x in turns]).reshape(-1, 3, 3)
+    z, y, x = turns.T
+    return np.asarray(about(2, z) @ about(1, y) @ about(0, x))
 
 
 def ball_turns(turns: Floats, rotations: Floats) -> Floats:

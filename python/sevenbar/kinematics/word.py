@@ -60,8 +60,12 @@ UVW = pose([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], np.zeros(3))
 #: The ground's side of the rocker of an RSSR turns about -x, so that its value is the paper's beta.
 ROCKER_GROUND = pose([[0, 0, -1], [-1, 0, 0], [0, 1, 0]], np.zeros(3))
 
+#: Half turns about x and z.
+HALF_TURN_X = pose(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
+HALF_TURN_Z = pose(np.diag([-1.0, -1.0, 1.0]), np.zeros(3))
+
 #: The table of each form in a file.
-TABLES: Mapping[Form, str] = {"rssr": "rssr", "rows": "link", "drawn": "joint"}
+TABLES: Mapping[Form, str] = {"rssr": "rssr", "rows": "link", "planar": "link", "drawn": "joint"}
 
 #: Axes of a frame, and unit twists.
 _AXES, _TWISTS = np.eye(3), np.eye(6)
@@ -428,7 +432,7 @@ def word_of(form: Form, kinds: Sequence[str], spun: Mapping[int, Floats | None] 
             own = [WordStep(step.letter, i, (c,)) for c, step in zip(columns, row.steps, strict=True)]
             inner.append(_inner(kinds, i, row))
         freedoms.append(tuple(own))
-    shape = {"rssr": _rssr, "rows": _rows, "drawn": _drawn}[form]
+    shape = {"rssr": _rssr, "rows": _rows, "planar": _planar, "drawn": _drawn}[form]
     return Word(*shape(kinds), tuple(freedoms), tuple(inner))
 
 
@@ -462,7 +466,7 @@ def _rssr(kinds: Sequence[str]) -> _Outer:
     def slide(axis: int, key: str) -> TurnAndSlide:
         return TurnAndSlide(axis, slide=("rssr", key))
 
-    turned = Still(pose(np.diag([1.0, -1.0, -1.0]), np.zeros(3)))
+    turned = Still(HALF_TURN_X)
     links = (
         Product((slide(0, "L1"),)),
         Product((slide(0, "L2"),)),
@@ -490,6 +494,23 @@ def _rows(kinds: Sequence[str]) -> _Outer:
     frames[-1] = ground + frames[-1]
     links = tuple(Product(pair) for pair in zip(turns[:-1], spans[:-1], strict=True))
     return Product((report, spans[-1])), links, ground, tuple(frames)
+
+
+def _planar(kinds: Sequence[str]) -> _Outer:
+    """The rows as planar textbooks lay them out: x runs along the ground, from the first joint to the last.
+
+    The first angle counts from x, half a turn off that of the rows; the last one is that of the link before
+    the ground, which the ground's in the rows is backwards.
+    """
+    _, links, ground, frames = _rows(kinds)
+    # without the report frame of the rows
+    (_, *rest), (_, *last) = ground.factors, frames[-1].factors
+    span = TurnAndSlide(0, turn=("link", len(kinds) - 1, "twist"), slide=("link", len(kinds) - 1, "length"))
+    start = Product((Still(HALF_TURN_Z), Back(span)))
+    under = Still(HALF_TURN_X)
+    links = (*links[:-1], links[-1] + Product((under,)))
+    frames = (*frames[:-1], start + Product(tuple(last)))
+    return Product(()), links, start + Product((*rest, under)), frames
 
 
 def _drawn_frames(kinds: Sequence[str], joint: int) -> tuple[DrawnFrame, DrawnFrame]:

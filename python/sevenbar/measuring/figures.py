@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.figure import page_figure
 from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.style import COMPUTED as COMPUTED_COLOUR
 from sevenbar.drawing.style import OTHER, styled
@@ -19,6 +19,7 @@ from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.measuring.calibrate import Calibration
 from sevenbar.measuring.compare import Comparison
 from sevenbar.measuring.measured import Ends
+from sevenbar.text.words import say
 
 COMPUTED: dict[str, Any] = {"color": COMPUTED_COLOUR, "lw": 1.6, "zorder": 2}
 NOMINAL: dict[str, Any] = {"color": "#8a8a8a", "lw": 1.3, "ls": (0, (4, 2)), "zorder": 1}
@@ -57,12 +58,15 @@ def comparison_figure(comparison: Comparison) -> Figure:
             x = shown(ends, "input", comparison.input)
             top, below = grid[:, column]
             curve = shown(ends, quantity, comparison.curve[quantity])
-            top.plot(shown(ends, "input", comparison.curve["input"]), curve, label="computed", **COMPUTED)
-            _points(top, x, shown(ends, quantity, comparison.measured[quantity]), "measured")
-            _points(below, x, shown(ends, quantity, comparison.difference(quantity)), "difference")
-            _labels(grid[:, column], ends, quantity, ["measured minus\ncomputed"])
+            top.plot(
+                shown(ends, "input", comparison.curve["input"]), curve, label=say("computed"), **COMPUTED
+            )
+            _points(top, x, shown(ends, quantity, comparison.measured[quantity]), say("measured"))
+            _points(below, x, shown(ends, quantity, comparison.difference(quantity)))
+            _labels(grid[:, column], ends, quantity, [say("measured minus\ncomputed")])
         name = short(comparison.linkage.heading, 60)
-        title = f"{name}\ncircuit {comparison.chosen.circuit} and measured values"
+        what = say("circuit {number} and measured values", number=comparison.chosen.circuit)
+        title = f"{name}\n{what}"
         _finish(figure, grid, title)
     return figure
 
@@ -85,29 +89,35 @@ def calibration_figure(calibration: Calibration) -> Figure:
             for name, look in (("nominal", NOMINAL), ("calibrated", COMPUTED)):
                 values = shown(ends, quantity, sides[name][quantity])
                 line = (np.insert(v[order], ends_of_stretches, np.nan) for v in (x, values))
-                top.plot(*line, label=name, **look)
+                top.plot(*line, label=say(name), **look)
             measured = shown(ends, quantity, calibration.measured[quantity])
-            _points(top, x, measured, "measured")
+            _points(top, x, measured, say("measured"))
             for axes, name in ((before, "nominal"), (after, "calibrated")):
-                _points(axes, x, measured - shown(ends, quantity, sides[name][quantity]), "difference")
+                _points(axes, x, measured - shown(ends, quantity, sides[name][quantity]))
             _labels(
-                grid[:, column], ends, quantity, ["measured minus\nnominal", "measured minus\ncalibrated"]
+                grid[:, column],
+                ends,
+                quantity,
+                [say("measured minus\nnominal"), say("measured minus\ncalibrated")],
             )
-        _finish(figure, grid, f"{short(calibration.linkage.heading, 60)}\nbefore and after calibration")
+        _finish(
+            figure, grid, f"{short(calibration.linkage.heading, 60)}\n{say('before and after calibration')}"
+        )
     return figure
 
 
 def _grid(columns: int, heights: tuple[float, ...]) -> tuple[Figure, Any]:
-    figure = new_figure(WIDE if columns == 1 else NARROW * columns, TALL, pads=(0.04, 0.06))
+    figure = page_figure(WIDE if columns == 1 else NARROW * columns, TALL, pads=(0.04, 0.06))
     grid = figure.subplots(
         len(heights), columns, sharex=True, squeeze=False, gridspec_kw={"height_ratios": heights}
     )
     return figure, grid
 
 
-def _points(axes: Axes, x: Floats, y: Floats, label: str) -> None:
+def _points(axes: Axes, x: Floats, y: Floats, label: str = "") -> None:
+    """Measured values, or without a label differences."""
     axes.plot(x, y, ms=SMALL if len(x) > MANY else LARGE, label=label, **MEASURED)
-    if label == "difference":
+    if not label:
         axes.axhline(0.0, color="#505050", lw=0.8, zorder=1)
 
 
@@ -128,6 +138,6 @@ def _labels(column: Any, ends: Ends, quantity: str, differences: list[str]) -> N
 
 def _finish(figure: Figure, grid: Any, title: str) -> None:
     figure.align_ylabels()
-    figure.suptitle(title, fontsize=11)
+    figure.suptitle(title)
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)

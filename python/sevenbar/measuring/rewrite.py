@@ -18,15 +18,16 @@ from sevenbar.measuring.measured import Measured
 AGREES = 1e-6
 
 
-def calibrated_toml(text: str, calibration: Calibration) -> str:
+def calibrated_toml(text: str, calibration: Calibration, *, source: str = "calibrated.toml") -> str:
     """The TOML text of a linkage with its calibrated dimensions in place of the nominal ones.
 
     L2 of an RSSR is written out, since left out it would follow from the others; it is left out where it was
     to follow. What the form has no key for, the zeros of the measured joints, is in the comment above. The
     text is read again, and the rows are compared with that linkage: `RequestError` where it does not explain
-    them as well. Raises `MissingExtraError` without tomlkit.
+    them as well. `source` is the file of the text, in whose folder tables of loads are. Raises
+    `MissingExtraError` without tomlkit.
     """
-    draft = Draft.of(text, "calibrated.toml")
+    draft = Draft.of(text, source)
     found = {p.name: p.value for p in calibration.calibrated if not p.name.endswith("_offset")}
     if found and "L2" in calibration.linkage.dimensions and "L2" not in calibration.follow:
         found = {"L2": calibration.parameter("L2").value} | found

@@ -10,10 +10,12 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Motion, Solvable
+from sevenbar.reporting.force_words import acting_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
 from sevenbar.reporting.page import drive_text
 from sevenbar.reporting.shown import Shown
+from sevenbar.text.words import retold, say
 
 #: Limits of the input that are listed.
 MOST_LIMITS = 8
@@ -41,27 +43,35 @@ def closure_error(circuits: Iterable[Circuit]) -> float:
 
 
 def facts_of(motion: Motion) -> list[tuple[str, str]]:
-    """What the report says of the motion as a whole: names and words."""
+    """What the report says of the motion as a whole: names, in English, and words."""
     linkage = motion.linkage
     facts = [("loop", joints_text(linkage))]
     if linkage.form == "rows":
-        before = f"link {len(linkage.joints) - 1}" if len(linkage.joints) > 2 else "the link before it"
-        facts.append(("last joint", f"{linkage.joints[-1].name} counts the ground relative to {before}"))
+        count = len(linkage.joints) - 1
+        before = say("link {number}", number=count) if count > 1 else say("the link before it")
+        last = linkage.joints[-1].name
+        facts.append(
+            ("last joint", say("{joint} counts the ground relative to {link}", joint=last, link=before))
+        )
     if numbers := dimensions_text(linkage):
         facts.append(("dimensions", numbers))
     if bar := motion.four_bar:
         facts.append(("links", links_text(bar, linkage.length_unit)))
         facts.append(("Grashof", grashof_text(bar, linkage.length_unit)))
     if doubt := angle_doubt(linkage.description):
-        facts.append(("angles", doubt))
+        facts.append(("angles", retold(doubt)))
     speed = motion.speed if motion.law is None else None
     unit, written = linkage.unit_of(motion.input), motion.speed_written
     facts.append(("drive", drive_text(motion.input, speed, unit, motion.output, written=written)))
     if motion.law is not None:
         t = motion.law.t
-        rows = f"{t.size} row{'s' * (t.size != 1)} from {t[0]:.6g} s to {t[-1]:.6g} s"
-        facts.append(("law", f"{rows}; extremes of velocity and acceleration are those of its rows"))
-    facts.append(("motion type", motion.motion_type))
+        law = say(
+            "{count} row{s} from {start:.6g} s to {end:.6g} s; extremes of velocity and acceleration are "
+            "those of its rows",
+            count=t.size, s="s" * (t.size != 1), start=t[0], end=t[-1],
+        )  # fmt: skip
+        facts.append(("law", law))
+    facts.append(("motion type", say(motion.motion_type)))
     if sentence := meaning(motion):
         facts.append(("", sentence))
     if near := nearly_moves(motion):
@@ -70,22 +80,32 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if motion.circuits or motion.limits.size:
         facts.append(("input limits", _limits_text(motion)))
     facts.extend(_change_points(motion))
-    facts.append(("completeness", f"{motion.completeness}: {COMPLETE[motion.completeness]}"))
+    facts.append(("completeness", completeness_text(motion.completeness)))
     if motion.completeness != "closed-form":
         facts.append(("how found", how_found(motion)))
         facts.append(("mobility", _mobility(motion.mobility)))
     if motion.idle:
-        facts.append(("idle freedom", "; ".join(motion.idle) + ", held by convention"))
-    facts.append(("redundant", "; ".join(motion.redundant) or "no constraints"))
+        idle = say("; ").join(map(retold, motion.idle))
+        facts.append(("idle freedom", say("{freedoms}, held by convention", freedoms=idle)))
+    facts.append(("redundant", say("; ").join(map(retold, motion.redundant)) or say("no constraints")))
+    if not linkage.loading.is_empty:
+        acting = acting_text(linkage.loading)
+        facts.append(("forces", say("{acting}; 'sevenbar forces' reports all joints", acting=acting)))
     if motion.circuits:
-        facts.append(("closure error", f"at most {closure_error(motion):.1e} {linkage.length_unit}"))
+        error, unit = closure_error(motion), linkage.length_unit
+        facts.append(("closure error", say("at most {error:.1e} {unit}", error=error, unit=unit)))
     return facts
+
+
+def completeness_text(word: str) -> str:
+    """The word for how it is known that nothing is missing, and what it means."""
+    return say("{word}: {meaning}", word=say(word), meaning=say(COMPLETE[word]))
 
 
 def _limits_text(motion: Motion) -> str:
     """The input's limits; of many no more than their number, since the tables have them by circuit."""
     if motion.limits.size > MOST_LIMITS:
-        return f"{motion.limits.size}, by circuit in the table below"
+        return say("{count}, by circuit in the table below", count=motion.limits.size)
     show = Shown(motion.linkage.unit_of(motion.input))
     return "  ".join(show(x) for x in motion.limits) or _no_limits(motion)
 
@@ -97,7 +117,7 @@ def joints_text(linkage: Loop) -> str:
 
 def dimensions_text(linkage: Solvable) -> str:
     """The dimensions by name; nothing of Denavit-Hartenberg rows, which want a table."""
-    numbers = {} if linkage.form == "rows" else dict(linkage.dimensions) or side_lengths(linkage)
+    numbers = {} if linkage.in_rows else dict(linkage.dimensions) or side_lengths(linkage)
     listed = "  ".join(f"{key} = {value:.6g}" for key, value in numbers.items())
     return f"{listed}  [{linkage.length_unit}]" if listed else ""
 
@@ -109,14 +129,19 @@ def _change_points(motion: Motion) -> list[tuple[str, str]]:
     meeting = [point for point in motion.change_points if not point.isolated]
     if meeting:
         where = "  ".join(show(x) for x in motion.change_point_inputs)
-        what = "branches meet there; the least change of a dimension decides how it goes on"
-        lines.append(("change point", f"input {where}: {what}"))
+        what = say(
+            "input {where}: branches meet there; the least change of a dimension decides how it goes on",
+            where=where,
+        )
+        lines.append(("change point", what))
     free = max((point.freedoms for point in meeting), default=0)
     if free > 1:
-        lines.append(("", f"there it can also move with {free} freedoms, which no circuit shows"))
+        more = say("there it can also move with {count} freedoms, which no circuit shows", count=free)
+        lines.append(("", more))
     alone = [show(point.input) for point in motion.change_points if point.isolated]
     if alone:
-        lines.append(("isolated pose", f"input {'  '.join(alone)}: no motion leads out of it"))
+        where = "  ".join(alone)
+        lines.append(("isolated pose", say("input {where}: no motion leads out of it", where=where)))
     return lines
 
 
@@ -125,77 +150,87 @@ def nearly_moves(motion: Motion) -> str:
     near = motion.near_motion
     if near is None:
         return ""
-    return (
-        f"as a {near.motion_type}: redundant constraints miss by up to {near.share:.1e} of the size "
-        f"({near.miss:.2g} {motion.linkage.length_unit}), or as many rad; --agree {near.agree:.0e} takes "
-        "them to agree"
-    )
+    return say(
+        "as a {motion_type}: redundant constraints miss by up to {share:.1e} of the size "
+        "({miss:.2g} {unit}), or as many rad; --agree {agree:.0e} takes them to agree",
+        motion_type=say(near.motion_type), share=near.share, miss=near.miss, agree=near.agree,
+        unit=motion.linkage.length_unit,
+    )  # fmt: skip
 
 
 def meaning(motion: Motion) -> str:
     """A sentence on a motion type that is not a pair of words for input and output."""
     match motion.motion_type:
         case "two-inputs":
-            return (
-                f"the loop moves with {motion.mobility.finite} freedoms, so one input does not determine it: "
-                "lock a joint (leave it out)"
+            return say(
+                "the loop moves with {count} freedoms, so one input does not determine it: lock a joint "
+                "(leave it out)",
+                count=motion.mobility.finite,
             )
         case "rigid":
             taken = motion.mobility.freedoms
-            return f"the loop closes but cannot move: closing it removes all of its {taken} freedoms"
+            return say(
+                "the loop closes but cannot move: closing it removes all of its {count} freedoms", count=taken
+            )
         case "cannot-assemble" if motion.linkage.kind == "RSSR":
-            return "no input closes the loop: the coupler is too short or too long"
+            return say("no input closes the loop: the coupler is too short or too long")
         case "cannot-assemble":
-            return "no values of the joints were found that close the loop"
+            return say("no values of the joints were found that close the loop")
         case "change-point":
-            return "the motion runs through a pose from which it can go on in more than one way"
+            return say("the motion runs through a pose from which it can go on in more than one way")
         case "mixed":
-            return "the circuits differ; see below"
+            return say("the circuits differ; see below")
     return ""
 
 
 def _mobility(mobility: Mobility) -> str:
-    count = f"Gruebler {mobility.freedoms} - 6 = {mobility.gruebler}"
-    parts = [count] if mobility.rank is None else [count, f"rank {mobility.rank}"]
-    for number, name in (
-        (len(mobility.idle), "idle freedom"),
-        (len(mobility.redundant), "redundant constraint"),
-    ):
-        if number:
-            parts.append(f"{number} {name}{'s' * (number > 1)}")
-    start = "not known, as no pose was found" if mobility.finite is None else f"{mobility.finite}"
-    return f"{start} ({', '.join(parts)})"
+    parts = [say("Gruebler {all} - 6 = {left}", all=mobility.freedoms, left=mobility.gruebler)]
+    if mobility.rank is not None:
+        parts.append(say("rank {rank}", rank=mobility.rank))
+    if number := len(mobility.idle):
+        parts.append(say("{count} idle freedom{s}", count=number, s="s" * (number > 1)))
+    if number := len(mobility.redundant):
+        parts.append(say("{count} redundant constraint{s}", count=number, s="s" * (number > 1)))
+    start = say("not known, as no pose was found") if mobility.finite is None else f"{mobility.finite}"
+    return say("{mobility} ({parts})", mobility=start, parts=say(", ").join(parts))
 
 
 def _no_limits(motion: Motion) -> str:
     turns = all(circuit.input_range is None for circuit in motion)
-    return "none: the input turns fully" if turns else "none found"
+    return say("none: the input turns fully") if turns else say("none found")
 
 
 def _circuit_count(motion: Motion) -> str:
     if not motion.circuits:
-        return "none: it closes only in isolated poses" if motion.change_points else "none"
+        return say("none: it closes only in isolated poses") if motion.change_points else say("none")
     turning = sorted({c.turns for c in motion if c.closed and c.turns})
-    ways = {
-        f"{{}} after {turns_text(k)} of the input": sum(c.closed and c.turns == k for c in motion)
+    # of one circuit, of each, of several
+    ways = [
+        (
+            sum(c.closed and c.turns == k for c in motion),
+            say("closes after {turns} of the input", turns=turns_text(k)),
+            say("close after {turns} of the input", turns=turns_text(k)),
+        )
         for k in turning
-    }
-    ways["{} to and fro"] = sum(c.closed and c.turns == 0 for c in motion)
-    ways["{} not known to close"] = sum(not c.closed for c in motion)
-    found = {way: count for way, count in ways.items() if count}
+    ]
+    ways += [
+        (sum(c.closed and c.turns == 0 for c in motion), say("goes to and fro"), say("go to and fro")),
+        (sum(not c.closed for c in motion), say("is not known to close"), say("are not known to close")),
+    ]
+    found = [way for way in ways if way[0]]
     total = len(motion.circuits)
-
-    def phrase(way: str, who: str, many: bool) -> str:
-        verb = ("go" if many else "goes") if "fro" in way else ("are" if many else "is")
-        if "after" in way:
-            verb = "close" if many else "closes"
-        return f"{who} {way.format(verb)}"
-
     if len(found) == 1:
-        return f"{total}, {phrase(next(iter(found)), 'each' if total > 1 else 'it', False)}"
-    return f"{total}: " + ", ".join(phrase(way, str(count), count > 1) for way, count in found.items())
+        ((_, one, _),) = found
+        if total > 1:
+            return say("{count}, each {way}", count=total, way=one)
+        return say("{count}, it {way}", count=total, way=one)
+    each = (
+        say("{count} {way}", count=count, way=several if count > 1 else one) for count, one, several in found
+    )
+    return say("{count}: {ways}", count=total, ways=say(", ").join(each))
 
 
 def turns_text(count: int) -> str:
     """A number of turns, in words where it is small."""
-    return {1: "one turn", 2: "two turns"}.get(count, f"{count} turns")
+    words = {1: say("one turn"), 2: say("two turns")}
+    return words.get(count) or say("{count} turns", count=count)

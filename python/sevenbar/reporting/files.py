@@ -16,6 +16,7 @@ from rich.console import Console, RenderableType
 
 from sevenbar.reporting.folder import check_targets, fill_folder, write_columns, write_parts
 from sevenbar.text.progress import Progress, silent
+from sevenbar.text.words import language
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -58,6 +59,8 @@ class Report(Generic[T]):
     figures: Callable[[T], Files[T]] | None = None
     #: files that show the figures; written last
     pages: Files[T] = field(default_factory=dict)
+    #: whether its text is in the language that is spoken; else it is in English
+    spoken: bool = False
 
     def targets(self, folder: Path) -> list[Path]:
         """The files that `write` may write, for a look before long work."""
@@ -69,11 +72,13 @@ class Report(Generic[T]):
 
     def json(self, found: T) -> str:
         """A result as JSON text."""
-        return json_text(self.as_dict(found))
+        with language("en"):
+            return json_text(self.as_dict(found))
 
     def print(self, found: T, console: Console | None = None) -> None:
         """Prints a result for people."""
-        (console or Console()).print(self.text(found))
+        with language(None if self.spoken else "en"):
+            (console or Console()).print(self.text(found))
 
     def write(
         self,
@@ -111,8 +116,13 @@ def _further(progress: Progress, done: int, total: int, name: str, share: float)
 
 
 def text_file(text: Callable[[T], str]) -> Write[T]:
-    """Writes a text in UTF-8."""
-    return lambda found, path: path.write_text(text(found), encoding="utf-8")
+    """Writes a text in UTF-8, in English: programs read it."""
+
+    def write(found: T, path: Path) -> None:
+        with language("en"):
+            path.write_text(text(found), encoding="utf-8")
+
+    return write
 
 
 def json_file(as_dict: Callable[[T], Any]) -> Write[T]:
@@ -122,7 +132,12 @@ def json_file(as_dict: Callable[[T], Any]) -> Write[T]:
 
 def columns_file(columns: Callable[[T], Mapping[str, npt.ArrayLike]]) -> Write[T]:
     """Writes columns of one length (n,) as CSV."""
-    return lambda found, path: write_columns(path, columns(found))
+
+    def write(found: T, path: Path) -> None:
+        with language("en"):
+            write_columns(path, columns(found))
+
+    return write
 
 
 def figure_files(stem: str, formats: Sequence[str], draw: Callable[[T], Figure | None]) -> Files[T]:

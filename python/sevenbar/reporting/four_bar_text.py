@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.reporting.shown import degrees
+from sevenbar.text.words import retold, say
 
 
 def links_text(bar: FourBar, unit: str) -> str:
     """The links of a four-bar by their names, arcs in degrees."""
     if bar.kind == "spherical":
-        return "  ".join(f"{name} {degrees(arc)}" for name, arc in bar.links.items())
-    shown = "  ".join(f"{name} {length:.6g}" for name, length in bar.links.items())
-    return shown + (f"  offset {bar.offset:.6g}" if bar.offset is not None else "") + f"  [{unit}]"
+        return "  ".join(f"{retold(name)} {degrees(arc)}" for name, arc in bar.links.items())
+    lengths = {**bar.links, **({} if bar.offset is None else {"offset": bar.offset})}
+    return "  ".join(f"{retold(name)} {length:.6g}" for name, length in lengths.items()) + f"  [{unit}]"
 
 
 def grashof_text(bar: FourBar, unit: str) -> str:
@@ -24,17 +25,20 @@ def grashof_text(bar: FourBar, unit: str) -> str:
     short, long = shown(bar.links[bar.shortest]), shown(bar.links[bar.longest])
     if bar.offset is not None:
         total = f"s + e - l = {short} + {shown(bar.offset)} - {long}"
-        where = "in line" if bar.offset == 0 else "offset"
-        kinds = {"Grashof": "Grashof", "non-Grashof": "no joint turns fully"}
-        kind = f"{where}, {kinds.get(bar.grashof, bar.grashof)}"
+        kinds = {"Grashof": say("Grashof"), "non-Grashof": say("no joint turns fully")}
+        kind = kinds.get(bar.grashof) or say(bar.grashof)
+        kind = say("in line, {kind}", kind=kind) if bar.offset == 0 else say("offset, {kind}", kind=kind)
     else:
         p, q = (shown(bar.links[name]) for name in names[1:])
         total = f"s + l - (p + q) = {short} + {long} - ({p} + {q})"
         kind = {
-            "crank-rocker": "Grashof crank-rocker",
-            "double-crank": "Grashof double-crank",
-            "double-rocker": "Grashof double-rocker",
-        }.get(bar.grashof, bar.grashof)
+            "crank-rocker": say("Grashof crank-rocker"),
+            "double-crank": say("Grashof double-crank"),
+            "double-rocker": say("Grashof double-rocker"),
+        }.get(bar.grashof) or say(bar.grashof)
     ends = "" if bar.kind == "spherical" else f" {unit}"
-    turning = f": {' and '.join(bar.turning)} turn fully" if bar.turning else ""
-    return f"{total} = {shown(bar.excess)}{ends}; {kind}{turning}"
+    sums = f"{total} = {shown(bar.excess)}{ends}"
+    if not bar.turning:
+        return say("{sums}; {kind}", sums=sums, kind=kind)
+    joints = say(" and ").join(bar.turning)
+    return say("{sums}; {kind}: {joints} turn fully", sums=sums, kind=kind, joints=joints)

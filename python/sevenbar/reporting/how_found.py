@@ -7,6 +7,7 @@ import math
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.general import AGREE
 from sevenbar.kinematics.motion import Motion, Search
+from sevenbar.text.words import say
 
 #: What the modes at the values looked at are, by the word for their completeness.
 _MODES = {
@@ -32,61 +33,90 @@ def how_found(motion: Motion) -> str:
     """How the circuits were found and what is known of their number, as a sentence."""
     search = motion.search
     if search.completeness == "closed-form":
-        return "all modes in closed form, the ranges of the input by the roots of a quartic"
+        return say("all modes in closed form, the ranges of the input by the roots of a quartic")
     if not search.values:
-        return "from the drawn pose only"
-    joints = " and of ".join(search.columns) or "a turn of a ball"
-    text = f"{_MODES[search.completeness]} at {search.values} values of {joints}; "
+        return say("from the drawn pose only")
+    joints = say(" and of ").join(search.columns) or say("a turn of a ball")
+    modes = say(_MODES[search.completeness])
+    parts = [say("{modes} at {count} values of {joints}", modes=modes, count=search.values, joints=joints)]
     if search.freedoms is None:
-        text += "there are none"
+        parts.append(say("there are none"))
     elif motion.circuits:
-        text += "each lies on a circuit"
-        if search.unfollowed:
-            text += f", but {search.unfollowed} from which no motion could be followed"
+        lost = search.unfollowed
+        parts.append(
+            say("each lies on a circuit, but {count} from which no motion could be followed", count=lost)
+            if lost
+            else say("each lies on a circuit")
+        )
         if free := sum(point.freedoms > 1 for point in motion.change_points):
-            text += "; motions with more than one freedom, not followed, "
-            text += f"begin in {free} of the change points"
+            parts.append(
+                say(
+                    "motions with more than one freedom, not followed, begin in {count} of the change points",
+                    count=free,
+                )
+            )
     elif search.freedoms > 1:
-        text += f"the loop moves out of them with {search.freedoms} freedoms"
+        parts.append(say("the loop moves out of them with {count} freedoms", count=search.freedoms))
     else:
-        text += "no motion leads out of them"
+        parts.append(say("no motion leads out of them"))
     if counted := _counted(search):
-        text += f"; {counted}"
+        parts.append(counted)
     if search.misfits.size:
-        text += f"; {left_open(search.misfits, motion.agree)}"
+        parts.append(left_open(search.misfits, motion.agree))
     if motion.agree != AGREE:
-        text += f"; redundant constraints are taken to agree up to {motion.agree:.0e}, by request"
-    return text
+        parts.append(
+            say("redundant constraints are taken to agree up to {agree:.0e}, by request", agree=motion.agree)
+        )
+    return say("; ").join(parts)
 
 
 def _counted(search: Search) -> str:
     """What the count of branch points shows; empty where nothing was counted."""
     count = search.count
     if count is None:
-        return _UNCOUNTED.get(search.uncounted or "", "")
+        return say(_UNCOUNTED[search.uncounted]) if search.uncounted in _UNCOUNTED else ""
     if not count.open:
-        others = f" and {count.complex_branch_points} complex" if count.complex_branch_points else ""
-        many = f"{count.dead_centres or 'no'} dead centre{'s' * (count.dead_centres > 1)}"
-        return f"branch points of {count.joint} are all accounted for: {many}{others}"
-    parts = []
+        many = say("no dead centre")
+        if number := count.dead_centres:
+            many = say("{count} dead centre{s}", count=number, s="s" * (number > 1))
+        if others := count.complex_branch_points:
+            many = say("{dead_centres} and {count} complex", dead_centres=many, count=others)
+        return say("branch points of {joint} are all accounted for: {points}", joint=count.joint, points=many)
+    ranges_open = []
     for each in count.open[:MOST_RANGES]:
-        what = "some" if each.missing is None else f"{each.missing}"
+        what = say("some") if each.missing is None else f"{each.missing}"
         if each.missing is not None and each.missing < 0:
-            what = f"{-each.missing} too many"
+            what = say("{count} too many", count=-each.missing)
         start, wide = math.degrees(each.start), math.degrees(each.end - each.start)
         if wide < NARROW_RANGE_DEG:
-            parts.append(f"{what} within {wide / 2:.1g} deg of {(start + wide / 2) % 360:.6g} deg")
+            middle = (start + wide / 2) % 360
+            ranges_open.append(
+                say(
+                    "{what} within {half:.1g} deg of {middle:.6g} deg",
+                    what=what,
+                    half=wide / 2,
+                    middle=middle,
+                )
+            )
         else:
-            parts.append(f"{what} between {start % 360:.6g} and {start % 360 + wide:.6g} deg")
-    more = " and elsewhere" if len(count.open) > MOST_RANGES else ""
-    return f"branch points of {count.joint} are not all accounted for: {', '.join(parts)}{more}"
+            low = start % 360
+            ranges_open.append(
+                say("{what} between {low:.6g} and {high:.6g} deg", what=what, low=low, high=low + wide)
+            )
+    ranges = say(", ").join(ranges_open)
+    if len(count.open) > MOST_RANGES:
+        ranges = say("{ranges} and elsewhere", ranges=ranges)
+    return say(
+        "branch points of {joint} are not all accounted for: {ranges}", joint=count.joint, ranges=ranges
+    )
 
 
 def left_open(misfits: Floats, agree: float) -> str:
     """How many poses redundant constraints alone keep open, and by how much; of one or more, rising."""
     count = len(misfits)
-    return (
-        f"{count} more pose{'s close' if count > 1 else ' closes'} except for redundant constraints, which "
-        f"miss by {misfits[0]:.1e} to {misfits[-1]:.1e} (rad, or relative to the linkage size) and are taken "
-        f"to agree up to {agree:.0e}"
-    )
+    return say(
+        "{count} more pose{closes} except for redundant constraints, which miss by {least:.1e} to {most:.1e} "
+        "(rad, or relative to the linkage size) and are taken to agree up to {agree:.0e}",
+        count=count, closes="s close" if count > 1 else " closes", least=misfits[0], most=misfits[-1],
+        agree=agree,
+    )  # fmt: skip

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from sevenbar.text.printing import WIDTH
 from sevenbar.text.units import split_quantity
+from sevenbar.text.words import say
 
 
 class Facts:
@@ -37,8 +38,11 @@ def drive_text(input: str, speed: float | None, unit: str, output: str = "", *, 
     >>> drive_text("crank", 314.159265, "rad", written="3000 rpm")
     'crank at 3000 rpm (314.159 rad/s)'
     """
-    how = "by a law" if speed is None else speed_text(speed, f"{unit}/s", written)
-    return f"{input} {how}" + (f", output {output}" if output else "")
+    if speed is None:
+        driven = say("{joint} by a law", joint=input)
+    else:
+        driven = say("{joint} at {speed}", joint=input, speed=speed_text(speed, f"{unit}/s", written))
+    return say("{driven}, output {output}", driven=driven, output=output) if output else driven
 
 
 def speed_text(speed: float, unit: str, written: str = "") -> str:
@@ -47,8 +51,8 @@ def speed_text(speed: float, unit: str, written: str = "") -> str:
     own = " ".join(written.split())
     parts = split_quantity(own)
     if parts is None or parts[1] in ("", unit):
-        return f"at {plain}"
-    return f"at {own} ({plain})"
+        return plain
+    return f"{own} ({plain})"
 
 
 def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: Sequence[int] = ()) -> Table:

@@ -20,14 +20,16 @@ from sevenbar.kinematics.circuits import Circuit, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
-from sevenbar.reporting.facts import COMPLETE, closure_error, side_lengths
+from sevenbar.reporting.facts import closure_error, completeness_text, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
+from sevenbar.reporting.force_peaks import peaks_dict
 from sevenbar.reporting.how_found import how_found, left_open
 from sevenbar.reporting.page import Facts
 from sevenbar.reporting.shown import value_text
 from sevenbar.reporting.summary import GAP, Sheet, modes_sheets, summary
 from sevenbar.text.markdown import escaped, table
+from sevenbar.text.words import language, say, spoken
 
 __all__ = [
     "as_dict",
@@ -102,7 +104,10 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "misfits": motion.search.misfits.tolist(),
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
-        "circuits": [_circuit_dict(circuit) for circuit in motion.circuits],
+        "circuits": [
+            _circuit_dict(circuit) | {"forces": None if linkage.loading.is_empty else peaks_dict(circuit)}
+            for circuit in motion.circuits
+        ],
         "idle": list(motion.idle),
         "redundant": list(motion.redundant),
     }
@@ -147,13 +152,15 @@ def as_json(motion: Motion) -> str:
 
 
 class _Page:
-    """A page that is laid out for the width in which it is printed."""
+    """A page that is laid out for the width in which it is printed, in the language it was made in."""
 
     def __init__(self, parts: Callable[[int], Iterable[RenderableType]]) -> None:
-        self.parts = parts
+        self.parts, self.language = parts, spoken()
 
     def __rich_console__(self, _console: Console, options: ConsoleOptions) -> RenderResult:
-        yield from self.parts(options.max_width)
+        with language(self.language):
+            made = list(self.parts(options.max_width))
+        yield from made
 
 
 def text(motion: Motion) -> RenderableType:
@@ -163,7 +170,7 @@ def text(motion: Motion) -> RenderableType:
         page = summary(motion, width)
         facts = Facts()
         for name, fact in page.facts:
-            facts.add(name, fact, style="bold" if name == "motion type" else "")
+            facts.add(name, fact, style="bold" if name == say("motion type") else "")
         yield Text(page.title, style="bold underline")
         yield facts.grid
         for sheet in page.sheets:
@@ -235,6 +242,7 @@ def motion_report(
         files,
         lambda motion: report_figures(drawn(motion), figures, circuit=circuit, look=look),
         {"report.md": _write_markdown},
+        spoken=True,
     )
 
 
@@ -275,7 +283,7 @@ def write(
 
 def modes_report(linkage: Loop, column: int) -> Report[Modes]:
     """How the assembly modes at a value of a column are reported."""
-    return Report(partial(_modes_text, linkage, column), partial(_modes_dict, linkage, column))
+    return Report(partial(_modes_text, linkage, column), partial(_modes_dict, linkage, column), spoken=True)
 
 
 def modes_json(linkage: Loop, modes: Modes, column: int) -> str:
@@ -313,11 +321,14 @@ def _modes_text(linkage: Loop, column: int, modes: Modes) -> RenderableType:
     def parts(width: int) -> Iterator[RenderableType]:
         yield Text(linkage.heading, style="bold underline")
         count = len(modes)
-        value = value_text(linkage, column, modes.input)
         yield Text(
-            f"{count or 'no'} assembly mode{'s' * (count != 1)} at {linkage.columns[column]} = {value}, "
-            f"{modes.completeness}: {COMPLETE[modes.completeness]}"
-        )
+            say(
+                "{count} assembly mode{s} at {joint} = {value}, {completeness}",
+                count=count or say("no"), s="s" * (count != 1), joint=linkage.columns[column],
+                value=value_text(linkage, column, modes.input),
+                completeness=completeness_text(modes.completeness),
+            )
+        )  # fmt: skip
         if modes.misfits.size:
             yield Text(left_open(modes.misfits, modes.agree))
         for sheet in modes_sheets(linkage, modes, width) if count else ():

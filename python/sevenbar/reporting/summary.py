@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Literal
 
 import numpy as np
+from rich.cells import cell_len
 
 from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Modes, Motion
 from sevenbar.reporting.facts import facts_of, turns_text
+from sevenbar.reporting.force_peaks import peaks_of
+from sevenbar.reporting.force_words import number
 from sevenbar.reporting.shown import Shown, degrees, six_digits
+from sevenbar.text.words import say
 
 #: With more circuits than these a line of the table holds one circuit, not one quantity.
 MOST_COLUMNS = 2
@@ -20,17 +26,13 @@ MOST_COLUMNS = 2
 #: Dead centres listed in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
 
+#: Values below this share of what the linkage's size and its drive make are rounding.
+REST = 1e-12
+
 #: Characters between two columns in print.
 GAP = 2
 
-#: What a cell says where there is nothing to tell.
-NOTHING = ("-", "none")
-
-
 Texts = tuple[str, ...]
-
-#: Between the ends of a range.
-RANGE = " to "
 
 
 @dataclass(frozen=True)
@@ -63,30 +65,31 @@ def summary(motion: Motion, room: int = 100) -> Summary:
     linkage = motion.linkage
     # of an overconstrained loop the last digits decide
     exact = bool(motion.redundant)
-    sheets = [_dimension_sheet(linkage, exact=exact)] if linkage.form == "rows" else []
+    sheets = [_dimension_sheet(linkage, exact=exact)] if linkage.in_rows else []
     if len(motion.circuits) > MOST_COLUMNS:
         sheets += _compared(motion, room)
     elif motion.circuits:
         sheets += _side_by_side(motion)
-    return Summary(linkage.heading, tuple(facts_of(motion)), tuple(sheets))
+    facts = tuple((say(name) if name else "", fact) for name, fact in facts_of(motion))
+    return Summary(linkage.heading, facts, tuple(sheets))
 
 
 def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
     """All assembly modes, one row a mode, in tables of at most `room` characters a line."""
     unit = linkage.length_unit
     count = len(modes)
-    columns = [(f"residual\n[{unit}]", [f"{residual:.1e}" for residual in modes.residual])]
+    columns = [(say("residual\n[{unit}]", unit=unit), [f"{residual:.1e}" for residual in modes.residual])]
     for name, kind, q in reversed(list(zip(linkage.columns, linkage.column_kinds, modes.q.T, strict=True))):
         numbers = np.round(np.degrees(q) if kind == "turn" else q, 3) + 0.0  # no -0
         head = f"{name}\n[{'deg' if kind == 'turn' else unit}]"
         columns.append((head, [f"{x:.3f}" for x in numbers]))
     sheets = []
     while columns:
-        heads, block = ["mode"], [[f"{i}" for i in range(count)]]
-        left = room - len("mode")
+        heads, block = [say("mode")], [[f"{i}" for i in range(count)]]
+        left = room - cell_len(heads[0])
         while columns:
             head, cells = columns[-1]
-            left -= GAP + max(len(text) for text in [*head.split("\n"), *cells])
+            left -= GAP + max(cell_len(text) for text in [*head.split("\n"), *cells])
             if left < 0 and len(block) > 1:
                 break
             columns.pop()
@@ -102,11 +105,11 @@ def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     digits = _every_digit if exact else "{:.6g}".format
     unit = linkage.length_unit
     columns = {
-        "length": f"length [{unit}]",
-        "offset": f"offset [{unit}]",
-        "twist_deg": "twist [deg]",
-        "angle_deg": "angle [deg]",
-        "pitch": f"pitch [{unit}/turn]",
+        "length": say("length [{unit}]", unit=unit),
+        "offset": say("offset [{unit}]", unit=unit),
+        "twist_deg": say("twist [deg]"),
+        "angle_deg": say("angle [deg]"),
+        "pitch": say("pitch [{unit}/turn]", unit=unit),
     }
     numbers: dict[str, dict[int, float]] = {key: {} for key in columns}
     for key, value in linkage.dimensions.items():
@@ -117,12 +120,14 @@ def _dimension_sheet(linkage: Loop, *, exact: bool) -> Sheet:
     for place, joint in enumerate(linkage.joints, start=1):
         own = {"angle": "angle_deg"}.get(joint.row.moving_key, "offset")
         cells = [
-            digits(numbers[key][place]) if place in numbers[key] else "moves" if key == own else "-"
+            digits(numbers[key][place]) if place in numbers[key] else say("moves") if key == own else "-"
             for key in kept
         ]
-        ground = " (ground)" if place == len(linkage.joints) else ""
-        rows.append((f"{place}", f"{joint.kind} {joint.name}{ground}", *cells))
-    heads = ("link", "joint before it", *(columns[key] for key in kept))
+        named = f"{joint.kind} {joint.name}"
+        if place == len(linkage.joints):
+            named = say("{joint} (ground)", joint=named)
+        rows.append((f"{place}", named, *cells))
+    heads = (say("link"), say("joint before it"), *(columns[key] for key in kept))
     return Sheet(heads, tuple(rows), frozenset(range(len(heads))) - {1})
 
 
@@ -134,12 +139,14 @@ def _every_digit(number: float) -> str:
 class _Quantity:
     """What is reported of each circuit: one text or more.
 
-    `name` and `unit` are its label in a list, `head` stands above its column. Two texts that are the `ends`
+    `name`, in English, is what it is called here, `words` and `unit` are its label in a list, `head` is above
+    its column. Two texts that are the `ends`
     of something are two lines of a list, min and max; others are one line, joined by `between`. `only`
     keeps it to lists or to tables; a column may be left out where it is `spare` and room is short.
     """
 
     name: str
+    words: str
     head: str
     cells: Callable[[Circuit], Texts]
     unit: str = ""
@@ -149,7 +156,7 @@ class _Quantity:
     spare: bool = False
 
     def label(self, end: str = "") -> str:
-        return " ".join(word for word in (self.name, end, self.unit) if word)
+        return " ".join(word for word in (self.words, end, self.unit) if word)
 
 
 def _quantities(motion: Motion) -> list[_Quantity]:
@@ -165,24 +172,41 @@ def _quantities(motion: Motion) -> list[_Quantity]:
         if extremes is None:
             return (otherwise,)
         pairs = ((extremes.lowest, extremes.lowest_at), (extremes.highest, extremes.highest_at))
+        if extremes.lowest == extremes.highest:
+            # throughout, and at no place more than at another
+            return (show(extremes.lowest),)
         return tuple(f"{show(value)} @ {place(at, whole=True)}" for value, at in pairs)
+
+    def settled(extremes: Extremes | None, circuit: Circuit, order: int) -> Extremes | None:
+        """Extremes without rounding: of a joint that rests, or follows evenly, both are one number."""
+        if extremes is None:
+            return None
+        quick = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max(initial=0.0))
+        size = circuit.size or 1.0
+        natural = (1.0 if circuit.output_turns else size) * (
+            quick / (1.0 if circuit.input_turns else size)
+        ) ** order
+        low, high = (0.0 if abs(x) < REST * natural else x for x in (extremes.lowest, extremes.highest))
+        return replace(extremes, lowest=low, highest=low if high - low < REST * natural else high)
 
     def rate(extremes: Extremes | None, circuit: Circuit) -> Texts:
         if motion.law is not None:
-            return ends(extremes, six_digits, "no row within the range")
-        return ends(extremes, six_digits, "change point" if circuit.goes_round else "no bound at limits")
+            return ends(extremes, six_digits, say("no row within the range"))
+        return ends(
+            extremes, six_digits, say("change point") if circuit.goes_round else say("no bound at limits")
+        )
 
     def range_of(circuit: Circuit, end: int, show: Shown) -> Texts:
         extent = circuit.output_range if end else circuit.input_range
         if extent is not None and words_of(circuit.motion_type)[end] == "spindle":
-            return ("without end",)
+            return (say("without end"),)
         if extent is None:
-            return ("full turns",)
+            return (say("full turns"),)
         # the input is given as its limits are
         return show.range(*extent) if end == 0 else (show(extent[0]), show(extent[1]))
 
     def way(circuit: Circuit) -> Texts:
-        words = (circuit.motion_type,) if motion.motion_type == "mixed" else ()
+        words = (say(circuit.motion_type),) if motion.motion_type == "mixed" else ()
         return (*words, way_round(circuit)) if len({way_round(c) for c in motion}) > 1 else words or ("-",)
 
     def swing(circuit: Circuit) -> Texts:
@@ -190,79 +214,155 @@ def _quantities(motion: Motion) -> list[_Quantity]:
 
     def time_ratio(circuit: Circuit) -> Texts:
         # a ratio of angles, and of times at a constant speed
-        return (
-            ("-",)
-            if circuit.time_ratio is None or motion.law is not None
-            else (six_digits(circuit.time_ratio),)
-        )
+        ratio = circuit.time_ratio
+        if ratio is None or motion.law is not None:
+            return ("-",)
+        between = degrees(math.pi * (ratio - 1) / (ratio + 1))
+        return (say("{ratio}", ratio=six_digits(ratio), between=between),)
 
     def reach(circuit: Circuit) -> Texts:
-        return ends(circuit.angle, result, "") if circuit.angle else range_of(circuit, 1, result)
+        return (
+            ends(settled(circuit.angle, circuit, 0), result, "")
+            if circuit.angle
+            else range_of(circuit, 1, result)
+        )
 
-    def rate_of(name: str, unit: str, pick: Callable[[Circuit], Extremes | None]) -> _Quantity:
-        head = f"{second} {name}\n[{unit}] @ {first}"
-        return _Quantity(f"{second} {name}", head, lambda c: rate(pick(c), c), f"[{unit}]", ends=True)
+    def rate_of(name: Literal["velocity", "acceleration"], unit: str) -> _Quantity:
+        order = 1 + (name == "acceleration")
+        words = say("{joint} {quantity}", joint=second, quantity=say(name))
 
-    def stands_still(end: str) -> list[_Quantity]:
+        def of(circuit: Circuit) -> Texts:
+            return rate(settled(getattr(circuit, name), circuit, order), circuit)
+
+        head = f"{words}\n[{unit}] @ {first}"
+        return _Quantity(f"{second} {name}", words, head, of, f"[{unit}]", ends=True)
+
+    def stands_still(end: Literal["input", "output"]) -> list[_Quantity]:
         # in a table the ends of a range are its own column
         ranged = end == "output" or any(c.input_range is not None for c in motion)
-        other = "other " if ranged else ""
-        every, others = f"dead centres of the {end}", f"{other}dead centres of the {end}"
-        head = f"{other}dead\ncentres of\nthe {end}"
+        name = f"dead centres of the {end}"
+        if end == "input":
+            words, others = say("dead centres of the input"), say("other dead centres of the input")
+            head, head_of_others = (
+                say("dead\ncentres of\nthe input"),
+                say("other dead\ncentres of\nthe input"),
+            )
+        else:
+            words, others = say("dead centres of the output"), say("other dead centres of the output")
+            head, head_of_others = "", say("other dead\ncentres of\nthe output")
+        if ranged:
+            head = head_of_others
         return [
-            _Quantity(every, "", lambda c: _dead_centres(c, end, place), in_label, only="list"),
-            _Quantity(others, head, lambda c: _dead_centres(c, end, place, within=True), only="table"),
+            _Quantity(name, words, "", lambda c: _dead_centres(c, end, place), in_label, only="list"),
+            _Quantity(
+                f"other {name}" if ranged else name,
+                others if ranged else words,
+                head,
+                lambda c: _dead_centres(c, end, place, within=True),
+                only="table",
+            ),
+        ]
+
+    def forces() -> list[_Quantity]:
+        if motion.linkage.loading.is_empty:
+            return []
+        unit = "N m" if in_unit == "rad" else "N"
+        # once for both, and only where they are reported
+        found = cache(peaks_of)
+
+        def torque(circuit: Circuit) -> Texts:
+            peaks = found(circuit)
+            if peaks is None:
+                return ("-" if circuit.goes_round else say("no bound at limits"),)
+            return (f"{number(peaks.torque.value)} @ {place(peaks.torque.input, whole=True)}",)
+
+        def bearing(circuit: Circuit) -> Texts:
+            peaks = found(circuit)
+            if peaks is None or peaks.greatest is None:
+                return ("-",)
+            name, peak = peaks.greatest
+            where = say("{force} in {joint}", force=number(peak.value), joint=name)
+            return (f"{where} @ {place(peak.input, whole=True)}",)
+
+        peak = say("peak torque") if unit == "N m" else say("peak force")
+        reaction = say("greatest reaction")
+        return [
+            _Quantity(
+                "peak torque",
+                say("{joint} {quantity}", joint=first, quantity=peak),
+                f"{peak}\n[{unit}] @ {first}",
+                torque,
+                f"[{unit}]",
+            ),
+            _Quantity(
+                "greatest reaction", reaction, f"{reaction}\n[N] @ {first}", bearing, "[N]", spare=True
+            ),
         ]
 
     position = "angle" if out_unit == "rad" else "position"
+    between = say(" to ")
+    first_range, second_range = (say("range of {joint}", joint=joint) for joint in (first, second))
     return [
-        _Quantity("motion type", "motion type", way),
+        _Quantity("motion type", say("motion type"), say("motion type"), way),
         _Quantity(
             f"range of {first}",
-            f"range of\n{first}{in_head}",
+            first_range,
+            say("range of\n{joint}", joint=first) + in_head,
             lambda c: range_of(c, 0, place),
             in_label,
-            between=RANGE,
+            between=between,
         ),
         *stands_still("input"),
         _Quantity(
-            f"range of {second}", "", lambda c: range_of(c, 1, result), out_label, between=RANGE, only="list"
+            f"range of {second}",
+            second_range,
+            "",
+            lambda c: range_of(c, 1, result),
+            out_label,
+            between=between,
+            only="list",
         ),
         _Quantity(
             f"range of {second}",
-            f"range of\n{second} @ {first}{out_head}",
+            second_range,
+            say("range of\n{joint} @ {other}", joint=second, other=first) + out_head,
             reach,
             out_label,
-            between=RANGE,
+            between=between,
             only="table",
         ),
-        _Quantity(f"swing of {second}", "", swing, out_label, only="list"),
+        _Quantity(
+            f"swing of {second}", say("swing of {joint}", joint=second), "", swing, out_label, only="list"
+        ),
         *stands_still("output"),
-        _Quantity("time ratio", "time\nratio", time_ratio, spare=True),
+        _Quantity("time ratio", say("time ratio"), say("time\nratio"), time_ratio, spare=True),
         _Quantity(
             "transmission angle",
-            f"transmission\nangle @ {first}",
+            say("transmission angle"),
+            say("transmission\nangle @ {joint}", joint=first),
             lambda c: ends(c.transmission, degrees, "-"),
             ends=True,
         ),
         _Quantity(
             f"{second} {position}",
+            say("{joint} {quantity}", joint=second, quantity=say(position)),
             "",
-            lambda c: ends(c.angle, six_digits, "-"),
+            lambda c: ends(settled(c.angle, c, 0), six_digits, "-"),
             f"[{out_unit}]",
             ends=True,
             only="list",
         ),
-        rate_of("velocity", f"{out_unit}/s", lambda c: c.velocity),
-        rate_of("acceleration", f"{out_unit}/s\u00b2", lambda c: c.acceleration),
+        rate_of("velocity", f"{out_unit}/s"),
+        rate_of("acceleration", f"{out_unit}/s\u00b2"),
+        *forces(),
     ]
 
 
 def way_round(circuit: Circuit) -> str:
     """How a circuit closes: after so many turns of the input, to and fro, or not."""
     if not circuit.closed:
-        return "open"
-    return turns_text(circuit.turns) if circuit.turns else "to and fro"
+        return say("open")
+    return turns_text(circuit.turns) if circuit.turns else say("to and fro")
 
 
 def _reported(
@@ -282,9 +382,14 @@ def _reported(
     return [
         (quantity, cells)
         for quantity, cells in found
-        if any(cell[0] not in NOTHING for cell in cells)
-        and not (quantity.name == full and set(cells) == {("full turns",)})
+        if any(cell[0] not in _nothing() for cell in cells)
+        and not (quantity.name == full and set(cells) == {(say("full turns"),)})
     ]
+
+
+def _nothing() -> Texts:
+    """What a cell says where there is nothing to tell."""
+    return "-", say("none")
 
 
 def circuit_facts(motion: Motion, circuit: Circuit, labels: tuple[str, ...] = ("",)) -> list[tuple[str, str]]:
@@ -293,7 +398,7 @@ def circuit_facts(motion: Motion, circuit: Circuit, labels: tuple[str, ...] = ("
     Of all, those whose names begin with one of the `labels`.
     """
     reported = [(quantity, [cells[circuit.index]]) for quantity, cells in _reported(motion, "list", labels)]
-    return [(label, cells[0]) for label, cells in _lines(reported) if cells[0] not in NOTHING]
+    return [(label, cells[0]) for label, cells in _lines(reported) if cells[0] not in _nothing()]
 
 
 def _lines(reported: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str, Texts]]:
@@ -301,8 +406,8 @@ def _lines(reported: Sequence[tuple[_Quantity, list[Texts]]]) -> list[tuple[str,
     lines: list[tuple[str, Texts]] = []
     for quantity, cells in reported:
         if quantity.ends and any(len(cell) == 2 for cell in cells):
-            lines.append((quantity.label("min"), tuple(cell[0] for cell in cells)))
-            lines.append((quantity.label("max"), tuple(cell[-1] for cell in cells)))
+            lines.append((quantity.label(say("min")), tuple(cell[0] for cell in cells)))
+            lines.append((quantity.label(say("max")), tuple(cell[-1] for cell in cells)))
         else:
             lines.append((quantity.label(), tuple(quantity.between.join(cell) for cell in cells)))
     return lines
@@ -312,12 +417,12 @@ def _side_by_side(motion: Motion) -> list[Sheet]:
     """A line for each quantity: first those that circuits share, then with a column for each circuit."""
     lines = _lines(_reported(motion, "list"))
     if len(motion.circuits) == 1:
-        return [_list(motion, ["circuit 0"], lines)]
+        return [_list(motion, [say("circuit {number}", number=0)], lines)]
     shared = [(label, cells[:1]) for label, cells in lines if len(set(cells)) == 1]
     own = [(label, cells) for label, cells in lines if len(set(cells)) > 1]
-    width = max(len(label) for label, _ in lines)
-    names = [f"circuit {circuit.index}" for circuit in motion]
-    parts = ((["both circuits"], shared), (names, own))
+    width = max(cell_len(label) for label, _ in lines)
+    names = [say("circuit {number}", number=circuit.index) for circuit in motion]
+    parts = (([say("both circuits")], shared), (names, own))
     return [_list(motion, heads, part, width) for heads, part in parts if part]
 
 
@@ -328,7 +433,7 @@ def _compared(motion: Motion, room: int) -> list[Sheet]:
         (quantity.label(), (quantity.between.join(cells[0]),)) for quantity, cells in reported if _same(cells)
     ]
     own = [(quantity, cells) for quantity, cells in reported if not _same(cells)]
-    sheets = [_list(motion, ["every circuit"], shared)] if shared else []
+    sheets = [_list(motion, [say("every circuit")], shared)] if shared else []
     if own:
         table = _comparison(motion, own)
         if width_of(table) > room:
@@ -346,13 +451,13 @@ def _comparison(motion: Motion, reported: Sequence[tuple[_Quantity, list[Texts]]
         row = tuple("\n".join(cells[circuit.index]) for _, cells in reported)
         alike.setdefault(row, []).append(str(circuit.index))
     rows = tuple((", ".join(indices), *row) for row, indices in alike.items())
-    heads = ("circuit", *(quantity.head for quantity, _ in reported))
+    heads = (say("circuit"), *(quantity.head for quantity, _ in reported))
     notes = []
-    if any(head.startswith("range of") for head in heads):
-        notes.append("the ends of a range are dead centres")
+    if any(quantity.name.startswith("range of") for quantity, _ in reported):
+        notes.append(say("the ends of a range are dead centres"))
     if len(rows) < len(motion.circuits):
-        notes.append("circuits that agree in all of this share a row")
-    return Sheet(heads, rows, frozenset({0}), "; ".join(notes))
+        notes.append(say("circuits that agree in all of this share a row"))
+    return Sheet(heads, rows, frozenset({0}), say("; ").join(notes))
 
 
 def _same(cells: Sequence[Texts]) -> bool:
@@ -362,16 +467,18 @@ def _same(cells: Sequence[Texts]) -> bool:
 def width_of(sheet: Sheet) -> int:
     """The characters that its longest line takes in print."""
     columns = zip(sheet.heads, *sheet.rows, strict=True)
-    widths = [max(len(line) for cell in column for line in cell.split("\n")) for column in columns]
+    widths = [max(cell_len(line) for cell in column for line in cell.split("\n")) for column in columns]
     return sum(widths) + GAP * (len(widths) - 1)
 
 
 def _list(motion: Motion, names: Sequence[str], lines: Sequence[tuple[str, Texts]], width: int = 0) -> Sheet:
     unit = motion.linkage.unit_of(motion.input)
-    where = f"value @ angle of {motion.input}"
+    where = say("value @ angle of {joint}", joint=motion.input)
     if unit != "rad":
-        where = f"value @ position of {motion.input} [{unit}]"
-    return Sheet((where.ljust(width), *names), tuple((label, *cells) for label, cells in lines))
+        where = say("value @ position of {joint} [{unit}]", joint=motion.input, unit=unit)
+    return Sheet(
+        (where + " " * (width - cell_len(where)), *names), tuple((label, *cells) for label, cells in lines)
+    )
 
 
 def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = False) -> Texts:
@@ -384,7 +491,9 @@ def _dead_centres(circuit: Circuit, kind: str, show: Shown, *, within: bool = Fa
         found = [d for d in found if not any(show.same(d.input, end) for end in ends)]
     places = list(dict.fromkeys(show(d.input, whole=True) for d in found))
     more = len(places) - MOST_DEAD_CENTRES
-    return (*places[:MOST_DEAD_CENTRES], *([f"and {more} more"] if more > 0 else [])) or ("none",)
+    return (*places[:MOST_DEAD_CENTRES], *([say("and {count} more", count=more)] if more > 0 else [])) or (
+        say("none"),
+    )
 
 
 def words_of(motion_type: str) -> tuple[str, str]:

@@ -12,6 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
+from sevenbar.simulation.force_agreement import ComparedForce, compared_forces
 from sevenbar.simulation.joint_values import BodyStates, JointValues, joint_values
 from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.printing import Printed
@@ -49,7 +50,7 @@ class Simulation(Printed):
     `input` (n,) and `time` (n,) [s] of the rows; `engine` and `theory` hold the joints' values, the theory's
     without closure errors; `points` holds each named point as the engine and as Sevenbar has it. `returned`
     is by how much the engine's links miss their first places [length] and attitudes [rad] at the end of a
-    cycle; None where the course is no cycle.
+    cycle; None where the course is no cycle. `forces` are those of both, where masses or loads act.
     """
 
     course: Course
@@ -59,6 +60,7 @@ class Simulation(Printed):
     theory: JointValues
     points: dict[str, tuple[PointValues, PointValues]]
     returned: tuple[float, float] | None
+    forces: tuple[ComparedForce, ...] = ()
     differences: tuple[Difference, ...] = ()
 
     @property
@@ -123,8 +125,9 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         # of a small turn the matrix less the unit matrix has a norm of sqrt 2 times its angle
         askew = np.linalg.norm(turn - np.eye(3), axis=(-1, -2)).max() / math.sqrt(2)
         returned = (float(apart), float(askew))
-    found = Simulation(course, model, record, values, theory, points, returned)
-    return replace(found, differences=tuple(_differences(found)))
+    forces = compared_forces(course, model, record)
+    found = Simulation(course, model, record, values, theory, points, returned, forces)
+    return replace(found, differences=(*_differences(found), *_force_differences(found)))
 
 
 def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyStates:
@@ -183,6 +186,14 @@ def _differences(run: Simulation) -> Iterator[Difference]:
                 np.zeros(len(apart)),
                 float(np.nanmax(np.linalg.norm(getattr(theory_point, what), axis=1), initial=0.0)),
             )
+
+
+def _force_differences(run: Simulation) -> Iterator[Difference]:
+    """The input's torque, and in each joint what its constraints bear as far as equilibrium determines it."""
+    for found in run.forces:
+        name = f"{found.name} {found.what}"
+        scale = float(np.nanmax(found.size, initial=0.0))
+        yield _difference(run, name, found.unit, found.apart, np.zeros(len(found.apart)), scale)
 
 
 def _difference(

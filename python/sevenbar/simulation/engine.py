@@ -29,6 +29,11 @@ class Record:
     spin_rate: Floats
     method: str
     notes: tuple[str, ...] = ()
+    #: What the drive gives (n,) [N m, or N], and what each connection's constraints put on the body after it,
+    #: (n, connections, 6) force [N] and moment [N m] about the place of the joint before it, in the report
+    #: frame; where masses act and the engine knows it.
+    drive: Floats | None = None
+    reactions: Floats | None = None
 
 
 def imported(module: str) -> Any:

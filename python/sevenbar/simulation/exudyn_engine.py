@@ -9,10 +9,10 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import EngineError
-from sevenbar.kinematics.rigid import perpendicular, pose
 from sevenbar.simulation.engine import Record, imported
-from sevenbar.simulation.exudyn_screw import ScrewConstraint
-from sevenbar.simulation.prototype import GROUND, GYRATION, Body, Connection, Prototype, SpinRule
+from sevenbar.simulation.exudyn_assembly import ExudynAssembly, pace_of
+from sevenbar.simulation.exudyn_forces import add_acting, constraint_forces, constraint_sensors
+from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.progress import Progress
 
 #: Numerical damping of the generalized-alpha method, which needs less than 1 for constraints on positions;
@@ -22,9 +22,6 @@ SPECTRAL_RADIUS = 0.6
 #: Newton's iterations end where the residual falls below this, or below this part of the step's first one:
 #: lengths relative to the size, times in the input's time for a radian (or a size, where it slides).
 TOLERANCE, SHARE = 1e-12, 1e-10
-
-#: A body's mass. Small against lengths of size one, so that constraints weigh most in the residual.
-MASS = 1e-2
 
 #: A bar is moved at most so often.
 TICKS = 200
@@ -57,8 +54,8 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
     items = imported("exudyn.itemInterface")
     container = exu.SystemContainer()
     system = container.AddSystem()
-    pace = _pace(model)
-    assembly = _Assembly(items, system, model, pace)
+    pace = pace_of(model)
+    assembly = ExudynAssembly(items, system, model, pace)
     notes = []
     for joint in model.connections:
         assembly.add_joint(joint)
@@ -78,7 +75,9 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
             f"({'; '.join(model.redundant)}): all joints are whole, and Exudyn's linear solver with full "
             "pivoting sets the repeated rows aside"
         )
+    add_acting(assembly)
     sensors = assembly.add_sensors(exu.OutputVariableType)
+    constraints = constraint_sensors(assembly, exu.OutputVariableType)
     if progress is not None:
         system.SetPreStepUserFunction(_ticking(progress, steps, step * pace))
     system.Assemble()
@@ -104,6 +103,7 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
     frames = np.tile(np.eye(4), (len(time), len(model.bodies), 1, 1))
     frames[..., :3, 3] = stored("Position") * model.size
     frames[..., :3, :3] = stored("RotationMatrix").reshape(len(time), -1, 3, 3)
+    forces = constraint_forces(assembly, constraints, frames)
     return Record(
         engine="Exudyn",
         version=str(exu.__version__),
@@ -115,157 +115,13 @@ def _run(exu: Any, model: Prototype, steps: int, step: float, progress: Progress
         spin_rate=stored("AngularAcceleration") * pace**2,
         method=f"hard constraints (index 3), generalized-alpha, spectral radius {SPECTRAL_RADIUS}",
         notes=tuple(notes),
+        drive=None if forces is None else forces.drive,
+        reactions=None if forces is None else forces.reactions,
     )
-
-
-def _pace(model: Prototype) -> float:
-    """How many of Exudyn's units of time make a second."""
-    drive = model.drive
-    return abs(drive.speed) / (1.0 if drive.turns else model.size)
 
 
 def _failure(reason: str) -> str:
     return f"exudyn could not follow the motion: {reason.strip()}; give more --steps or another --circuit"
-
-
-class _Assembly:
-    """A prototype put together in an Exudyn system; a length of 1 is its size, a second has `pace` units."""
-
-    def __init__(self, items: Any, system: Any, model: Prototype, pace: float) -> None:
-        self.items, self.system, self.model, self.pace = items, system, model, pace
-        self.ground = system.AddObject(items.ObjectGround())
-        self.nodes = [self._add_node(body) for body in model.bodies]
-        inertia = [MASS * GYRATION**2] * 3 + [0.0] * 3
-        self.bodies = [
-            system.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=MASS, inertia=inertia))
-            for node in self.nodes
-        ]
-
-    def _add_node(self, body: Body) -> Any:
-        rigid = imported("exudyn.rigidBodyUtilities")
-        parameters = rigid.RotationMatrix2EulerParameters(body.frame[:3, :3])
-        rates = rigid.AngularVelocity2EulerParameters_t(body.spin / self.pace, parameters)
-        place, velocity = body.frame[:3, 3] / self.model.size, body.velocity / (self.model.size * self.pace)
-        return self.system.AddNode(
-            self.items.NodeRigidBodyEP(
-                referenceCoordinates=[*place, *parameters], initialVelocities=[*velocity, *rates]
-            )
-        )
-
-    def _marker(self, body: int, frame: Floats) -> Any:
-        return self.system.AddMarker(
-            self.items.MarkerBodyRigid(
-                bodyNumber=self.ground if body == GROUND else self.bodies[body],
-                localHT=pose(frame[:3, :3], frame[:3, 3] / self.model.size),
-            )
-        )
-
-    def _add_constraints(
-        self,
-        joint: Connection,
-        held: list[int],
-        offset: Callable[..., list[float]] | None = None,
-        *,
-        from_after: bool = False,
-    ) -> None:
-        markers = [
-            self._marker(joint.before, joint.frame_before),
-            self._marker(joint.after, joint.frame_after),
-        ]
-        self.system.AddObject(
-            self.items.ObjectJointGeneric(
-                markerNumbers=markers[::-1] if from_after else markers,
-                constrainedAxes=held,
-                **({} if offset is None else {"offsetUserFunction": offset}),
-            )
-        )
-
-    def add_joint(self, joint: Connection) -> None:
-        """Adds the constraints of a joint's kind; of a screw those of a cylinder, and one of its own."""
-        self._add_constraints(joint, [int(not free) for free in joint.row.free])
-        if not joint.row.is_screw:
-            return
-        turn = self.model.values[self.model.connections.index(joint), 5]
-        screw = ScrewConstraint(joint, self.model.size, turn)
-        one = np.zeros((1, 1))
-        nodes = [None if body == GROUND else self.nodes[body] for body in (joint.before, joint.after)]
-        self.system.AddObject(
-            self.items.ObjectConnectorCoordinateVector(
-                markerNumbers=[
-                    self.system.AddMarker(
-                        self.items.MarkerNodeCoordinates(
-                            nodeNumber=self.system.AddNode(self.items.NodePointGround())
-                            if node is None
-                            else node
-                        )
-                    )
-                    for node in nodes
-                ],
-                scalingMarker0=one,
-                constraintUserFunction=screw.value,
-                jacobianUserFunction=screw.slope,
-            )
-        )
-
-    def add_drive(self) -> None:
-        """Constrains the driven freedom alone; the joint itself has the other constraints."""
-        drive = self.model.drive
-        joint = self.model.connections[drive.connection]
-        # Exudyn slides along axes of its first body: where the body after carries them, that one is first,
-        # and the slide is the other way
-        carried = joint.row.has_plane and joint.backwards and not drive.turns
-        unit = (1.0 if drive.turns else self.model.size) * (-1.0 if carried else 1.0)
-
-        def offset(_system: Any, time: float, _item: int, _parameters: Any) -> list[float]:
-            values = [0.0] * 6
-            values[drive.freedom] = drive.at(time / self.pace) / unit
-            return values
-
-        held = [int(row == drive.freedom) for row in range(6)]
-        self._add_constraints(joint, held, offset, from_after=carried)
-
-    def add_spin_rule(self, rule: SpinRule) -> None:
-        # of a turn about z alone held, x of the first frame and y of the second stay at right angles
-        self.system.AddObject(
-            self.items.ObjectJointGeneric(
-                markerNumbers=[
-                    self._marker(rule.before, pose(_axes_with(rule.axis_before, 0))),
-                    self._marker(rule.after, pose(_axes_with(rule.axis_after, 1))),
-                ],
-                constrainedAxes=[0, 0, 0, 0, 0, 1],
-            )
-        )
-
-    def add_sensors(self, kinds: Any) -> list[dict[str, Any]]:
-        names = (
-            "Position",
-            "RotationMatrix",
-            "Velocity",
-            "Acceleration",
-            "AngularVelocity",
-            "AngularAcceleration",
-        )
-        return [
-            {
-                name: self.system.AddSensor(
-                    self.items.SensorBody(
-                        bodyNumber=body,
-                        storeInternal=True,
-                        writeToFile=False,
-                        outputVariableType=getattr(kinds, name),
-                    )
-                )
-                for name in names
-            }
-            for body in self.bodies
-        ]
-
-
-def _axes_with(axis: Floats, place: int) -> Floats:
-    """A rotation matrix with this unit vector as its column `place`."""
-    second = perpendicular(axis)
-    columns = [axis, second, np.cross(axis, second)]
-    return np.column_stack(columns[-place:] + columns[:-place])
 
 
 def _settings(exu: Any, model: Prototype, steps: int, step: float) -> Any:

@@ -9,11 +9,12 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import input_label, new_figure, shown_value, slides
+from sevenbar.drawing.figure import input_label, page_figure, shown_value, slides
 from sevenbar.drawing.names import quantity_label, short, shown_name
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, OTHER, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.simulation.agreement import Simulation
+from sevenbar.text.words import say
 
 #: Marks of the engine along a curve.
 MARKS = 40
@@ -38,7 +39,7 @@ def output_figure(run: Simulation) -> Figure:
         ("acceleration", unit, "/s²", run.engine.ddq, run.theory.ddq),
     )
     with styled():
-        figure = new_figure(9.2, 7.2, pads=(0.06, 0.08))
+        figure = page_figure(9.2, 7.2, pads=(0.06, 0.08))
         grid = figure.subplots(3, 2, sharex=True)
         for (left, right), (word, shown, per, engine, theory) in zip(grid, rows, strict=True):
             own, other = theory[:, column], engine[:, column]
@@ -46,7 +47,7 @@ def output_figure(run: Simulation) -> Figure:
             _compared(left, run, convert(own), convert(other))
             left.set_ylabel(quantity_label(motion.output, word, f"{shown}{per}"))
             right.plot(_across(run), other - own, color=_ENGINE, lw=0.9)
-            right.set_ylabel(f"difference [{unit}{per}]")
+            right.set_ylabel(say("difference [{unit}]", unit=f"{unit}{per}"))
             right.ticklabel_format(axis="y", style="sci", scilimits=(0, 0), useMathText=False)
         _finish(figure, run)
         figure.legend(handles=_keys(run), loc="outside lower center", ncols=3, frameon=False)
@@ -58,7 +59,7 @@ def joints_figure(run: Simulation) -> Figure:
     linkage = run.linkage
     kinds = [kind for kind in ("turn", "slide") if kind in linkage.column_kinds]
     with styled():
-        figure = new_figure(9.2, 1.6 + 3.4 * len(kinds), pads=(0.06, 0.08))
+        figure = page_figure(9.2, 1.6 + 3.4 * len(kinds), pads=(0.06, 0.08))
         grid = figure.subplots(len(kinds), 2, sharex=True, squeeze=False)
         for (left, right), kind in zip(grid, kinds, strict=True):
             unit = "rad" if kind == "turn" else linkage.length_unit
@@ -73,8 +74,10 @@ def joints_figure(run: Simulation) -> Figure:
                 _logarithmic(right, run, np.abs(other - own), colour, shown_name(name, 20))
             if kind == "turn":
                 left.yaxis.set_major_locator(DegreeLocator(9))
-            left.set_ylabel(f"{'turns' if kind == 'turn' else 'slides'} [{shown}]")
-            right.set_ylabel(f"size of the difference [{unit}]")
+            left.set_ylabel(
+                say("turns [{unit}]", unit=shown) if kind == "turn" else say("slides [{unit}]", unit=shown)
+            )
+            right.set_ylabel(say("size of the difference [{unit}]", unit=unit))
         _finish(figure, run)
         keys = [
             Line2D(
@@ -92,7 +95,7 @@ def points_figure(run: Simulation) -> Figure:
     unit = run.linkage.length_unit
     rows = (("position", ""), ("velocity", "/s"), ("acceleration", "/s²"))
     with styled():
-        figure = new_figure(9.2, 7.4, pads=(0.06, 0.08))
+        figure = page_figure(9.2, 7.4, pads=(0.06, 0.08))
         grid = figure.subplots(3, 2, sharex=True)
         for (left, right), (what, per) in zip(grid, rows, strict=True):
             for place, (name, (engine, theory)) in enumerate(run.points.items()):
@@ -102,22 +105,64 @@ def points_figure(run: Simulation) -> Figure:
                 _compared(left, run, _length(own - origin), _length(other - origin), colour)
                 _logarithmic(right, run, _length(other - own), colour, shown_name(name, 20))
             label = {
-                "position": "distance from the start",
-                "velocity": "speed",
-                "acceleration": "size of acceleration",
+                "position": say("distance from the start"),
+                "velocity": say("speed"),
+                "acceleration": say("size of acceleration"),
             }[what]
             left.set_ylabel(f"{label} [{unit}{per}]")
-            right.set_ylabel(f"size of the difference [{unit}{per}]")
+            right.set_ylabel(say("size of the difference [{unit}]", unit=f"{unit}{per}"))
         _finish(figure, run)
         keys = [
             Line2D(
-                [], [], color=CIRCUIT_COLOURS[p % len(CIRCUIT_COLOURS)], lw=1.5, label=f"point {short(n, 20)}"
+                [],
+                [],
+                color=CIRCUIT_COLOURS[p % len(CIRCUIT_COLOURS)],
+                lw=1.5,
+                label=say("point {name}", name=short(n, 20)),
             )
             for p, n in enumerate(run.points)
         ]
         keys += _keys(run, "0.35")[:2]
         figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 6), frameon=False)
     return figure
+
+
+def forces_figure(run: Simulation) -> Figure:
+    """The input's torque, and the size of forces and moments in the joints; how far the engine's are off."""
+    joints = dict.fromkeys(force.name for force in run.forces[1:])
+    colours = {name: CIRCUIT_COLOURS[k % len(CIRCUIT_COLOURS)] for k, name in enumerate(joints)}
+    parts = [list(run.forces[:1])]
+    parts += [[force for force in run.forces[1:] if force.what == what] for what in ("force", "moment")]
+    shown = [part for part in parts if part]
+    with styled():
+        figure = page_figure(9.2, 1.2 + 2.2 * len(shown), pads=(0.06, 0.08))
+        grid = figure.subplots(len(shown), 2, sharex=True, squeeze=False)
+        for number, ((left, right), part) in enumerate(zip(grid, shown, strict=True)):
+            unit = part[0].unit
+            for force in part:
+                colour = colours[force.name] if number else ""
+                # the input's own has a sign
+                own, other = (
+                    _length(values) if number else values[:, 0] for values in (force.theory, force.engine)
+                )
+                _compared(left, run, own, other, colour)
+                _logarithmic(right, run, force.apart, colour or _ENGINE, shown_name(force.name, 20))
+            left.set_ylabel(_force_label(part[0].what, unit, drive=number == 0))
+            right.set_ylabel(say("size of the difference [{unit}]", unit=unit))
+        _finish(figure, run)
+        keys = [
+            Line2D([], [], color=colour, lw=1.5, label=shown_name(name, 20))
+            for name, colour in colours.items()
+        ]
+        keys += _keys(run, "0.35")[:2]
+        figure.legend(handles=keys, loc="outside lower center", ncols=min(len(keys), 6), frameon=False)
+    return figure
+
+
+def _force_label(what: str, unit: str, *, drive: bool) -> str:
+    if drive:
+        return f"{say('input force') if what == 'force' else say('input torque')} [{unit}]"
+    return say("force [N]") if what == "force" else say("moment [N m]")
 
 
 def _length(vectors: Floats) -> Floats:
@@ -165,21 +210,22 @@ def _finish(figure: Figure, run: Simulation) -> None:
     for axes in figure.axes[-2:]:
         axes.set_xlabel(input_label(motion))
     unit = motion.linkage.unit_of(motion.input)
-    which = f"circuit {run.course.circuit.index}, {shown_name(motion.input, 24)} at {motion.speed:g} {unit}/s"
-    figure.suptitle(
-        f"{short(motion.linkage.heading, 60)}: Sevenbar and {run.record.engine} {run.record.version}\n"
-        f"{which}, step {run.course.step:.3g} s",
-        fontsize=11,
-    )
+    driven = say("{joint} at {speed}", joint=shown_name(motion.input, 24), speed=f"{motion.speed:g} {unit}/s")
+    title = say(
+        "{linkage}: Sevenbar and {engine} {version}\ncircuit {number}, {driven}, step {step:.3g} s",
+        linkage=short(motion.linkage.heading, 60), engine=run.record.engine, version=run.record.version,
+        number=run.course.circuit.index, driven=driven, step=run.course.step,
+    )  # fmt: skip
+    figure.suptitle(title)
 
 
 def _keys(run: Simulation, colour: str = "") -> list[Line2D]:
     return [
         Line2D([], [], color=colour or _THEORY, lw=1.3, label="Sevenbar"),
         Line2D([], [], ls="", marker="o", ms=4, mfc="white", mec=colour or _ENGINE, label=run.record.engine),
-        Line2D([], [], color=_ENGINE, lw=0.9, label=f"{run.record.engine} minus Sevenbar"),
+        Line2D([], [], color=_ENGINE, lw=0.9, label=say("{engine} minus Sevenbar", engine=run.record.engine)),
     ]
 
 
 #: The figures of a run by their names; of points where the linkage names some.
-FIGURES = {"output": output_figure, "joints": joints_figure, "points": points_figure}
+FIGURES = {"output": output_figure, "joints": joints_figure, "points": points_figure, "forces": forces_figure}

@@ -4,28 +4,24 @@
     xml = mjcf(model)
 
 Lengths are in metres. A joint's coordinate is Sevenbar's column of it, also where the tree goes through the
-joint backwards. The key frame `start` holds the pose and the velocities of the prototype: gravity is off and
-the driven joint carries a flywheel, so it runs on at its speed without an actuator.
+joint backwards. The key frame `start` holds the pose and the velocities of the prototype: the driven joint
+carries a flywheel, so it runs on at its speed without an actuator, with gravity or without.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
-from xml.etree.ElementTree import Element, SubElement
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.kinematics.rigid import inverse, quaternion
-from sevenbar.simulation.prototype import GROUND, GYRATION, Connection, Prototype, SpinRule
+from sevenbar.simulation.mjcf_acting import add_springs, gyration, heaviest, inertial, joint_spring, mark
+from sevenbar.simulation.mjcf_elements import add, numbers, placed
+from sevenbar.simulation.prototype import GROUND, Connection, Prototype, SpinRule
 from sevenbar.text.units import LENGTHS
-
-#: Mass of every body [kg]. The motion that the drive prescribes does not depend on it.
-MASS = 1.0
-
-#: Least radius of gyration [m]: below, MuJoCo takes a body for none at all.
-LEAST_GYRATION = 0.01
 
 #: The flywheel's inertia, in those of a body: constraints change its speed by about the inverse of this.
 FLYWHEEL = 1e10
@@ -80,31 +76,31 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
     metre = LENGTHS[model.length_unit]
     root = Element("mujoco", model=model.name)
     root.append(ElementTree.Comment(" made by Sevenbar; lengths in metres, angles in radians "))
-    _add(root, "compiler", angle="radian", autolimits="true")
-    _add(
+    add(root, "compiler", angle="radian", autolimits="true")
+    add(
         root,
         "option",
         timestep=f"{time_step:.17g}",
-        gravity="0 0 0",
+        gravity="0 0 0" if model.acting is None else numbers(model.acting.gravity),
         integrator="Euler",
         solver="Newton",
         iterations="100",
         tolerance="0",
     )
     extent = max(model.size * metre / 3, 1e-9)
-    _add(root, "statistic", extent=f"{extent:.6g}", center=_numbers(_middle(model) * metre))
-    default = _add(root, "default")
+    add(root, "statistic", extent=f"{extent:.6g}", center=numbers(_middle(model) * metre))
+    default = add(root, "default")
     bar = {"contype": "0", "conaffinity": "0", "mass": "0", "rgba": "0.35 0.5 0.7 1"}
-    _add(default, "geom", **bar)
-    _add(
+    add(default, "geom", **bar)
+    add(
         default,
         "equality",
         solref=f"{TIME_CONSTANT * time_step:.17g} 1",
         solimp=f"{IMPEDANCE} {IMPEDANCE} 0.001 0.5 2",
     )
-    world = _add(root, "worldbody")
-    _add(world, "light", pos=_numbers([0, 0, 3 * extent]), dir="0 0 -1", directional="true")
-    equality = _add(root, "equality")
+    world = add(root, "worldbody")
+    add(world, "light", pos=numbers([0, 0, 3 * extent]), dir="0 0 -1", directional="true")
+    equality = add(root, "equality")
     state = _State()
     tree = _Tree(model, metre, equality, state)
     where = cut(model)
@@ -118,27 +114,28 @@ def mjcf(model: Prototype, *, time_step: float = 1e-3) -> str:
         parent = tree.add_backward(parent, joint, model.connections.index(joint))
     closing = model.connections[where.connection]
     if where.weld:
-        tree.mark(world, "ground_side", closing.frame_after)
-        _add(
+        mark(world, "ground_side", closing.frame_after, model)
+        add(
             equality,
             "weld",
             name="loop",
             site1="ground_side",
             site2="loop_end",
-            torquescale=f"{_gyration(model, metre):.17g}",
+            torquescale=f"{gyration(model):.17g}",
         )
     else:
-        tree.mark(tree.elements[closing.before], f"{closing.name}_before", closing.frame_before)
-        tree.mark(tree.elements[closing.after], f"{closing.name}_after", closing.frame_after)
-        _add(
+        mark(tree.elements[closing.before], f"{closing.name}_before", closing.frame_before, model)
+        mark(tree.elements[closing.after], f"{closing.name}_after", closing.frame_after, model)
+        add(
             equality,
             "connect",
             name="loop",
             site1=f"{closing.name}_before",
             site2=f"{closing.name}_after",
         )
-    frames = _add(root, "keyframe")
-    _add(frames, "key", name="start", qpos=_numbers(state.qpos), qvel=_numbers(state.qvel))
+    add_springs(root, model, tree.elements)
+    frames = add(root, "keyframe")
+    add(frames, "key", name="start", qpos=numbers(state.qpos), qvel=numbers(state.qvel))
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
@@ -156,7 +153,7 @@ class _Tree:
         if joint.after == GROUND:
             body = self._add_body(parent, "loop_end_body", joint.frame_before, GROUND)
             self._add_freedoms(body, joint, number, np.eye(4), 1.0)
-            self.mark(body, "loop_end", np.eye(4))
+            mark(body, "loop_end", np.eye(4), self._model)
             return body
         name = self._model.bodies[joint.after].name
         rule = self._rules.get(joint.after)
@@ -174,9 +171,8 @@ class _Tree:
         return body
 
     def _add_body(self, parent: Element, name: str, frame: Floats, number: int) -> Element:
-        body = _add(parent, "body", name=name, **self._place(frame))
-        inertia = MASS * _gyration(self._model, self._metre) ** 2
-        _add(body, "inertial", pos="0 0 0", mass=f"{MASS:.17g}", diaginertia=_numbers([inertia] * 3))
+        body = add(parent, "body", name=name, **placed(frame, self._metre))
+        add(body, "inertial", **inertial(self._model, number))
         if number != GROUND:
             self.elements[number] = body
             self._add_bar(body, number)
@@ -189,34 +185,35 @@ class _Tree:
         radius = f"{BAR * self._model.size * self._metre:.6g}"
         first, second = (end * self._metre for end in ends)
         if np.linalg.norm(second - first) > BAR * self._model.size * self._metre:
-            line = _numbers([*first, *second])
-            _add(body, "geom", type="capsule", size=radius, fromto=line)
+            line = numbers([*first, *second])
+            add(body, "geom", type="capsule", size=radius, fromto=line)
         else:
-            _add(body, "geom", type="sphere", size=radius, pos=_numbers(first))
+            add(body, "geom", type="sphere", size=radius, pos=numbers(first))
 
     def _add_freedoms(self, body: Element, joint: Connection, number: int, frame: Floats, way: float) -> None:
         """The joints of MuJoCo that make up one of ours, at `frame` of the body, and their start."""
-        place = {"pos": _numbers(frame[:3, 3] * self._metre)}
+        place = {"pos": numbers(frame[:3, 3] * self._metre)}
         steps = [] if joint.row.is_ball else joint.row.named(joint.name)
         # a joint of MuJoCo is carried by those before it in its body
         for name, step in steps if way > 0 else steps[::-1]:
-            axis = {"axis": _numbers(way * frame[:3, step.axis])}
+            axis = {"axis": numbers(way * frame[:3, step.axis])}
             kind, at, unit = ("hinge", place, 1.0) if step.freedom == "turn" else ("slide", {}, self._metre)
             wheel = self._flywheel(number, step.number)
-            _add(body, "joint", name=name, type=kind, **at, **axis, **wheel)
+            spring = joint_spring(self._model, number, step.number)
+            add(body, "joint", name=name, type=kind, **at, **axis, **wheel, **spring)
             self._state.qpos.append(self._model.values[number, step.number] * unit)
             self._state.qvel.append(self._model.rates[number, step.number] * unit)
             if step.driven:
-                _add(
+                add(
                     self._equality,
                     "joint",
                     name=f"{joint.name}_screw",
                     joint1=name,
                     joint2=joint.name,
-                    polycoef=_numbers([0, joint.advance * self._metre, 0, 0, 0]),
+                    polycoef=numbers([0, joint.advance * self._metre, 0, 0, 0]),
                 )
         if joint.row.is_ball:
-            _add(body, "joint", name=joint.name, type="ball", **place)
+            add(body, "joint", name=joint.name, type="ball", **place)
             before, after = self._model.frames(number)
             # of the body against its parent, at the start and where the two frames of the joint agree
             fixed, moved = (before, after) if way > 0 else (after, before)
@@ -231,10 +228,10 @@ class _Tree:
         model = self._model
         above, own = model.placed(joint.before), model.bodies[joint.after].frame
         body = self._add_body(parent, model.bodies[joint.after].name, inverse(above) @ own, joint.after)
-        place = _numbers(joint.frame_after[:3, 3] * self._metre)
+        place = numbers(joint.frame_after[:3, 3] * self._metre)
         first = own[:3, :3].T @ above[:3, :3] @ rule.axis_before
         for end, axis in (("1", first), ("2", rule.axis_after)):
-            _add(body, "joint", name=f"{joint.name}.{end}", type="hinge", pos=place, axis=_numbers(axis))
+            add(body, "joint", name=f"{joint.name}.{end}", type="hinge", pos=place, axis=numbers(axis))
         spin = own[:3, :3].T @ (self._spin(joint.after) - self._spin(joint.before))
         self._state.qpos += [0.0, 0.0]
         self._state.qvel += [float(spin @ first), float(spin @ rule.axis_after)]
@@ -248,36 +245,12 @@ class _Tree:
         drive = self._model.drive
         if number != drive.connection or freedom != drive.freedom:
             return {}
-        inertia = MASS * (_gyration(self._model, self._metre) ** 2 if drive.turns else 1.0)
-        inertia = max(inertia, MASS * (self._model.connections[number].advance * self._metre) ** 2)
+        mass = heaviest(self._model)
+        inertia = mass * (gyration(self._model) ** 2 if drive.turns else 1.0)
+        inertia = max(inertia, mass * (self._model.connections[number].advance * self._metre) ** 2)
         return {"armature": f"{FLYWHEEL * inertia:.17g}"}
-
-    def mark(self, element: Element, name: str, frame: Floats) -> None:
-        """A site at a frame of a body, or of the ground."""
-        size = f"{BAR * self._model.size * self._metre:.6g}"
-        _add(element, "site", name=name, size=size, **self._place(frame))
-
-    def _place(self, frame: Floats) -> dict[str, str]:
-        return {
-            "pos": _numbers(frame[:3, 3] * self._metre),
-            "quat": _numbers(quaternion(frame[:3, :3])),
-        }
-
-
-def _add(parent: Element, tag: str, **attributes: str) -> Element:
-    return SubElement(parent, tag, attributes)
-
-
-def _gyration(model: Prototype, metre: float) -> float:
-    """The radius of gyration of every body [m]."""
-    return max(LEAST_GYRATION, GYRATION * model.size * metre)
 
 
 def _middle(model: Prototype) -> Floats:
     places = np.array([model.frames(number)[0][:3, 3] for number in range(len(model.connections))])
     return np.asarray((places.min(axis=0) + places.max(axis=0)) / 2)
-
-
-def _numbers(values: object) -> str:
-    # a zero without its sign
-    return " ".join(f"{float(value) + 0.0:.17g}" for value in np.asarray(values, dtype=float).reshape(-1))

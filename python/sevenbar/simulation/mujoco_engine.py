@@ -7,6 +7,7 @@ import numpy as np
 from sevenbar.errors import EngineError
 from sevenbar.simulation.engine import Record, imported
 from sevenbar.simulation.mjcf import IMPEDANCE, TIME_CONSTANT, cut, mjcf
+from sevenbar.simulation.mujoco_forces import MujocoForces, acting_notes
 from sevenbar.simulation.prototype import Prototype
 from sevenbar.text.progress import Progress
 from sevenbar.text.units import LENGTHS
@@ -44,7 +45,10 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
     six = np.zeros(6)
     every = max(1, steps // TICKS)
     kind = mujoco.mjtObj.mjOBJ_XBODY
+    forces = MujocoForces(model, own, rows)
     for row in range(rows):
+        mujoco.mj_kinematics(own, data)
+        forces.load(data)
         mujoco.mj_forward(own, data)
         mujoco.mj_rnePostConstraint(own, data)
         frames[row, :, :3, 3] = data.xpos[bodies] / metre
@@ -52,8 +56,10 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
         for place, body in enumerate(bodies):
             mujoco.mj_objectVelocity(own, data, kind, body, six, 0)
             rates[:, 0, row, place] = six[3:], six[:3]
+            # MuJoCo's accelerations are those that an instrument would show, with weight
             mujoco.mj_objectAcceleration(own, data, kind, body, six, 0)
-            rates[:, 1, row, place] = six[3:], six[:3]
+            rates[:, 1, row, place] = six[3:] + own.opt.gravity, six[:3]
+        forces.read(data, row)
         if not np.isfinite(data.qacc).all() or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
             raise EngineError(
                 f"mujoco could not follow the motion: it became unstable at step {row} of {steps}; "
@@ -76,6 +82,8 @@ def run(model: Prototype, steps: int, step: float, *, progress: Progress | None 
         spin_rate=rates[1, 1],
         method="soft constraints in joint coordinates, semi-implicit Euler steps of first order",
         notes=_notes(model, step),
+        drive=forces.drive,
+        reactions=forces.reactions,
     )
 
 
@@ -94,6 +102,7 @@ def _notes(model: Prototype, step: float) -> tuple[str, ...]:
         "hinges for a ball"
         for rule in model.spin_rules
     ]
+    notes += acting_notes(model)
     if model.redundant:
         count = len(model.redundant)
         notes.append(

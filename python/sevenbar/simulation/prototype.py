@@ -14,10 +14,11 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Circuit
-from sevenbar.kinematics.joints import KINDS, JointKind
+from sevenbar.kinematics.joints import JointKind, kind_row
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.poses import frames_along
 from sevenbar.kinematics.rigid import about, inverse, pose
+from sevenbar.simulation.acting import PlacedLoading, acting
 
 #: The number of the ground among the bodies.
 GROUND = -1
@@ -31,7 +32,7 @@ LEAST_SINE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class MovingBody:
     """A rigid body: its frame at the start, in the report frame, and how that moves.
 
     `frame` (4, 4); `velocity` of its origin (3,) [length/s]; `spin` (3,) [rad/s]. Its centre of mass is the
@@ -66,7 +67,7 @@ class Connection:
     @property
     def row(self) -> JointKind:
         """Its kind's row of the table."""
-        return KINDS[self.kind].backwards if self.backwards else KINDS[self.kind]
+        return kind_row(self.kind, backwards=self.backwards)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +114,7 @@ class Prototype:
     name: str
     length_unit: str
     size: float
-    bodies: tuple[Body, ...]
+    bodies: tuple[MovingBody, ...]
     connections: tuple[Connection, ...]
     spin_rules: tuple[SpinRule, ...]
     drive: PrescribedMotion
@@ -121,6 +122,10 @@ class Prototype:
     rates: Floats
     #: Constraints that the others imply, in words.
     redundant: tuple[str, ...] = ()
+    #: Masses, loads and springs; none where the linkage has none, and any masses will do.
+    acting: PlacedLoading | None = None
+    #: The connection that has the constraints of each joint of the linkage next to the link before it.
+    seats: tuple[int, ...] = ()
 
     def frames(self, number: int) -> tuple[Floats, Floats]:
         """Both frames (4, 4) of a joint at the start, in the report frame."""
@@ -143,20 +148,22 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
     frames = frames_along(linkage, circuit, np.array([row]))[0]
     # rates of a row are given for the input at the motion's own speed, whatever the pass
     share = speed / circuit.dq[row, circuit.input_column]
-    bodies: list[Body] = []
+    bodies: list[MovingBody] = []
     connections: list[Connection] = []
     values: list[Floats] = []
     rates: list[Floats] = []
     drive: PrescribedMotion | None = None
+    links, columns = {len(linkage.joints): GROUND}, dict[str, tuple[int, int]]()
+    seats = []
     before = GROUND
     last = len(linkage.joints) - 1
 
-    def link_body(i: int) -> Body:
+    def link_body(i: int) -> MovingBody:
         own = frames[i]
         place = inverse(linkage.point_frames[i]) @ np.array([0.0, 0.0, 0.0, 1.0])
         velocity = circuit.point(i + 1, (place[0], place[1], place[2])).velocity[row]
         spin = circuit.link_motion(i + 1).velocity[row]
-        return Body(f"link_{i + 1}", i + 1, own, share * velocity, share * spin)
+        return MovingBody(f"link_{i + 1}", i + 1, own, share * velocity, share * spin)
 
     for i, joint in enumerate(linkage.joints):
         own = linkage.places[i]
@@ -164,6 +171,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         paces = [share * pace[0] for _, pace in joint.steps(circuit.dq[row, own][None])]
         frame_before = linkage.base if i == 0 else linkage.links[i - 1]
         first = len(connections)
+        seats.append(first)
         if joint.row.has_cross:
             # the cross is a body of its own
             (step, q), *rest = steps
@@ -174,7 +182,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             carried = np.zeros(3) if carrier is None else carrier.spin
             velocity = np.zeros(3) if carrier is None else carrier.velocity + np.cross(carried, arm)
             cross, spin = start @ pose(about(step.axis, q[0])), carried + paces[0] * start[:3, step.axis]
-            bodies.append(Body(f"{joint.name}_cross", 0, cross, velocity, spin))
+            bodies.append(MovingBody(f"{joint.name}_cross", 0, cross, velocity, spin))
             after = len(bodies) - 1
             connections.append(
                 Connection(joint.columns[0], step.letter, before, after, frame_before, np.eye(4))
@@ -183,6 +191,7 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         if i < last:
             bodies.append(link_body(i))
             after, frame_after = len(bodies) - 1, np.eye(4)
+            links[i + 1] = after
         else:
             after, frame_after = GROUND, linkage.ground
         name, kind = joint.name, joint.kind
@@ -199,6 +208,8 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
             number = len(connections) - 1 if step.tilted or not joint.row.has_cross else first
             if not joint.row.is_ball:
                 values[number][step.number], rates[number][step.number] = q[0], pace
+            if not step.driven:
+                columns[linkage.columns[column]] = (number, step.number)
             if column == circuit.input_column and not step.driven:
                 drive = PrescribedMotion(number, step.number, float(q[0]), speed)
             column += not step.driven
@@ -216,10 +227,14 @@ def prototype(linkage: Solvable, circuit: Circuit, row: int, speed: float) -> Pr
         np.array(values),
         np.array(rates),
         linkage.mobility().redundant,
+        acting(linkage, links, columns),
+        tuple(seats),
     )
 
 
-def _spin_rules(linkage: Solvable, bodies: list[Body], connections: list[Connection]) -> tuple[SpinRule, ...]:
+def _spin_rules(
+    linkage: Solvable, bodies: list[MovingBody], connections: list[Connection]
+) -> tuple[SpinRule, ...]:
     """The rule of the idle spin of each link between two balls: its y stays across an axis before."""
     axes = linkage.spin_axes
     rules = []

@@ -77,6 +77,8 @@ def text(run: Simulation) -> RenderableType:
             "return",
             f"misses its first pose by {_sized(run.returned[0], unit)} and {_sized(run.returned[1], 'rad')}",
         )
+    if run.forces:
+        facts.add("forces", _forces_text(run))
     heads = (
         f"{record.engine} minus Sevenbar",
         "greatest",
@@ -87,6 +89,16 @@ def text(run: Simulation) -> RenderableType:
     slide = linkage.unit_of(motion.input) != "rad"
     table = number_table(heads, (_cells(found, slide, unit) for found in run.differences))
     return Group(Text(linkage.heading, style="bold underline"), facts.grid, Text(), table)
+
+
+def _forces_text(run: Simulation) -> str:
+    """What of the forces is compared."""
+    if len(run.forces) == 1:
+        return "those in joints are not compared: this version of the engine leaves springs out of them"
+    return (
+        "in joints what the link before puts on the link after, as far as equilibrium determines it and not "
+        "along the joint's own freedoms; moments about its place on the link before"
+    )
 
 
 def _sized(value: float, unit: str) -> str:
@@ -112,7 +124,7 @@ def simulation_report(engine: str, figures: Sequence[str] = ("png",)) -> Report[
     files = {f"{name}.json": json_file(as_dict), f"{name}.csv": columns_file(columns)}
     if name == "mujoco":
         files["mujoco.xml"] = text_file(_mjcf)
-    for stem in ("output", "joints", "points"):
+    for stem in ("output", "joints", "points", "forces"):
         files |= figure_files(f"{name}_{stem}", figures, partial(_figure, stem))
     return Report(text, as_dict, files)
 
@@ -126,7 +138,8 @@ def _mjcf(run: Simulation) -> str:
 def _figure(stem: str, run: Simulation) -> Figure | None:
     from sevenbar.simulation.figures import FIGURES
 
-    return None if stem == "points" and not run.points else FIGURES[stem](run)
+    empty = {"points": not run.points, "forces": not run.forces}
+    return None if empty.get(stem) else FIGURES[stem](run)
 
 
 def write(
@@ -173,6 +186,11 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
                 for who, point in (("sevenbar", theory_point), (engine, engine_point)):
                     head = point_column(name, letter, order=order, length=unit, who=who)
                     found[head] = getattr(point, quantity)[:, axis]
+    for force in run.forces:
+        for place, letter in enumerate(force.axes):
+            for who, own in (("sevenbar", force.theory), (engine, force.engine)):
+                words = [force.name, force.what, letter, who, force.unit.replace(" ", "")]
+                found["_".join(word for word in words if word)] = own[:, place]
     found[f"closure_error_{unit}"] = run.engine.gap.max(axis=1)
     found["closure_error_rad"] = run.engine.tilt.max(axis=1)
     return found

@@ -24,16 +24,27 @@ GLANCE = 0.25
 class StudioServer:
     """Serves a linkage to browsers; every tab begins with it as it was given, or as its file has it."""
 
-    def __init__(self, text: str, source: str, host: str, port: int, folder: Path | None = None) -> None:
+    def __init__(
+        self,
+        text: str,
+        source: str,
+        host: str,
+        port: int,
+        folder: Path | None = None,
+        *,
+        agree: float | None = None,
+    ) -> None:
         """`text` is TOML, `source` its name, or the path of its file.
 
-        Tabs may save to the files of `folder`, if one is given and nobody else can reach the server. Raises
-        `DescriptionError`; `OSError` for a bad address.
+        Tabs may save to the files of `folder`, if one is given and nobody else can reach the server.
+        Redundant constraints `agree` up to a closure error, if one is given. Raises `DescriptionError`;
+        `OSError` for a bad address.
         """
-        Session(text, source)  # before anything is served
+        self._source, self._agree = source, agree
+        self._session(text)  # before anything is served
         self._folder = folder if is_loopback(host) else None
         self._server = LocalServer(host, port)
-        self._text, self._source = text, source
+        self._text = text
         self._tabs: dict[int, Tab] = {}
         self._lock = threading.Lock()
         self._server.on_client_connect(self._connected)
@@ -64,10 +75,13 @@ class StudioServer:
         if shelf is not None and Path(self._source).is_file():
             try:
                 content = shelf.read(Path(self._source))
-                return Session(decoded(content, self._source), self._source), shelf
+                return self._session(decoded(content, self._source)), shelf
             except (OSError, SevenbarError):
                 shelf = Shelf(shelf.folder)
-        return Session(self._text, self._source), shelf
+        return self._session(self._text), shelf
+
+    def _session(self, text: str) -> Session:
+        return Session(text, self._source, agree=self._agree)
 
     async def _disconnected(self, client: viser.ClientHandle) -> None:
         # awaited by viser, where a plain function would be given to threads that `stop` has ended

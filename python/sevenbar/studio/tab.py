@@ -9,6 +9,7 @@ import viser
 
 from sevenbar.studio.panels.curves import CurvesPanel
 from sevenbar.studio.panels.files import FilesPanel
+from sevenbar.studio.panels.forces import ForcesPanel
 from sevenbar.studio.panels.handles import Handles
 from sevenbar.studio.panels.legend import Legend
 from sevenbar.studio.panels.points import PointsPanel
@@ -27,8 +28,9 @@ LEFT, RIGHT = (440, 300, 0.3), (380, 290, 0.265)
 STYLE = (
     "<style>.mantine-Slider-root + .mantine-NumberInput-root { display: none }"
     " .mantine-Slider-root { margin-bottom: 0.55em }"
-    # four tabs in the narrowest panel
-    " [role=tab] { padding-inline: 0.45em !important }</style>"
+    # five tabs in the narrowest panel: there they have no icons
+    " [role=tab] { padding-inline: 0.45em !important }"
+    " @media (max-width: 1340px) { [role=tab] :has(> svg) { display: none } }</style>"
 )
 
 FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the terminal"
@@ -61,6 +63,8 @@ class Tab:
                 )
             with tabs.add_tab("Points", viser.Icon.POINT):
                 self._points = PointsPanel(gui, self.worker, session)
+            with tabs.add_tab("Forces", viser.Icon.BARBELL):
+                self._forces = ForcesPanel(gui, self.worker, session, self._scenery.stage)
             with tabs.add_tab("Files", viser.Icon.FILE):
                 self._files = FilesPanel(client, self.worker, session, shelf)
             gui.main_panel.dock_right()
@@ -88,6 +92,7 @@ class Tab:
         with self._client.atomic():
             self._transport.show()
             self._scenery.show()
+            self._forces.show_arrows()
             self._curves.show()
         # at once, without waiting for the end of viser's own interval
         self._client.flush()
@@ -99,6 +104,7 @@ class Tab:
             self._handles.show()
             self._shape.show()
             self._points.show()
+            self._forces.show()
             self._files.show()
             if now != self._shown:
                 self._shown = now

@@ -38,8 +38,8 @@ def batched(plan: SweepPlan, values: Floats, threads: int) -> tuple[list[Block],
     """The rows of linkages (axes, n) that the core measures, and which are left to be analysed one by one.
 
     Left are those that a description refuses or that do not move, which have a reason to report, change
-    points of an RSSR, whose output must be followed, other loops whose transmission angle is measured, and
-    all where the sweep is of functions.
+    points of an RSSR, whose output must be followed, other loops whose transmission angle is measured,
+    and all of a sweep of functions or with a closure error of its own.
     """
     count = values.shape[1]
     if not all(isinstance(measure, str) for measure in plan.measures):
@@ -47,7 +47,7 @@ def batched(plan: SweepPlan, values: Floats, threads: int) -> tuple[list[Block],
     block = None
     if plan.draft.linkage.form == "rssr":
         block = _of_rssrs(plan, values, threads)
-    elif plan.draft.linkage.followed_generally:
+    elif plan.draft.linkage.followed_generally and plan.draft.agree is None:
         block = _of_loops(plan, values, threads)
     if block is None:
         return [], np.arange(count)

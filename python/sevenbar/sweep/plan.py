@@ -127,6 +127,7 @@ class SweepPlan:
             "sampling": {"method": self.space.method, "count": self.space.count, "seed": self.space.seed},
             "measures": [m if isinstance(m, str) else _function_dict(m) for m in self.measures],
             "part_size": self.part_size,
+            **({} if self.draft.agree is None else {"agree": self.draft.agree}),
         }
 
     def digest(self) -> str:

@@ -93,6 +93,9 @@ _UNIT_ALONE = re.compile(rf"(?<=[\w.)])\s*(?<![\w.])({_UNIT})(?![\w.(])|(?<=\))(
 #: A word after a number, which is none of its units.
 _NUMBER_AND_WORD = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)\s*([A-Za-z\u00b5\u03bc][\w/]*)")
 
+#: Numbers of programs, not of people: `0x10`, `1_000`.
+_NOT_DECIMAL = re.compile(r"(?<![\w.])0[xXoObB]\w|\d_\d")
+
 #: How a unit is called within a formula: `in` is a word of Python's grammar.
 CALLED = {unit: f"unit_{unit}" for unit in (*LENGTHS, *ANGLES)}
 
@@ -186,6 +189,8 @@ class WrongFormulaError(Exception):
 def parsed(text: str, names: Collection[str]) -> ast.AST:
     """The tree of a formula, with no other part than those allowed."""
     plain = text.strip().translate(_SIGNS).replace("^", "**")
+    if number := _NOT_DECIMAL.search(plain):
+        raise WrongFormulaError(f"{shown(number[0])} begins no decimal number; write one, as in 16 or 1000")
     plain = _NUMBER_AND_UNIT.sub(lambda match: f"({match[1]}*{CALLED[match[2]]})", plain)
     plain = _UNIT_ALONE.sub(lambda match: f"*{CALLED[match[1] or match[2]]}", plain)
     try:

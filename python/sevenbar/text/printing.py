@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.errors import SevenbarError, ends_here
+from sevenbar.text.words import language
 
 #: Characters of a line.
 WIDTH = 100
@@ -33,7 +34,8 @@ class Printed:
 
     def __repr__(self) -> str:
         _import_words(self)
-        return text_of(self)
+        with language("en"):
+            return text_of(self)
 
     def _repr_html_(self) -> str:
         """The lines, and beside them the picture."""

@@ -1,4 +1,4 @@
-"""Amounts of mass and force and of what is made of them: "250 g", "40 N/mm", "0.5 N m/rad"."""
+"""Amounts of mass and force and of what is made of them, as in `250 g`, `40 N/mm`, `0.5 N m/rad`."""
 
 from __future__ import annotations
 
@@ -80,15 +80,15 @@ _UNITS = {
 #: Signs of print.
 _SIGNS = str.maketrans({"\u00b7": " ", "\u00d7": "*", "\u00b0": "deg", "\u00b2": "2", "\u00b3": "3"})
 
-_WORD = rf"(?:{'|'.join(sorted(_UNITS, key=len, reverse=True))})(?:(?:\^|\*\*)?[23])?(?![\w^])"
-_NEXT = re.compile(r"\s*(/|\*(?!\*)|\s)\s*")
-_AMOUNT = re.compile(rf"(.+?)\s*({_WORD}(?:\s*(?:/|\*(?!\*)|\s)\s*{_WORD})*)")
+_WORD = rf"(?:{'|'.join(sorted(_UNITS, key=len, reverse=True))})(?:\^?[23])?(?![\w^])"
+_NEXT = re.compile(r"\s*([/*]|\s)\s*")
+_AMOUNT = re.compile(rf"(.+?)\s*({_WORD}(?:\s*(?:[/*]|\s)\s*{_WORD})*)")
 
 
 def quantity_of(text: str, kind: QuantityKind, *, mass_unit: str = "kg", length_unit: str = "mm") -> float:
     """The number of an amount in its kind's unit, which a number alone is in; the number may be a formula.
 
-    A sign / stands before each unit that divides: "N m s/rad". Raises `RequestError` where units do not fit.
+    Each unit that divides has a / of its own: "N m s/rad". Raises `RequestError` where units do not fit.
 
         >>> quantity_of("250 g", "mass"), quantity_of("2*20 N/m", "stiffness", length_unit="mm")
         (0.25, 0.04)
@@ -98,7 +98,7 @@ def quantity_of(text: str, kind: QuantityKind, *, mass_unit: str = "kg", length_
     known = _KINDS[kind]
     unit = known.unit.format(mass=mass_unit, length=length_unit)
     remedy = f"give {known.what}, as in 12, '12 {unit}' or '{known.example}'"
-    plain = text.strip().translate(_SIGNS)
+    plain = text.strip().translate(_SIGNS).replace("**", "^")
     match = _AMOUNT.fullmatch(plain)
     number, written = (match[1], match[2]) if match else (plain, unit)
     size, own = unit_of(written), unit_of(unit)
@@ -127,7 +127,7 @@ def unit_of(text: str) -> _Unit:
         if i % 2:
             sign = word
             continue
-        name, power = (word.rstrip("23^*"), int(word[-1])) if word[-1] in "23" else (word, 1)
+        name, power = (word.rstrip("23^"), int(word[-1])) if word[-1] in "23" else (word, 1)
         found = found.times(_UNITS[name], -power if sign == "/" else power)
     return found
 

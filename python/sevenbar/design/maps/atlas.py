@@ -23,6 +23,7 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress
+from sevenbar.text.words import say
 
 #: Lines of the grid along each dimension: of an RSSR, and of loops that take some 10 ms a point.
 GRID, LOOP_GRID = 61, 25
@@ -141,7 +142,7 @@ class Map(Printed):
     def name(self, kind: Kind) -> str:
         """A kind in words: its circuits are named where kinds on the map differ in them only."""
         alike = {k.circuits for k in self.areas if k.motion_type == kind.motion_type}
-        return kind.label if len(alike | {kind.circuits}) > 1 else kind.motion_type
+        return kind.label if len(alike | {kind.circuits}) > 1 else say(kind.motion_type)
 
 
 def motion_map(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -17,18 +17,23 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.heights import Heights
-from sevenbar.design.maps.lettering import LINE, RASTER, names, take
+from sevenbar.design.maps.lettering import LINE, RASTER, is_free, names, take
 from sevenbar.design.maps.plane import Kind
+from sevenbar.drawing.asked import asked_style
 from sevenbar.drawing.figure import new_figure
 from sevenbar.drawing.names import short
-from sevenbar.drawing.style import STYLE
+from sevenbar.drawing.style import STYLES, letters, styled
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.text.words import say
 
 #: Sheets of paper, width and height [inch].
 SIZES = {"A4": (11.69, 8.27), "A3": (16.54, 11.69), "A2": (23.39, 16.54), "A1": (33.11, 23.39)}
 
 #: Letters and lines grow slower than the sheet: a wall map is read from nearer than its size.
 GROWTH = 0.8
+
+#: Letters on A4 [points], and the height of a map in a paper as a share of its width.
+LETTERS, PAPER_SHAPE = 9.5, 0.78
 
 #: Fill and hatch of each motion type; the fills differ in lightness, so grey copies can be read.
 LOOKS: dict[str, tuple[str, str]] = {
@@ -60,6 +65,9 @@ ONE, SEVERAL, STAGGER = 0.45, (0.25, 0.7), 0.1
 #: No value is written nearer to the window's edge [share].
 ROOM = 0.015
 
+#: How far a value is moved along its contour where something is written already [share of the contour].
+MOVED = (0.0, 0.07, -0.07, 0.14, -0.14, 0.21, -0.21)
+
 #: Room that the value on a contour takes, to each side [share].
 LABEL = (0.03, 0.02)
 
@@ -75,15 +83,27 @@ def sheet(size: str) -> tuple[float, float]:
 
 
 def draw(
-    of: Map, heights: Heights | None = None, *, size: str = "A4", side: bool = True, title: bool = True
+    of: Map,
+    heights: Heights | None = None,
+    *,
+    size: str | None = None,
+    side: bool = True,
+    title: bool = True,
 ) -> Figure:
     """The map on a sheet, with the contours of a measure where one is given.
 
+    `size`: one of `SIZES`; both columns of a paper where a style for papers was chosen, else A4.
     `side`: with the column of the key and the numbers; `title`: with the title above.
     """
-    width, height = sheet(size)
-    scale = (width / SIZES["A4"][0]) ** GROWTH
-    with rc_context({**STYLE, "font.size": 9.5 * scale, "hatch.linewidth": 0.7 * scale}):
+    with styled():
+        widths = STYLES[asked_style() or "screen"].widths
+        if size is None and widths is not None:
+            width, height = widths[1], PAPER_SHAPE * widths[1]
+            scale = letters() / LETTERS
+        else:
+            width, height = sheet(size or "A4")
+            scale = (width / SIZES["A4"][0]) ** GROWTH
+        rcParams.update({"font.size": LETTERS * scale, "hatch.linewidth": 0.7 * scale})
         figure = new_figure(width, height)
         margin = 0.62 * scale
         wide = 2.75 * scale if side else 0.0
@@ -164,12 +184,15 @@ def _contours(axes: Axes, heights: Heights, of: Map, scale: float, taken: np.nda
         level = heights.levels.index(line.level)
         for part in (ONE,) if along[-1] < LONG else SEVERAL:
             # neighbours one step apart, so that their values do not overlap
-            at = (part + STAGGER * (level % 2)) * along[-1]
-            ends = [[np.interp(at + d, along, line.places[:, i]) for i in (0, 1)] for d in (-0.01, 0.01)]
-            (x0, y0), (x1, y1) = of.values(np.array(ends)).tolist()
-            middle = np.mean(ends, axis=0)
-            if not ROOM < middle.min() <= middle.max() < 1 - ROOM:
+            for moved in MOVED:
+                at = (part + STAGGER * (level % 2) + moved) * along[-1]
+                ends = [[np.interp(at + d, along, line.places[:, i]) for i in (0, 1)] for d in (-0.01, 0.01)]
+                middle = np.mean(ends, axis=0)
+                if ROOM < middle.min() <= middle.max() < 1 - ROOM and is_free(taken, middle, LABEL):
+                    break
+            else:
                 continue
+            (x0, y0), (x1, y1) = of.values(np.array(ends)).tolist()
             turn = np.degrees(np.arctan2(y1 - y0, x1 - x0))
             label = axes.text(
                 (x0 + x1) / 2,
@@ -268,16 +291,25 @@ def _frame(axes: Axes, of: Map, scale: float) -> None:
 
 
 def _title(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: float) -> None:
-    what = "motion type" if heights is None else heights.measure.title
+    what = say("motion type") if heights is None else say(heights.measure.title)
     if heights is not None and heights.measure.per == "circuit":
-        what += (
-            f", circuit {heights.take}"
-            if isinstance(heights.take, int)
-            else f", {heights.take} of all circuits"
-        )
+        match heights.take:
+            case "highest":
+                what = say("{measure}, highest of all circuits", measure=what)
+            case "lowest":
+                what = say("{measure}, lowest of all circuits", measure=what)
+            case number:
+                what = say("{measure}, circuit {number}", measure=what, number=number)
     box = axes.get_position()
     name = short(of.linkage.heading, 60)
-    figure.text(box.x0, box.y1 + 0.012, f"{name}: {what}", fontsize=13 * scale, va="bottom", ha="left")
+    figure.text(
+        box.x0,
+        box.y1 + 0.012,
+        say("{linkage}: {quantity}", linkage=name, quantity=what),
+        fontsize=13 * scale,
+        va="bottom",
+        ha="left",
+    )
 
 
 def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: float) -> None:
@@ -294,10 +326,14 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
         keys.append(patch)
     if heights is not None:
         unit = f" [{_unit(heights.unit)}]" if heights.unit else ""
-        keys.append(Line2D([], [], color=CONTOUR, lw=1.05 * scale, label=f"{heights.measure.title}{unit}"))
-    keys.append(Line2D([], [], color=LINE, lw=1.6 * scale, label="motion type changes"))
+        keys.append(
+            Line2D([], [], color=CONTOUR, lw=1.05 * scale, label=f"{say(heights.measure.title)}{unit}")
+        )
+    keys.append(Line2D([], [], color=LINE, lw=1.6 * scale, label=say("motion type changes")))
     if any(of.kinds[b.left].motion_type == of.kinds[b.right].motion_type for b in of.boundaries):
-        keys.append(Line2D([], [], color=LINE, lw=1.0 * scale, ls=(0, (4, 2)), label="circuits join or part"))
+        keys.append(
+            Line2D([], [], color=LINE, lw=1.0 * scale, ls=(0, (4, 2)), label=say("circuits join or part"))
+        )
     if of.design.inside:
         keys.append(
             Line2D(
@@ -309,7 +345,7 @@ def _side(figure: Figure, axes: Axes, of: Map, heights: Heights | None, scale: f
                 ms=8 * scale,
                 mfc="white",
                 mew=1.6 * scale,
-                label="the design",
+                label=say("the design"),
             )
         )
     legend = figure.legend(
@@ -344,20 +380,20 @@ def _facts(of: Map, heights: Heights | None) -> list[str]:
     """The design and the fixed dimensions, line by line."""
     design = of.design
     x, y = of.axes
-    lines = [f"input: {short(of.input, 24)}", ""]
+    lines = [say("input: {joint}", joint=short(of.input, 24)), ""]
     lines += [
-        "the design" + ("" if design.inside else " (outside the map)"),
+        say("the design") if design.inside else say("the design (outside the map)"),
         f"{x.name} = {x.text(design.x)}",
         f"{y.name} = {y.text(design.y)}",
         of.name(design.kind),
     ]
     if heights is not None:
         unit = _suffix(heights.unit)
-        value = "none" if heights.here is None else f"{heights.here:.5g}{unit}"
-        lines.append(f"{heights.measure.title} = {value}")
+        value = say("none") if heights.here is None else f"{heights.here:.5g}{unit}"
+        lines.append(f"{say(heights.measure.title)} = {value}")
     changes = [s for s in design.steps if s.value is not None and s.kind is not None]
     if changes:
-        lines += ["", "changes at"]
+        lines += ["", say("changes at")]
         lines += [
             f"{s.axis.name} = {s.axis.text(float(s.value or 0.0))}: {of.name(s.kind or design.kind)}"
             for s in changes
@@ -365,9 +401,11 @@ def _facts(of: Map, heights: Heights | None) -> list[str]:
     moved = {axis.dimension.place for axis in of.axes}
     others = [d for d in of.draft.dimensions if d.place not in moved and d.place[0] == "rssr"]
     if others:
-        lines += ["", "held"]
+        lines += ["", say("held")]
         lines += [
-            f"{d.name} " + ("follows from the others" if d.follows else f"= {d.value:g} {d.unit}")
+            say("{name} follows from the others", name=d.name)
+            if d.follows
+            else f"{d.name} = {d.value:g} {d.unit}"
             for d in others
         ]
     return lines

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
+from rich.cells import cell_len
 
 from sevenbar.arrays import Floats
 from sevenbar.design.maps.atlas import Map
@@ -23,9 +24,18 @@ LINE = "#1c1c1c"
 
 def take(taken: np.ndarray, middle: Floats, half: Sequence[float]) -> None:
     """Marks a box [shares] as taken, so that no name is written there."""
+    taken[_box(middle, half)] = True
+
+
+def is_free(taken: np.ndarray, middle: Floats, half: Sequence[float]) -> bool:
+    """Whether nothing of a box [shares] is taken."""
+    return not taken[_box(middle, half)].any()
+
+
+def _box(middle: Floats, half: Sequence[float]) -> tuple[slice, slice]:
     low = np.clip(((middle - half) * RASTER).astype(int), 0, RASTER)
     high = np.clip(np.ceil((middle + half) * RASTER).astype(int), 0, RASTER)
-    taken[low[1] : high[1], low[0] : high[0]] = True
+    return slice(low[1], high[1]), slice(low[0], high[0])
 
 
 def names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[float, float]) -> None:
@@ -40,7 +50,7 @@ def names(axes: Axes, of: Map, scale: float, taken: np.ndarray, inches: tuple[fl
         name = of.name(of.kinds[region.kind])
         for points in (15.0, 12.0, 9.5):
             letter = points * scale / 72
-            text = np.array([LETTER[1] * letter * len(name), LETTER[0] * letter])
+            text = np.array([LETTER[1] * letter * cell_len(name), LETTER[0] * letter])
             found = None
             for rotation, extent in ((0, text), (90, text[::-1])):
                 found = found or _room(free, extent / size, rotation)

@@ -18,6 +18,7 @@ from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure, rows_of
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.progress import Progress, silent
+from sevenbar.text.words import say
 
 #: Which circuit's value counts where a linkage has several: the best one, or that of an index.
 Take = Literal["highest", "lowest"] | int
@@ -44,8 +45,11 @@ class Kind:
     def label(self) -> str:
         """Both in words."""
         if self.circuits == 0:
-            return self.motion_type
-        return f"{self.motion_type}, {self.circuits} circuit{'s' * (self.circuits > 1)}"
+            return say(self.motion_type)
+        return say(
+            "{motion_type}, {count} circuit{s}",
+            motion_type=say(self.motion_type), count=self.circuits, s="s" * (self.circuits > 1),
+        )  # fmt: skip
 
 
 class Plane(ABC):

@@ -159,7 +159,11 @@ def _row(of: Map, step: NearestChange) -> list[str]:
 
 
 def map_report(
-    measures: Sequence[str] = (), figures: Sequence[str] = ("png",), *, size: str = "A4", side: bool = True
+    measures: Sequence[str] = (),
+    figures: Sequence[str] = ("png",),
+    *,
+    size: str | None = None,
+    side: bool = True,
 ) -> Report[MapFindings]:
     """How a map with contours of these measures is reported; a figure for the map and for each measure."""
     files: dict[str, Write[MapFindings]] = {
@@ -173,7 +177,7 @@ def map_report(
     return Report(text, as_dict, files)
 
 
-def _sheet(size: str, side: bool, place: int, found: MapFindings) -> Figure:
+def _sheet(size: str | None, side: bool, place: int, found: MapFindings) -> Figure:
     return draw(found.map, found.heights[place - 1] if place else None, size=size, side=side)
 
 

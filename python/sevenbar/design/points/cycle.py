@@ -12,7 +12,8 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.curves.stationary import highest_between
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Law, Trace
+from sevenbar.kinematics.circuits import Circuit, Trace
+from sevenbar.kinematics.driven import driven as driven_circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
@@ -166,19 +167,10 @@ def driven(
     motion: Motion, circuit: Circuit, branch: int, inputs: Floats, *, speed: float | None = None
 ) -> tuple[Circuit, npt.NDArray[np.bool_]]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
-    law = Law.of(np.arange(float(len(inputs))), inputs, motion.speed if speed is None else speed, 0.0)
-    if not circuit.goes_round or circuit.turns > 1:
-        # a pose alone distinguishes neither passes nor turns
-        all_of_them = motion.linkage.motion(
-            input=motion.input, output=motion.output, law=law, agree=motion.agree
-        )
-        again = all_of_them.circuits[circuit.index]
-        return again, again.branch == branch
-    pose = circuit.q[np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0]]
-    again = motion.linkage.circuit(
-        pose, input=motion.input, output=motion.output, law=law, agree=motion.agree
+    again = driven_circuit(
+        motion.linkage, circuit, inputs, speed=motion.speed if speed is None else speed, agree=motion.agree
     )
-    return again, np.ones(len(inputs), dtype=bool)
+    return again, again.branch == branch
 
 
 def shown_inputs(cycle: Cycle, inputs: Floats) -> Floats:

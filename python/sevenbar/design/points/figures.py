@@ -17,12 +17,14 @@ from sevenbar.design.points.inertia import Inertia
 from sevenbar.design.points.least import ZERO, LeastPoint
 from sevenbar.design.points.nearest import NearestPath
 from sevenbar.design.points.poles import AccelerationPoles
-from sevenbar.drawing.figure import input_label, new_figure, slides
+from sevenbar.drawing.asked import asked_view
+from sevenbar.drawing.figure import input_label, page_figure, slides
 from sevenbar.drawing.names import short
 from sevenbar.drawing.page import place_picture
-from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, OTHER, styled
+from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, OTHER, letters, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import view_of
+from sevenbar.text.words import say
 
 #: The point found, and what it is compared with.
 FOUND, BOUND = COMPUTED, "#8a8a8a"
@@ -38,7 +40,7 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
     """The rate over the cycle of the file's points and of the new one, and the poles' path in the link."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
     with styled():
-        figure = new_figure(11.0, 5.0)
+        figure = page_figure(11.0, 5.0)
         axes = figure.add_axes((0.065, 0.12, 0.44, 0.70))
         across = shown_inputs(cycle, cycle.rates.input)
         for i, point in enumerate(found.before[:MOST_LINES]):
@@ -47,7 +49,8 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
                 across, _sizes(cycle, found.of, np.array(point.at)), label=short(point.name, 24), **look
             )
         axes.plot(across, _sizes(cycle, found.of, found.at), color=FOUND, lw=1.8, label=short(name, 24))
-        bound = "least root mean square" if found.measure == "rms" else "lower bound of the greatest"
+        rms = found.measure == "rms"
+        bound = say("least root mean square") if rms else say("lower bound of the greatest")
         axes.axhline(found.value, color=BOUND, lw=1.0, ls=(0, (4, 2)), label=bound)
         if len(found.inputs):
             marks = shown_inputs(cycle, found.inputs)
@@ -55,16 +58,17 @@ def least_figure(found: LeastPoint, poles: AccelerationPoles, name: str) -> Figu
         _input_axis(axes, cycle, across)
         # a point that stands still is at the foot of what others of the box have
         axes.set_ylim(0, None if found.value > ZERO * found.scale else found.scale)
-        axes.set_ylabel(f"{found.of} [{found.unit.replace('^2', '²').replace('^3', '³')}]")
-        axes.set_title("(a) over the cycle", fontsize=10)
-        axes.legend(frameon=False, fontsize=8.5)
+        axes.set_ylabel(f"{say(found.of)} [{found.unit.replace('^2', '²').replace('^3', '³')}]")
+        axes.set_title("(a) " + say("over the cycle"))
+        axes.legend(frameon=False, fontsize=letters() - 0.5)
         _poles_in_the_link(figure, found, poles, name)
-        word = "root mean square" if found.measure == "rms" else "greatest"
-        figure.suptitle(
-            f"{short(linkage.heading, 60)}\n"
-            f"link {found.link}, circuit {cycle.circuit.index}: least {word} {found.of}",
-            fontsize=11,
+        what = {"link": found.link, "number": cycle.circuit.index, "quantity": say(found.of)}
+        which = (
+            say("link {link}, circuit {number}: least root mean square {quantity}", **what)
+            if rms
+            else say("link {link}, circuit {number}: least greatest {quantity}", **what)
         )
+        figure.suptitle(f"{short(linkage.heading, 60)}\n{which}")
     return figure
 
 
@@ -80,7 +84,7 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
     linkage = found.cycle.motion.linkage
     width, height = figure.get_size_inches()
     room = (0.54 * width, 0.55, 0.46 * width, 0.76 * height)
-    view = view_of("space", linkage, places)
+    view = view_of(_in_space(), linkage, places)
     space = place_picture(figure, places, room, linkage.length_unit, view, letters="uvw")
     axes: Any = space.axes
     for a, b in product(corners, corners):
@@ -88,66 +92,53 @@ def _poles_in_the_link(figure: Figure, found: LeastPoint, poles: AccelerationPol
             axes.plot(*np.stack([a, b]).T, color="#b8b8b8", lw=0.8)
     if near.any():
         single = (poles.status[near] == "pole").any()
-        label = "acceleration poles" if single else "points of least acceleration"
+        label = say("acceleration poles") if single else say("points of least acceleration")
         axes.plot(*_closed(path, found.cycle).T, color=CIRCUIT_COLOURS[2], lw=1.3, label=label)
     for i, point in enumerate(found.before[:MOST_LINES]):
         axes.plot(*np.array([point.at]).T, "s", color=_other(i), ms=5, label=short(point.name, 24))
     axes.plot(*found.at[:, None], "o", color=FOUND, ms=6, label=short(name, 24))
-    part = "" if near.all() else f"; {np.count_nonzero(near)} of {len(near)} poles near the box"
+    where = say("in the link: the box")
     if not near.any():
-        part = "; no pole near the box"
+        where = say("in the link: the box; no pole near the box")
+    elif not near.all():
+        counts = {"count": np.count_nonzero(near), "all": len(near)}
+        where = say("in the link: the box; {count} of {all} poles near the box", **counts)
     middle = (room[0] + room[2] / 2) / width
-    figure.text(middle, 0.845, f"(b) in the link: the box{part}", fontsize=10, ha="center", va="bottom")
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        frameon=False,
-        fontsize=8.5,
-        loc="lower center",
-        bbox_to_anchor=(middle, 0.0),
-        ncols=3,
-    )
+    figure.text(middle, 0.845, f"(b) {where}", fontsize=letters() + 1, ha="center", va="bottom")
+    _legend_below(figure, axes, middle, 3)
 
 
 def nearest_figure(found: NearestPath, name: str) -> Figure:
     """The path of the point in space on the wanted places, and the distance of each from it."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
     with styled():
-        figure = new_figure(10.6, 4.9)
+        figure = page_figure(10.6, 4.9)
         path = cycle.rates.of("position", found.at)
         both = np.concatenate([path, found.wanted])
         width, height = figure.get_size_inches()
         view = view_of(None, linkage, both)
         room = (0.1, 0.3, 0.5 * width - 0.1, 0.82 * height - 0.3)
         space = place_picture(figure, both, room, linkage.length_unit, view)
-        space.line(_closed(path, cycle), color=FOUND, lw=1.4, label=f"path of {short(name, 24)}")
-        space.line(found.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label="wanted")
-        handles, labels = space.axes.get_legend_handles_labels()
-        figure.legend(
-            handles,
-            labels,
-            frameon=False,
-            fontsize=8.5,
-            loc="lower center",
-            bbox_to_anchor=(0.27, 0.0),
-            ncols=2,
+        space.line(
+            _closed(path, cycle), color=FOUND, lw=1.4, label=say("path of {name}", name=short(name, 24))
         )
-        where = "(a) in its plane" if view.flat else "(a) in space"
-        figure.text(0.27, 0.835, where, fontsize=10, ha="center", va="bottom")
+        space.line(found.wanted, ls="", marker="o", color=OTHER, mfc="none", ms=4, label=say("wanted"))
+        _legend_below(figure, space.axes, 0.27, 2)
+        where = "(a) " + (say("in its plane") if view.flat else say("in space"))
+        figure.text(0.27, 0.835, where, fontsize=letters() + 1, ha="center", va="bottom")
         below = figure.add_axes((0.59, 0.12, 0.39, 0.70))
         below.plot(np.arange(1, len(found.distances) + 1), found.distances, "o-", color=FOUND, ms=3, lw=1.0)
         below.grid(lw=0.6)
         below.set_ylim(bottom=0)
         below.xaxis.set_major_locator(MaxNLocator(integer=True))
-        below.set_xlabel("wanted place")
-        below.set_ylabel(f"distance [{linkage.length_unit}]")
-        below.set_title("(b) distance of the path from it", fontsize=10)
-        figure.suptitle(
-            f"{short(linkage.heading, 60)}\nlink {found.link}, circuit {cycle.circuit.index}: "
-            f"path nearest the curve, rms {found.rms:.4g} {linkage.length_unit}",
-            fontsize=11,
-        )
+        below.set_xlabel(say("wanted place"))
+        below.set_ylabel(say("distance [{unit}]", unit=linkage.length_unit))
+        below.set_title("(b) " + say("distance of the path from it"))
+        which = say(
+            "link {link}, circuit {number}: path nearest the curve, rms {rms:.4g} {unit}",
+            link=found.link, number=cycle.circuit.index, rms=found.rms, unit=linkage.length_unit,
+        )  # fmt: skip
+        figure.suptitle(f"{short(linkage.heading, 60)}\n{which}")
     return figure
 
 
@@ -155,30 +146,39 @@ def inertia_figure(found: Inertia) -> Figure:
     """The torque of the input over the cycle, and the sizes of the inertia forces."""
     cycle, linkage = found.cycle, found.cycle.motion.linkage
     with styled():
-        figure = new_figure(7.0, 6.6, pads=(0.05, 0.06))
+        figure = page_figure(7.0, 6.6, pads=(0.05, 0.06))
         torque, force = figure.subplots(2, 1, sharex=True)
         across = shown_inputs(cycle, found.input)
         torque.axhline(0, color=BOUND, lw=0.8)
         torque.plot(across, found.torque, color=FOUND, lw=1.7)
         torque.fill_between(across, found.torque, color=FOUND, alpha=0.15, lw=0)
-        torque.set_ylabel(f"input {'force' if found.slides else 'torque'} [{found.unit}]")
+        what = (
+            say("input force [{unit}]", unit=found.unit)
+            if found.slides
+            else say("input torque [{unit}]", unit=found.unit)
+        )
+        torque.set_ylabel(what)
         torque.grid(lw=0.6)
         for i, (mass, sizes) in enumerate(zip(found.masses[:MOST_LINES], found.sizes, strict=False)):
             label = f"{short(mass.name, 24)}, {mass.mass:g} kg"
             force.plot(across, sizes, color=_other(i), ls=LINE_STYLES[i % 4], lw=1.5, label=label)
         if len(found.masses) > 1:
             total = np.linalg.norm(found.shaking, axis=1)
-            force.plot(across, total, color="#303030", lw=1.0, label="sum of all")
+            force.plot(across, total, color="#303030", lw=1.0, label=say("sum of all"))
         force.set_ylim(0, 1.08 * float(np.linalg.norm(found.force, axis=2).max() or 1.0))
         figure.align_ylabels()
-        force.set_ylabel("inertia force [N]")
+        force.set_ylabel(say("inertia force [N]"))
         _input_axis(force, cycle, across)
         figure.legend(loc="outside lower center", ncols=3, frameon=False)
-        figure.suptitle(
-            f"{short(linkage.heading, 60)}\ncircuit {cycle.circuit.index}: what masses require of the input",
-            fontsize=11,
-        )
+        what = say("circuit {number}: what masses require of the input", number=cycle.circuit.index)
+        figure.suptitle(f"{short(linkage.heading, 60)}\n{what}")
     return figure
+
+
+def _in_space() -> str | tuple[float, float]:
+    """The view of places in a link, whose plane is not that of the linkage."""
+    view = asked_view()
+    return "space" if view is None or view == "plane" else view
 
 
 def _other(index: int) -> str:
@@ -201,6 +201,15 @@ def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:
     if not slides(cycle.motion, cycle.motion.input):
         axes.xaxis.set_major_locator(DegreeLocator(9))
     axes.set_xlabel(input_label(cycle.motion))
+
+
+def _legend_below(figure: Figure, axes: Any, middle: float, columns: int) -> None:
+    """The legend of axes at the foot of the page, about a place across it [share]."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(
+        handles, labels, frameon=False, fontsize=8.5, loc="lower center", bbox_to_anchor=(middle, 0.0),
+        ncols=columns,
+    )  # fmt: skip
 
 
 def _closed(path: Floats, cycle: Cycle) -> Floats:

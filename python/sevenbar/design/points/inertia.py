@@ -1,11 +1,7 @@
 """Masses at points of links: the inertia forces over the cycle, and the torque that the input needs for them.
 
-By virtual power, with m the mass, a the acceleration, g gravity, and dp/dq the place's derivative by the
-input:
-
-    force = -m a,     torque = sum m (a - g) . dp/dq
-
-which at constant speed is `sum m (a - g) . v / omega`. Over a closed cycle the mean by time of power is zero.
+These are the forces of bodies that are points, and nothing else acts (`kinematics.forces`). Over a closed
+cycle the mean by time of power is zero.
 
 Source: docs/theory_design.md, (22).
 """
@@ -20,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.design.points.cycle import Cycle, cycle_of
+from sevenbar.design.points.cycle import Cycle, cycle_of, driven
 from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.forces.bodies import Body
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.units import LENGTHS
@@ -119,22 +116,17 @@ def inertia(
         for link in moving
     }
     cycle = cycles[moving[0]]
-    speeds = _speeds(cycle)
-    rows = len(cycle.rates.input)
-    acceleration, torque, kinetic = np.zeros((len(checked), rows, 3)), np.zeros(rows), np.zeros(rows)
-    geometry = {link: cycles[link].geometry() for link in cycles}
+    acceleration = np.zeros((len(checked), len(cycle.rates.input), 3))
+    bodies: dict[int, list[Body]] = {link: [] for link in cycles}
     for i, mass in enumerate(checked):
-        if mass.link not in cycles:
-            continue
-        rates = cycles[mass.link].rates
-        acceleration[i] = metre * rates.of("acceleration", mass.at)
-        # the input's length cancels where it slides
-        scale = 1.0 if cycle.motion.linkage.column_kinds[cycle.circuit.input_column] == "slide" else metre
-        along = scale * geometry[mass.link].of("velocity", mass.at)
-        torque += mass.mass * ((acceleration[i] - pull) * along).sum(axis=1)
-        velocity = metre * rates.of("velocity", mass.at)
-        kinetic += 0.5 * mass.mass * (velocity**2).sum(axis=1)
-    slides = cycle.motion.linkage.column_kinds[cycle.circuit.input_column] == "slide"
+        if mass.link in cycles:
+            acceleration[i] = metre * cycles[mass.link].rates.of("acceleration", mass.at)
+            bodies[mass.link].append(Body(mass.mass, mass.at, solid="point"))
+    rows, own = cycle.circuit, cycle.circuit.branch == branch
+    if cycle.closed:
+        rows, own = driven(motion, cycle.circuit, 0, cycle.rates.input)
+    # the masses alone, whatever else the file has
+    found = rows.forces(bodies=bodies, gravity=tuple(pull), loads=(), springs=())
     weights = np.array([mass.mass for mass in checked])
     return Inertia(
         masses=checked,
@@ -144,17 +136,10 @@ def inertia(
         time=cycle.rates.time,
         acceleration=acceleration,
         force=-weights[:, None, None] * acceleration,
-        torque=torque,
-        power=torque * speeds * (metre if slides else 1.0),
-        kinetic=kinetic,
+        torque=found.torque[own],
+        power=found.power[own],
+        kinetic=found.kinetic[own],
     )
-
-
-def _speeds(cycle: Cycle) -> Floats:
-    """The input's speed [rad/s, or length/s] at the rows of a cycle, (n,)."""
-    if cycle.motion.law is None:
-        return np.full(len(cycle.rates.input), cycle.motion.speed)
-    return cycle.motion.law.dq
 
 
 def _masses(motion: Motion, masses: Mapping[str, float] | Sequence[Mass]) -> tuple[Mass, ...]:

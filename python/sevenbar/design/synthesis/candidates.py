@@ -23,8 +23,8 @@ from sevenbar.text.printing import Printed, brief, lines, text_of
 #: Inputs of a turn with which a design is checked: rows stand half a degree apart.
 CHECK_SAMPLES = 720
 
-#: How far a claimed pose may lie from the polygon through a circuit's rows [rad, or parts of the size]; the
-#: polygon's own sagitta is below 1e-3 but next to dead centres.
+#: How far a claimed pose may lie from the polygon through a circuit's rows [rad, or relative to the size];
+#: the polygon's own sagitta is below 1e-3 but next to dead centres.
 NEAR = 0.02
 
 #: By how much a pose may lie behind the one before it [rows]: several see one corner of the polygon.

@@ -10,11 +10,13 @@ from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words
-from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.figure import key_below, page_figure, tidy
 from sevenbar.drawing.names import quantity_label, short
-from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.drawing.space import measuring
+from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.kinematics.circuits import Integers
+from sevenbar.text.words import say
 
 #: Bars beyond the first so many share one, and their height [inch].
 MOST_BARS, BAR = 14, 0.28
@@ -29,10 +31,10 @@ def shares_figure(linear: Linear) -> Figure:
     shares = [100 * effect.share for effect in effects]
     if len(effects) > MOST_BARS:
         rest = len(effects) - MOST_BARS + 1
-        labels = [*labels[: MOST_BARS - 1], f"{rest} others together"]
+        labels = [*labels[: MOST_BARS - 1], say("{count} others together", count=rest)]
         shares = [*shares[: MOST_BARS - 1], sum(shares[MOST_BARS - 1 :])]
     with styled():
-        figure = new_figure(6.4, 1.5 + BAR * len(labels), pads=(0.06, 0.06))
+        figure = page_figure(6.4, 1.5 + BAR * len(labels), pads=(0.06, 0.06))
         axes = figure.subplots()
         axes.barh(range(len(labels)), shares, color=LINEAR, height=0.62)
         axes.set_yticks(range(len(labels)), labels)
@@ -40,13 +42,16 @@ def shares_figure(linear: Linear) -> Figure:
         for place, share in enumerate(shares):
             axes.annotate(f"{share:.1f} %", (share, place), (3, 0), textcoords="offset points", va="center")
         axes.set_xlim(0, 1.14 * max([*shares, 1e-9]))
-        axes.set_xlabel(f"share in the variance over the cycle, {output_words(linear)} [%]")
+        axes.set_xlabel(
+            say("share in the variance over the cycle, {output} [%]", output=output_words(linear))
+        )
+        label = axes.xaxis.label
+        if label.get_window_extent(measuring(figure)).width > 0.9 * figure.bbox.width:
+            label.set_text(label.get_text().replace(", ", ",\n", 1))
         axes.grid(axis="x", lw=0.6)
         axes.set_axisbelow(True)
         axes.spines[["top", "right"]].set_visible(False)
-        figure.suptitle(
-            f"{short(linear.found.linkage.heading, 60)}\nwhich tolerance matters most", fontsize=11
-        )
+        figure.suptitle(f"{short(linear.found.linkage.heading, 60)}\n{say('which tolerance matters most')}")
     return figure
 
 
@@ -54,7 +59,7 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
     """How far the output may deviate along the cycle: worst case, 3 sigma, and what samples do."""
     passes = _passes(linear)
     with styled():
-        figure = new_figure(6.4 if len(passes) == 1 else 8.4, 4.6, pads=(0.04, 0.06))
+        figure = page_figure(6.4 if len(passes) == 1 else 8.4, 4.6, pads=(0.04, 0.06))
         grid = figure.subplots(1, len(passes), sharey=True, squeeze=False)[0]
         for axes, (name, rows) in zip(grid, passes, strict=True):
             _band(axes, linear, exact, rows)
@@ -65,13 +70,14 @@ def deviation_figure(linear: Linear, exact: MonteCarlo | None) -> Figure:
             if linear.found.input_turns:
                 axes.xaxis.set_major_locator(DegreeLocator(9))
             if name:
-                axes.set_title(name, fontsize=9)
-        grid[0].set_ylabel(f"deviation, {output_words(linear)} [{output_unit(linear)}]")
-        handles, labels = grid[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
-        circuit = f"circuit {linear.found.circuit.index}"
-        title = f"{short(linear.found.linkage.heading, 60)}\nwhat the tolerances do, {circuit}"
-        figure.suptitle(title, fontsize=11)
+                axes.set_title(name, fontsize=letters())
+        grid[0].set_ylabel(
+            say("deviation, {output} [{unit}]", output=output_words(linear), unit=output_unit(linear))
+        )
+        key_below(figure, grid[0].get_legend_handles_labels()[0])
+        what = say("what the tolerances do, circuit {number}", number=linear.found.circuit.index)
+        figure.suptitle(f"{short(linear.found.linkage.heading, 60)}\n{what}")
+        tidy(figure)
     return figure
 
 
@@ -88,7 +94,7 @@ def _passes(linear: Linear) -> list[tuple[str, Integers]]:
     numbers = np.unique(branch)
     if len(numbers) == 1:
         return [("", np.arange(len(branch)))]
-    return [(f"branch {number}", np.flatnonzero(branch == number)) for number in numbers]
+    return [(say("branch {number}", number=number), np.flatnonzero(branch == number)) for number in numbers]
 
 
 def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) -> None:
@@ -113,16 +119,19 @@ def _band(axes: Axes, linear: Linear, exact: MonteCarlo | None, rows: Integers) 
     turns = found.input_turns
     places = np.insert(np.degrees(x) if turns else x, gaps, np.nan)
     worst, sigma = shown(linear.worst), shown(3 * linear.deviation)
-    axes.fill_between(places, -worst, worst, color=BAND, lw=0, label="linear, worst case")
-    axes.plot(places, sigma, color=LINEAR, lw=1.5, label="linear, 3 standard deviations")
+    axes.fill_between(places, -worst, worst, color=BAND, lw=0, label=say("linear, worst case"))
+    axes.plot(places, sigma, color=LINEAR, lw=1.5, label=say("linear, 3 standard deviations"))
     axes.plot(places, -sigma, color=LINEAR, lw=1.5)
     if exact is not None:
-        names = {LEVELS[0]: "Monte Carlo, 99.73 % between", LEVELS[1]: "Monte Carlo, 95 % between"}
+        names = {
+            LEVELS[0]: say("Monte Carlo, 99.73 % between"),
+            LEVELS[1]: say("Monte Carlo, 95 % between"),
+        }
         styles = {LEVELS[0]: (0, (4, 2)), LEVELS[1]: (0, (1.2, 1.2))}
         for level, (low, high) in {LEVELS[0]: (0, 4), LEVELS[1]: (1, 3)}.items():
             axes.plot(
                 places, shown(exact.quantiles[low]), color=EXACT, lw=1.2, ls=styles[level], label=names[level]
             )
             axes.plot(places, shown(exact.quantiles[high]), color=EXACT, lw=1.2, ls=styles[level])
-        axes.plot(places, shown(exact.quantiles[2]), color=EXACT, lw=1.0, label="Monte Carlo, median")
+        axes.plot(places, shown(exact.quantiles[2]), color=EXACT, lw=1.0, label=say("Monte Carlo, median"))
     axes.axhline(0.0, color="#505050", lw=0.6, zorder=1)

@@ -299,5 +299,6 @@ def _measures_table(linear: Linear) -> Table:
         worst, deviation = linear.measure(one.name)
         cells = [f"± {value:.4g}" if math.isfinite(value) else "-" for value in (worst, 3 * deviation)]
         unit = f" [{one.unit.replace('^2', '²')}]" if one.unit else ""
-        rows.append((one.name.replace("_", " ") + unit, f"{one.value:.6g}", *cells))
+        measure, colon, joint = one.name.partition(":")
+        rows.append((measure.replace("_", " ") + colon + joint + unit, f"{one.value:.6g}", *cells))
     return number_table(("measure", "nominal", "worst case", "3 sigma"), rows)

@@ -199,6 +199,9 @@ def _agreement(linear: Linear, exact: Floats, estimate: Floats) -> dict[str, flo
     beside = exact - estimate
     off = beside.mean(axis=0)
     variance = float((linear.deviation**2).mean())
+    if variance == 0.0:
+        # the output does not depend on any of the dimensions
+        return {"ratio": 1.0, "ratio_error": 0.0, "bias": 0.0, "bias_error": 0.0}
     more = (exact**2 - estimate**2).mean(axis=1)
     ratio = math.sqrt(max(1 + (float(more.mean()) - float((off**2).mean())) / variance, 0.0))
     scale = math.sqrt(variance)

@@ -15,6 +15,7 @@ from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits import Circuit, Integers, Words
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.following import Following
+from sevenbar.kinematics.force_measures import force_slopes
 from sevenbar.kinematics.gradients import QUANTITIES, MeasureSlopes, measure_slopes
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Solvable, chosen_circuit
@@ -216,6 +217,7 @@ def sensitivities(
     measures = [
         one for one in measure_slopes(numbers, chosen, motion.speed) if not one.name.startswith("jerk_")
     ]
+    measures += force_slopes(numbers, chosen, motion.speed)
     if following is not None:
         slopes = following.chained(slopes, numbers.nominal)
         measures = [replace(one, slopes=following.chained(one.slopes, numbers.nominal)) for one in measures]

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.design.tolerance.linear import Linear
+from sevenbar.text.words import say
 
 
 def output_words(linear: Linear) -> str:
@@ -16,9 +17,10 @@ def output_words(linear: Linear) -> str:
     one = linear.found.outputs[linear.found.place(linear.output, linear.quantity)]
     if not one.joint:
         return one.name
+    turns = one.unit == "rad"
     if one.quantity == "position":
-        return f"{'angle' if one.unit == 'rad' else 'position'} of {one.owner}"
-    return f"{one.quantity} of {one.owner}"
+        return say("{quantity} of {joint}", quantity=say("angle" if turns else "position"), joint=one.owner)
+    return say("{quantity} of {joint}", quantity=say(one.quantity), joint=one.owner)
 
 
 def output_unit(linear: Linear) -> str:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import viser
 
-from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.panels.controls import Asked, put
+from sevenbar.studio.state.acting import Acting
 from sevenbar.studio.state.session import Session
+from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.curves import Over, panels
+from sevenbar.studio.svg.force_quantities import force_quantities
 from sevenbar.studio.svg.panel import Panel
 from sevenbar.studio.svg.quantities import Quantity, quantities
 
@@ -48,10 +50,11 @@ class CurvesPanel:
                 html.content = ""
             self._drawn = ()
             return
-        if not self._drawn or self._drawn[0] is not view:
-            self._offer(view.motion)
+        acting = self._session.acting
+        if not self._drawn or self._drawn[:2] != (view, acting):
+            self._offer(view, acting)
         picked = tuple(choice.value for choice in self._choices)
-        drawn = (view, picked, self._over.value, bool(self._session.problem))
+        drawn = (view, acting, picked, self._over.value, bool(self._session.problem))
         if drawn != self._drawn:
             self._drawn = drawn
             wanted = [self._offered[name] for name in picked]
@@ -72,9 +75,10 @@ class CurvesPanel:
             for html, panel in zip(self._cursors, self._panels, strict=True):
                 html.content = panel.cursor_html(self._session.row)
 
-    def _offer(self, motion: Motion) -> None:
+    def _offer(self, view: View, acting: Acting) -> None:
         """What can be chosen; a choice that there is no more goes back to the output's curves."""
-        found = quantities(motion)
+        usual = quantities(view.motion)
+        found = (*usual, *force_quantities(view, acting, [quantity.name for quantity in usual]))
         self._offered = {quantity.name: quantity for quantity in found}
         names = tuple(self._offered)
         for choice, first in zip(self._choices, names, strict=False):

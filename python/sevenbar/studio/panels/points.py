@@ -64,7 +64,7 @@ class PointsPanel:
         links = (*(f"{number}" for number in range(1, count)), f"{count} the ground")
         if links != self._link.options:
             self._link.options = links
-        letters = "u, v, w" if draft.linkage.form == "rows" else "x, y, z"
+        letters = "u, v, w" if draft.linkage.in_rows else "x, y, z"
         self._at.label = f"at {letters} [{linkage.length_unit}]"
         names = tuple(str(point["name"]) for point in draft.raw.get("point", ()))
         if (names or (NONE,)) != self._removed.options:

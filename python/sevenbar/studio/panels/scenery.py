@@ -184,8 +184,8 @@ class Scenery:
         self.stage.grey(grey)
         self._units = {
             index: (
-                _arrow_unit(view, view.speeds[index]),
-                _arrow_unit(view, np.linalg.norm(view.traces[index].acceleration, axis=1)),
+                arrow_unit(view, view.speeds[index]),
+                arrow_unit(view, np.linalg.norm(view.traces[index].acceleration, axis=1)),
             )
             for index in own_points(view)
         }
@@ -250,9 +250,12 @@ class Scenery:
         self.stage.marks(np.array(places).reshape(-1, 3), words)
 
 
-def _arrow_unit(view: View, sizes: Floats) -> float:
-    """What an arrow as long as the length unit stands for, by the sizes (n,) that arrows show."""
-    # near dead centres rates grow without bound; those rows do not set the scale
+def arrow_unit(view: View, sizes: Floats, *, percent: float = 95, longest: float = LONGEST_ARROW) -> float:
+    """What an arrow as long as the length unit stands for, by the sizes (n,) that arrows show.
+
+    The longest, a share of the linkage's extent, is that of so many percent of the rows: those near dead
+    centres, where sizes grow without bound, do not set the scale.
+    """
     kept = sizes[np.isfinite(sizes)]
-    usual = float(np.percentile(kept, 95)) if kept.size else 0.0
-    return usual / (LONGEST_ARROW * view.frame.span)
+    usual = float(np.percentile(kept, percent)) if kept.size else 0.0
+    return usual / (longest * view.frame.span)

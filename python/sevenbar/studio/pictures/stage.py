@@ -34,6 +34,8 @@ PALE = 0.4
 GHOST, MOST_GHOSTS = 0.2, 16
 #: Radii of an arrow's shaft and head, and its head's length; a mark's radius [1].
 SHAFT, HEAD, HEAD_LENGTH, MARK = 0.011, 0.03, 0.095, 0.022
+#: How much thicker arrows of joints are: the force of a rod lies within it, and has to be seen round it.
+STOUT = 1.8
 #: From a place to its label.
 ABOVE = np.array([0.0, 0.0, 0.045])
 #: The head's greatest share of a short arrow.
@@ -52,6 +54,9 @@ FLOOR = 0.14
 #: The axes' colour, as lines of one colour take it, and the marks'.
 AXIS_COLOUR, MARK_COLOUR = np.array([72, 72, 72], np.uint8), "#303030"
 
+#: An arrow by its origin and vector (3,) [length], its colour and its label.
+Arrow = tuple[Floats, Floats, str, str]
+
 
 class Stage:
     """A linkage in a scene, `server.scene` or `client.scene`.
@@ -66,9 +71,13 @@ class Stage:
         self.centre, self.scale = np.zeros(3), 1.0
         self._grey, self._labels_on, self._axes_on, self._paths_on = False, False, True, True
         self._solids, self._ghosts = Batches(scene, "/linkage"), Batches(scene, "/ghosts", opacity=GHOST)
-        self._arrows, self._marks = Batches(scene, "/arrows"), Batches(scene, "/marks")
+        self._marks = Batches(scene, "/marks")
         self._names = Labels(scene, "/names")
-        self._arrow_labels, self._mark_labels = Labels(scene, "/arrow_labels"), Labels(scene, "/mark_labels")
+        self._mark_labels = Labels(scene, "/mark_labels")
+        self._arrows = {
+            "points": (1.0, Batches(scene, "/arrows"), Labels(scene, "/arrow_labels")),
+            "joints": (STOUT, Batches(scene, "/force_arrows"), Labels(scene, "/force_labels")),
+        }
         self._lines: dict[str, LineSegmentsHandle] = {}
         self._path_colours: dict[str, Colours] = {}
         self._grid: GridHandle | None = None
@@ -168,9 +177,11 @@ class Stage:
     def clear(self) -> None:
         """Takes everything out of the scene; the floor stays."""
         self._plan = self._moving = self._frame = self._places = None
-        for batches in (self._solids, self._ghosts, self._arrows, self._marks):
+        for of in self._arrows:
+            self.arrows([], of)
+        for batches in (self._solids, self._ghosts, self._marks):
             batches.clear()
-        for labels in (self._names, self._arrow_labels, self._mark_labels):
+        for labels in (self._names, self._mark_labels):
             labels.put([], np.empty((0, 3)))
         for name in list(self._lines):
             self._lines.pop(name).remove()
@@ -205,20 +216,22 @@ class Stage:
             colours[shape] = self._shade(np.concatenate(each))
         self._ghosts.put(self._shown(every), colours)
 
-    def arrows(self, rows: Sequence[tuple[Floats, Floats, str, str]]) -> None:
-        """Arrows, each by origin and vector (3,) [length], colour and label; none clears them."""
+    def arrows(self, rows: Sequence[Arrow], of: str = "points") -> None:
+        """The arrows of points or of joints; none clears those."""
+        stout, arrows, labels = self._arrows[of]
         if not rows:
-            self._arrows.clear()
-            self._arrow_labels.put([], np.empty((0, 3)))
+            arrows.clear()
+            labels.put([], np.empty((0, 3)))
             return
         origins, vectors, names, texts = zip(*rows, strict=True)
         start, way = self.in_scene(np.array(origins, float)), np.array(vectors, float) * self.scale
         length = np.linalg.norm(way, axis=1, keepdims=True)
         neck = start + way * (1 - np.minimum(HEAD_LENGTH / np.where(length > 0, length, 1.0), HEAD_MOST))
         colours = self._shade(np.array([rgb(name) for name in names]))
-        shafts, heads = stretched(start, neck, SHAFT), stretched(neck, start + way, HEAD)
-        self._arrows.put({"cylinder": shafts, "cone": heads}, {"cylinder": colours, "cone": colours})
-        self._arrow_labels.put(list(texts), start + way + ABOVE / 2)
+        shafts = stretched(start, neck, stout * SHAFT)
+        heads = stretched(neck, start + way, stout * HEAD)
+        arrows.put({"cylinder": shafts, "cone": heads}, {"cylinder": colours, "cone": colours})
+        labels.put(list(texts), start + way + ABOVE / 2)
 
     def marks(self, points: Floats, labels: Sequence[str]) -> None:
         """Little marks at points (n, 3) [length], with a text each; none clears them."""

@@ -13,6 +13,7 @@ from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.word import Place
 from sevenbar.reporting.facts import meaning
+from sevenbar.studio.state.acting import Acting
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
@@ -30,23 +31,28 @@ class Session:
 
     `draft` is always a valid description. `problem` says why it has no motion, and is empty where it has one;
     `view` then shows the last one that moved, and is `None` only where there never was one. `views` are those
-    of all circuits of the motion on view; `row` is the place on the view's path.
+    of all circuits of the motion on view; `row` is the place on the view's path. `acting` is what acts on the
+    linkage on view, without what is switched off.
     """
 
-    def __init__(self, text: str, source: str) -> None:
-        """Raises `DescriptionError` for a text that describes no linkage."""
+    def __init__(self, text: str, source: str, *, agree: float | None = None) -> None:
+        """Redundant constraints of all that is opened `agree` up to a closure error, if one is given.
+
+        Raises `DescriptionError` for a text that describes no linkage.
+        """
         self.view: View | None = None
         self.views: tuple[View, ...] = ()
         self.row, self.forwards = 0.0, True
         self.past: list[Draft] = []
         self.future: list[Draft] = []
         self._last_change: tuple[object, float] = ((), -math.inf)
-        self.draft = Draft.of(text, source)
+        self.draft = Draft.of(text, source, agree=agree)
+        self.acting = Acting(self.draft.linkage)
         self._take(self.draft)
 
     def open(self, text: str, source: str) -> None:
         """Shows a TOML text as one more step; raises `DescriptionError`, and then nothing has changed."""
-        draft = Draft.of(text, source)
+        draft = Draft.of(text, source, agree=self.draft.agree)
         self.view, self.forwards = None, True
         self._step(draft)
 
@@ -55,6 +61,7 @@ class Session:
         if draft.text is not self.draft.text:
             # another file; the one before would be no picture of it
             self.view, self.forwards = None, True
+            self.acting = Acting(draft.linkage)
         self.draft = draft
         self.motion: Motion | None = None
         try:
@@ -70,6 +77,7 @@ class Session:
             self.problem = "its dimensions differ so much in size that its motion is lost in rounding"
         else:
             self.views = views_of(motion)
+            self.acting = Acting(draft.linkage, self.acting.off)
             self.view, self.row = (
                 (self.views[0], 0.0) if self.view is None else nearest(self.views, self.view, self.row)
             )
@@ -144,6 +152,10 @@ class Session:
         self.future = []
         self._last_change = ((), -math.inf)
         self._take(draft)
+
+    def switch(self, key: str, *, on: bool) -> None:
+        """Switches gravity, a load or a spring on or off; the description stays as it is."""
+        self.acting = self.acting.switched(key, on=on)
 
     def undo(self) -> None:
         """Takes back the last step, if there is one."""

@@ -46,6 +46,11 @@ def verdict(session: Session) -> str:
     return _block(html)
 
 
+def facts_block(facts: Iterable[tuple[str, str]], *, title: str) -> str:
+    """Facts as a piece of the page, below a title."""
+    return _block(_head(title) + _facts(facts))
+
+
 def facts_html(view: View) -> str:
     """What the report says of the motion and the circuit of a view."""
     return _block(_facts(_of_motion(view.motion)) + _of_circuit(view))
@@ -60,12 +65,14 @@ def _of_motion(motion: Motion) -> list[tuple[str, str]]:
 
 
 def _of_circuit(view: View) -> str:
-    title = f"circuit {view.circuit.index}"
     facts = circuit_facts(view.motion, view.circuit)
     if not any(name == "motion type" for name, _ in facts):
         facts.insert(0, ("motion type", view.circuit.motion_type))
-    head = f'<div style="font-weight:600;margin:8px 0 2px">{title}</div>'
-    return head + _facts(facts)
+    return _head(f"circuit {view.circuit.index}") + _facts(facts)
+
+
+def _head(title: str) -> str:
+    return f'<div style="font-weight:600;margin:8px 0 2px">{escape(title)}</div>'
 
 
 def _facts(facts: Iterable[tuple[str, str]]) -> str:

@@ -350,7 +350,7 @@ class _Measure:
         return np.asarray(np.where(self._turns, turned, step / self._size))
 
     def apart(self, joints: Floats, q: Floats) -> Floats:
-        """How far joint values (.., columns) are from others (columns,) [rad, or parts of the size]."""
+        """How far joint values (.., columns) are from others (columns,) [rad, or relative to the size]."""
         return np.asarray(np.linalg.norm(self._step(joints, q), axis=-1))
 
     def adjoins(self, view: View, row: int, at: float, gap: float) -> bool:

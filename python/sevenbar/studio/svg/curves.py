@@ -51,7 +51,7 @@ Span = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ShownCurve:
     """The `values` of a circuit over what is `across`, along its walk, in the units shown, (n,)."""
 
     view: View
@@ -111,12 +111,12 @@ def panels(
     made = []
     for quantity in picked:
         curves = [
-            Curve(each, places, _bounded(quantity.values(each)))
+            ShownCurve(each, places, _bounded(quantity.values(each)))
             for each, places in zip(views, across, strict=True)
         ]
         own_span = curves[circuit].span(quantity.kind)
         if own_span is None or reach is None:
-            made.append(_empty(frame, quantity, f"no value along circuit {circuit}"))
+            made.append(_empty(frame, quantity, quantity.absence(views[circuit])))
         else:
             made.append(_panel(frame, quantity, curves, circuit, reach, own_span, over))
     return tuple(made)
@@ -125,7 +125,7 @@ def panels(
 def _panel(
     frame: Frame,
     quantity: Quantity,
-    curves: Sequence[Curve],
+    curves: Sequence[ShownCurve],
     circuit: int,
     reach: Span,
     own_span: Span,
@@ -213,16 +213,16 @@ def _shown_range(quantity: Quantity, own: Span, everything: Span, least: float) 
     if quantity.order and span > least:
         # at least a third of the height is left to the chosen circuit
         low, high = max(low, own[0] - span), min(high, own[1] + span)
-    if quantity.point is not None:
+    if quantity.is_size:
         low = 0.0
     if high - low <= least:
         half = 0.1 * max(abs(low + high) / 2, least / FLAT) or 1.0
         return (low + high) / 2 - half, (low + high) / 2 + half
     room = 0.07 * (high - low)
-    return low - (0.2 * room if quantity.point is not None else room), high + room
+    return low - (0.2 * room if quantity.is_size else room), high + room
 
 
-def _keys(quantity: Quantity, own: Curve) -> list[tuple[str, str]]:
+def _keys(quantity: Quantity, own: ShownCurve) -> list[tuple[str, str]]:
     """Short words, with their dashes, that tell the passes apart and that rates are cut."""
     keys = [("axis cut", "")] if quantity.order and own.view.circuit.turns_back else []
     if len(own.passes) > 1 and own.view.motion.law is None:
@@ -263,7 +263,7 @@ def _pale(colour: str) -> str:
     return "#" + "".join(f"{round(255 - 0.4 * (255 - int(colour[i : i + 2], 16))):02x}" for i in (1, 3, 5))
 
 
-def _marks(quantity: Quantity, own: Curve, frame: Frame, below: Scale, beside: Scale) -> str:
+def _marks(quantity: Quantity, own: ShownCurve, frame: Frame, below: Scale, beside: Scale) -> str:
     """Small circles at the extremes of the output's angle or rates, each with its value as a tooltip."""
     motion, circuit = own.view.motion, own.view.circuit
     extremes: Extremes | None = getattr(circuit, quantity.kind)

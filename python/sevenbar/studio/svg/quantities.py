@@ -69,6 +69,15 @@ class Quantity:
         accelerations: Floats = circuit.ddq[path.rows, self.column]
         return accelerations
 
+    @property
+    def is_size(self) -> bool:
+        """Whether it is a size, drawn from zero up."""
+        return self.point is not None
+
+    def absence(self, view: View) -> str:
+        """What stands in the place of a curve that has no value."""
+        return f"no value along circuit {view.circuit.index}"
+
     def shift(self, view: View) -> float:
         """The whole turns [deg] that bring the angle's first value into (-180, 180]; 0 for all else."""
         if self.column is None or self.order or view.linkage.column_kinds[self.column] == "slide":

@@ -14,10 +14,10 @@ use num_complex::Complex64;
 /// Most corrections: where two branch points look like one they halve the distance only.
 const MOST_CORRECTIONS: usize = 40;
 
-/// A correction [rad, or parts of the size] after which the next is rounding.
+/// A correction [rad, or relative to the size] after which the next is rounding.
 const SETTLED: f64 = 1e-11;
 
-/// The longest correction, and how far all may lead together [rad, or parts of the size].
+/// The longest correction, and how far all may lead together [rad, or relative to the size].
 const LONGEST: f64 = 0.3;
 const FARTHEST: f64 = 3.0;
 

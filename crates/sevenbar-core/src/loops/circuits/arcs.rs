@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
 const MOST_ROUNDS: usize = 32;
 
-/// No change point is looked for again so near to a pose [rad, or parts of the size] that had none, nor at all after so many of them:
+/// No change point is looked for again so near to a pose [rad, or relative to the size] that had none, nor at all after so many of them:
 /// such a loop is degenerate throughout.
 const TRIED: f64 = 1e-3;
 const MOST_FAILED: usize = 16;
@@ -116,10 +116,8 @@ impl Arcs {
             let starts: Vec<Start> = rays.iter().map(|&(p, r)| self.points[p].rays[r].start).collect();
             let followed = follow::follow(chain, &starts, &self.stops());
             let count = self.points.len();
-            for curve in followed.iter().filter(|c| c.end == End::Singular) {
-                for end in curve.ends() {
-                    self.learn(chain, end, wished, true);
-                }
+            for end in followed.iter().flat_map(Curve::singular_ends) {
+                self.learn(chain, end, wished, true);
             }
             // those that come by the points that they have led to are followed once more, to end there
             let fresh = self.stops().split_off(count);
@@ -136,24 +134,20 @@ impl Arcs {
         if std::mem::replace(&mut self.done[point][ray], true) {
             return;
         }
-        match curve.end {
-            End::Closed => passing.push(curve),
-            End::Open => {}
-            End::Singular | End::Far => {
-                let [first, last] = curve.ends();
-                let end = self.at(chain, last).filter(|&p| p == point).map(|p| (p, ray));
-                let begin = self.at(chain, first).and_then(|p| {
-                    (0..self.done[p].len())
-                        .find(|&r| {
-                            !self.done[p][r] && lies_on(chain, &curve, &self.points[p].rays[r].start.0)
-                        })
-                        .map(|r| (p, r))
-                });
-                if let Some((p, r)) = begin {
-                    self.done[p][r] = true;
-                }
-                self.arcs.push(Arc { curve, ends: [begin, end] });
+        if curve.is_closed() {
+            passing.push(curve);
+        } else if !curve.ends_by(End::Open) {
+            let [first, last] = curve.ends();
+            let end = self.at(chain, last).filter(|&p| p == point).map(|p| (p, ray));
+            let begin = self.at(chain, first).and_then(|p| {
+                (0..self.done[p].len())
+                    .find(|&r| !self.done[p][r] && lies_on(chain, &curve, &self.points[p].rays[r].start.0))
+                    .map(|r| (p, r))
+            });
+            if let Some((p, r)) = begin {
+                self.done[p][r] = true;
             }
+            self.arcs.push(Arc { curve, ends: [begin, end] });
         }
     }
 
@@ -235,7 +229,7 @@ impl Arcs {
     fn join(&self, chain: &Chain, row: &[(usize, usize)], closed: bool, stops: &[Stop]) -> Curve {
         let mut nodes: Vec<Node> = Vec::new();
         let mut middle = 0;
-        let mut end = End::Closed;
+        let mut why = [End::Closed; 2];
         for (n, &(k, entered)) in row.iter().enumerate() {
             let arc = &self.arcs[k];
             let turned = (entered == 1).then(|| follow::turned_round(chain, &arc.curve, stops));
@@ -246,11 +240,14 @@ impl Arcs {
             nodes.extend(curve.nodes.iter().map(|node| shifted(node, &turns)));
             if n == 0 {
                 middle = nodes.len() / 2;
+                if !closed {
+                    why[0] = curve.why[0];
+                }
             }
             if n + 1 < row.len() || closed {
                 nodes.push(self.crossing(chain, arc.ends[1 - entered], nodes[nodes.len() - 1]));
             } else {
-                end = curve.end;
+                why[1] = curve.why[1];
             }
         }
         if closed {
@@ -258,7 +255,7 @@ impl Arcs {
             nodes.push(shifted(&nodes[0], &turns));
         }
         measure(chain, &mut nodes);
-        let curve = Curve { nodes, end };
+        let curve = Curve { nodes, why };
         if closed { begun_at(&curve, middle) } else { curve }
     }
 
@@ -285,7 +282,7 @@ fn is_at(chain: &Chain, node: &Node, points: &[Stop]) -> bool {
 fn falls(curve: &Curve, column: usize) -> bool {
     let (first, last) = (&curve.nodes[0], &curve.nodes[curve.nodes.len() - 1]);
     let gained = last.at.values[column] - first.at.values[column];
-    if curve.end == End::Closed && gained.abs() > 1.0 {
+    if curve.is_closed() && gained.abs() > 1.0 {
         gained < 0.0
     } else {
         first.rates[0][column] < 0.0

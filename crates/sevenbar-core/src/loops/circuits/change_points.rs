@@ -17,7 +17,7 @@ use crate::loops::mobility::singular_place::{LAST_STEP, MOST_STEPS, Place, STEAD
 use crate::loops::modes::polish::CLOSED;
 use crate::random::Random;
 
-/// Curves are cut this far [rad, or parts of the size] from the pose: farther in rounding turns their tangents by more than the way bends.
+/// Curves are cut this far [rad, or relative to the size] from the pose: farther in rounding turns their tangents by more than the way bends.
 const CUT: f64 = 2e-5;
 
 /// Curves that pass at a distance are cut so many times as far out, where both are straight.
@@ -27,11 +27,13 @@ const CUT_TIMES: f64 = 30.0;
 /// hides them from each other.
 const HIDDEN: f64 = 1e7;
 
-/// Radii of the sphere, the next where curves do not run straight into the pose from the one before [rad, or parts of the size].
+/// Radii of the sphere, the next where curves do not run straight into the pose from the one before [rad, or relative to the size].
 const RADII: [f64; 4] = [1e-2, 2e-3, 4e-4, 8e-5];
 
-/// A sphere's radius is at least so many times the distance at which curves are cut.
+/// A sphere's radius is at least so many times the distance at which curves are cut, and at most this, where what redundant constraints
+/// miss each other by keeps curves far apart [rad, or relative to the size].
 const LEAST_RADIUS: f64 = 3.0;
+const WIDEST: f64 = 0.05;
 
 /// Directions tried on the circle of two free directions, and for each further one so many times as many.
 const DIRECTIONS: usize = 48;
@@ -57,10 +59,12 @@ pub(super) const AT_POINT: f64 = 3.0;
 const WANDERING_AFTER: usize = 15;
 const WANDERING: f64 = 1e-2;
 
-/// A closure error [rad, or parts of the size] up to which it is rounding, and the part of it that is left at half the distance from a
-/// pose where the loop is only shaky: a quarter, by the second order, or less.
+/// A closure error [rad, or relative to the size] up to which it is rounding; a part of the distance from a pose, and the part of the error
+/// up to which the loop is only shaky where so much is left there: 1/64 by the second order. What redundant constraints miss each other by
+/// may fall, too, but as the distance: to 1/8.
 const ROUNDED: f64 = 1e-13;
-const LEAST_FALL: f64 = 0.5;
+const NEARER: f64 = 0.125;
+const LEAST_FALL: f64 = 0.042;
 
 /// A singular value below this part of the radius and of the greatest is a freedom all along.
 const NO_FREEDOM: f64 = 1e-4;
@@ -72,7 +76,7 @@ pub(crate) struct Ray {
     pub start: Start,
     /// Seen from the pose, the places on the sphere and on the one of half its radius, relative to the radius.
     seen: [Columns; 2],
-    /// How near to the pose it can be followed [rad, or parts of the size].
+    /// How near to the pose it can be followed [rad, or relative to the size].
     hidden: f64,
 }
 
@@ -96,10 +100,23 @@ pub(super) fn change_point(
     wished: &[usize],
     stuck: bool,
 ) -> Option<ChangePoint> {
-    let place = singular_place(chain, rough).filter(|p| p.counts(wished, stuck))?;
+    let place = singular_place(chain, rough)?;
+    let counts = place.counts(wished, stuck);
+    let let_pass = stuck && place.is_let_pass();
+    if !(counts || let_pass) {
+        return None;
+    }
     let cut = CUT.max(CUT_TIMES * place.passing());
     let mut found = ChangePoint { at: place.at, rays: Vec::new(), partner: Vec::new(), cut, finite: 0 };
-    for &radius in RADII.iter().filter(|&&r| r > LEAST_RADIUS * cut) {
+    let least = LEAST_RADIUS * cut;
+    let mut radii: Vec<f64> = RADII.into_iter().filter(|&r| r > least).collect();
+    if radii.is_empty() {
+        if least > WIDEST {
+            return None;
+        }
+        radii.push(least);
+    }
+    for radius in radii {
         let (ways, finite) = ways_out(chain, &place, radius);
         found.finite = finite;
         let rays: Vec<Ray> = ways
@@ -114,6 +131,10 @@ pub(super) fn change_point(
             break;
         }
     }
+    // what is only let pass is no isolated pose
+    if !counts && found.rays.is_empty() {
+        return None;
+    }
     found.partner = partners(&found.rays);
     let hidden = found.rays.iter().map(|r| r.hidden).fold(0.0, f64::max);
     if hidden < RADII[0] / LEAST_RADIUS {
@@ -122,13 +143,13 @@ pub(super) fn change_point(
     Some(found)
 }
 
-/// Whether a place on a sphere closes only because it is near: at half the distance far less is left open. On a motion what is left
-/// is rounding, or what redundant constraints miss each other by, and the same everywhere.
+/// Whether a place on a sphere closes only because it is near: nearer far less is left open. On a motion what is left
+/// is rounding, or what redundant constraints miss each other by: the same everywhere, or by the first order less.
 fn opens_with_distance(chain: &Chain, place: &Place, at: &Configuration, radius: f64) -> bool {
     let open = |at: &Configuration| chain.residual(&chain.place(at));
     let inward = chain.difference(&place.at, at).map(|x| x / radius);
     open(at) > ROUNDED
-        && on_sphere(chain, place, &inward, 0.5 * radius)
+        && on_sphere(chain, place, &inward, NEARER * radius)
             .is_some_and(|nearer| open(&nearer) < LEAST_FALL * open(at))
 }
 

@@ -25,7 +25,7 @@ use crate::loops::equation::screws::{Twist, bordered_inverse, correction, twist_
 use crate::loops::rates::velocities::{self, Rates};
 use crate::number::Number;
 
-/// Longest step [rad, or parts of the size].
+/// Longest step [rad, or relative to the size].
 const LONGEST: f64 = 0.25;
 
 /// Change of the Newton map that steps aim at, that they must not exceed, and that bounds the tube in which a curve is alone.
@@ -66,7 +66,7 @@ pub(crate) struct Node<N = f64> {
     pub across: N,
     /// No two points of the chain are farther apart.
     pub far: N,
-    /// Closure error of the constraints that do not count [rad, or parts of the size].
+    /// Closure error of the constraints that do not count [rad, or relative to the size].
     pub open: N,
 }
 
@@ -108,13 +108,30 @@ pub(crate) enum End {
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
     pub nodes: Vec<Node>,
-    pub end: End,
+    /// Why it goes no farther at its first node, and at its last.
+    pub why: [End; 2],
 }
 
 impl Curve {
     /// Its first place and its last.
     pub fn ends(&self) -> [&Configuration; 2] {
         [&self.nodes[0].at, &self.nodes[self.nodes.len() - 1].at]
+    }
+
+    /// Whether it comes back to its start.
+    pub fn is_closed(&self) -> bool {
+        self.why == [End::Closed; 2]
+    }
+
+    /// Whether one of its ends, or both, has a reason.
+    pub fn ends_by(&self, reason: End) -> bool {
+        self.why.contains(&reason)
+    }
+
+    /// The ends at which it runs into a place where it is not smooth.
+    pub fn singular_ends(&self) -> impl Iterator<Item = &Configuration> {
+        let ends = self.ends().into_iter().zip(self.why);
+        ends.filter_map(|(at, why)| (why == End::Singular).then_some(at))
     }
 
     /// The place at which it is told from others best: the farthest from any where it is not smooth.
@@ -152,7 +169,7 @@ impl Curve {
 
     /// Whether a column comes back whole turns on, be it with dead centres on the way.
     pub fn goes_round(&self, chain: &Chain, column: usize) -> bool {
-        self.end == End::Closed && chain.is_turn(column) && self.gained()[column].abs() > 1.0
+        self.is_closed() && chain.is_turn(column) && self.gained()[column].abs() > 1.0
     }
 }
 
@@ -196,7 +213,7 @@ impl Node {
     }
 }
 
-/// A correction below this [rad, or parts of the size] leaves less than `stand` takes off.
+/// A correction below this [rad, or relative to the size] leaves less than `stand` takes off.
 const NEARLY_CLOSED: f64 = 1e-6;
 
 /// The move that the rates of a node lead to.
@@ -446,7 +463,7 @@ pub(crate) fn reversed(chain: &Chain, curve: &Curve) -> Option<Curve> {
         for order in [0, 2] {
             node.rates[order] = node.rates[order].map(|x| -x);
         }
-        if curve.end == End::Closed {
+        if curve.is_closed() {
             for c in 0..COLUMNS {
                 node.at.values[c] -= last.at.values[c] - first.at.values[c];
             }
@@ -457,7 +474,7 @@ pub(crate) fn reversed(chain: &Chain, curve: &Curve) -> Option<Curve> {
     nodes
         .windows(2)
         .all(certain)
-        .then_some(Curve { nodes, end: curve.end })
+        .then_some(Curve { nodes, why: [curve.why[1], curve.why[0]] })
 }
 
 /// Whether a closed configuration lies in the tube of a node's step: it is then a place of the curve.

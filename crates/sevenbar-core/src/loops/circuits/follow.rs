@@ -35,17 +35,25 @@ pub(crate) struct Stop {
 pub(crate) fn follow(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
     let mut curves = walk(chain, starts, stops);
     let open: Vec<usize> = (0..curves.len())
-        .filter(|&k| !matches!(curves[k].end, End::Closed | End::Open))
+        .filter(|&k| !curves[k].is_closed() && !curves[k].ends_by(End::Open))
         .collect();
     // once more from the end it ran into; a long curve is held once only
     let ends: Vec<Start> = open.iter().map(|&k| back_from_end(&curves[k])).collect();
     for &k in &open {
         curves[k].nodes = Vec::new();
     }
-    for (k, curve) in open.into_iter().zip(walk(chain, &ends, stops)) {
-        curves[k] = curve;
+    for (k, back) in open.into_iter().zip(walk(chain, &ends, stops)) {
+        curves[k] = begun_for(curves[k].why[1], back);
     }
     curves
+}
+
+/// A walk from an end, with the reason of that end.
+fn begun_for(why: End, mut walked: Curve) -> Curve {
+    if !walked.is_closed() {
+        walked.why[0] = why;
+    }
+    walked
 }
 
 /// Whether a slide or screw is farther out than curves are followed.
@@ -58,8 +66,10 @@ pub(super) fn is_far(chain: &Chain, at: &Configuration) -> bool {
 
 /// The curve walked the other way: its own nodes where each step is certain that way too.
 pub(crate) fn turned_round(chain: &Chain, curve: &Curve, stops: &[Stop]) -> Curve {
-    curve::reversed(chain, curve)
-        .unwrap_or_else(|| walk(chain, &[back_from_end(curve)], stops).swap_remove(0))
+    curve::reversed(chain, curve).unwrap_or_else(|| {
+        let back = walk(chain, &[back_from_end(curve)], stops).swap_remove(0);
+        begun_for(curve.why[1], back)
+    })
 }
 
 fn walk(chain: &Chain, starts: &[Start], stops: &[Stop]) -> Vec<Curve> {
@@ -77,7 +87,7 @@ fn walk_until(
     stops: &[Stop],
     any: bool,
 ) -> (Vec<Curve>, Vec<Option<usize>>) {
-    let mut curves = vec![Curve { nodes: Vec::new(), end: End::Far }; starts.len()];
+    let mut curves = vec![Curve { nodes: Vec::new(), why: [End::Far; 2] }; starts.len()];
     let mut reached = vec![None; starts.len()];
     let walk = Walk { chain, starts, stops, any, curves: &mut curves, reached: &mut reached };
     match starts.len() {
@@ -174,7 +184,7 @@ impl LaneKernel for Walk<'_> {
                     too_short(step[lane])
                 };
                 if let Some(end) = end {
-                    self.curves[walker[lane]].end = end;
+                    self.curves[walker[lane]].why = [end; 2];
                     walker[lane] = if waiting < count { waiting } else { usize::MAX };
                     waiting += 1;
                     fresh[lane] = walker[lane] != usize::MAX;
@@ -222,7 +232,7 @@ impl Kernel for Walk<'_> {
                 too_short(step)
             };
             if let Some(end) = end {
-                self.curves[0].end = end;
+                self.curves[0].why = [end; 2];
                 return;
             }
             let likely = curve::likely(self.chain, &here.node, tried.growth);

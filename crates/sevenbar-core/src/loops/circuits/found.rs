@@ -27,7 +27,7 @@ pub struct Search {
     pub values: usize,
     /// Modes there that run into a place where the motion is not smooth, or do not move.
     pub unfollowed: usize,
-    /// By how much redundant constraints keep other poses there open, least first [rad, or parts of the size].
+    /// By how much redundant constraints keep other poses there open, least first [rad, or relative to the size].
     pub misfits: Vec<f64>,
     /// The account of the branch points of the first column, or why there is none.
     pub count: Result<Count, Uncounted>,

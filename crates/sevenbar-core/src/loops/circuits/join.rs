@@ -67,7 +67,7 @@ fn one_of(chain: &Chain, pieces: &[Curve], round: &[usize]) -> Curve {
         end.at.values[c] += turns[c];
     }
     nodes.push(end);
-    Curve { nodes, end: End::Closed }
+    Curve { nodes, why: [End::Closed; 2] }
 }
 
 /// The pieces from one until it comes again; none if it does not.

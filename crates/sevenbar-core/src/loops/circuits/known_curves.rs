@@ -240,11 +240,9 @@ impl Curves {
                 continue;
             }
             // one that could not be begun may lie on a curve that can be followed
-            let stuck = curve.end == End::Singular && curve.nodes.len() > 2;
+            let stuck = curve.ends_by(End::Singular) && curve.nodes.len() > 2;
             let mut places = narrow_places(&curve);
-            if curve.end == End::Singular {
-                places.extend(curve.ends());
-            }
+            places.extend(curve.singular_ends());
             let mut branches = false;
             for place in places {
                 branches |= self.branches(chain, &place, stuck);
@@ -252,26 +250,25 @@ impl Curves {
             if branches && (stuck || contains(chain, &curve, &self.arcs)) {
                 continue;
             }
-            let lost = curve.end == End::Singular && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
-            if curve.nodes.len() < 3 || curve.end == End::Open || lost {
+            let lost = curve.ends_by(End::Singular) && curve.nodes.iter().all(|n| n.inverse_norm > LOST);
+            if curve.nodes.len() < 3 || curve.ends_by(End::Open) || lost {
                 self.search.unfollowed += 1;
             } else if !self.is_known(chain, &curve) {
                 fresh.push(curve);
             }
         }
+        // one that was followed over a change point that another has led to is known by its arcs, too
+        fresh.retain(|c| !contains(chain, c, &self.arcs));
         self.curves.extend(fresh);
     }
 
     /// Whether a curve with ends is known, though its start was not seen on one that is: beside a change point no step of a curve
     /// tells that a mode is on it, and a curve of too many nodes is known in part.
     fn is_known(&self, chain: &Chain, curve: &Curve) -> bool {
-        if curve.end == End::Far {
-            let overlap =
-                |one: &Curve, other: &Curve| other.ends().into_iter().any(|at| lies_on(chain, one, at));
-            let mut far = self.curves.iter().filter(|c| c.end == End::Far);
-            return far.any(|c| overlap(c, curve) || overlap(curve, c));
-        }
+        let overlap = |one: &Curve, other: &Curve| other.ends().into_iter().any(|at| lies_on(chain, one, at));
+        let mut far = self.curves.iter().filter(|c| c.ends_by(End::Far));
         lies_on_any(chain, &self.curves, curve.plainest())
+            || (curve.ends_by(End::Far) && far.any(|c| overlap(c, curve) || overlap(curve, c)))
     }
 
     /// Forgets the curves between change points that are parts of others: those led on where these ended, within rounding.
@@ -282,7 +279,7 @@ impl Curves {
             let mut others = self.curves[..k].iter().chain(&self.curves[k + 1..]);
             // of two that are parts of each other, as they end at change points a rounding apart, the longer stays
             let part_of = |c: &Curve| c.length() >= curve.length() && lies_on(chain, c, curve.plainest());
-            if curve.end == End::Singular && others.any(part_of) {
+            if !curve.is_closed() && others.any(part_of) {
                 self.curves.remove(k);
             } else {
                 k += 1;

@@ -1,6 +1,6 @@
 //! Where a column changes direction along a followed curve, and the curve with these places among its nodes.
 
-use super::curve::{self, Curve, End, Node, measure};
+use super::curve::{self, Curve, Node, measure};
 use crate::loops::equation::chain::Chain;
 use crate::loops::equation::dense::{COLUMNS, dot, length};
 
@@ -10,10 +10,10 @@ const AT_REST: f64 = 1e-13;
 /// A column whose part of the unit tangent is below this stands still.
 const STILL: f64 = 1e-9;
 
-/// Places between which a column moves by less than this [rad, or parts of the size] are rounding where it rests.
+/// Places between which a column moves by less than this [rad, or relative to the size] are rounding where it rests.
 const UNMOVED: f64 = 1e-12;
 
-/// A dead centre nearer than this to a node that is one [rad, or parts of the size] is that node.
+/// A dead centre nearer than this to a node that is one [rad, or relative to the size] is that node.
 const SAME_PLACE: f64 = 1e-6;
 
 /// Near a change point, where the norm of the screws' inverse is greater, a rate below its square times this is rounding: the place,
@@ -21,7 +21,7 @@ const SAME_PLACE: f64 = 1e-6;
 const NEAR: f64 = 1e3;
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// How far [rad, or parts of the size] from a change point a column's direction is checked to see whether it turns back there.
+/// How far [rad, or relative to the size] from a change point a column's direction is checked to see whether it turns back there.
 const BESIDE: f64 = 1e-3;
 
 /// Places looked at within a step for a change of a column's direction.
@@ -42,7 +42,7 @@ pub(crate) fn turnings(curve: &Curve, chain: &Chain, column: usize) -> Vec<Turni
     }
     let mut found = turnings_by(curve, chain, column, 0.0);
     // a column that comes back turned once more: at a change point beside which it nearly rests
-    if curve.end == End::Closed && !found.len().is_multiple_of(2) {
+    if curve.is_closed() && !found.len().is_multiple_of(2) {
         let more = turnings_by(curve, chain, column, STILL);
         if more.len().is_multiple_of(2) {
             found = more;
@@ -54,9 +54,10 @@ pub(crate) fn turnings(curve: &Curve, chain: &Chain, column: usize) -> Vec<Turni
 
 /// Forgets places in a row, two by two, between which a column does not move: rates that are rounding have no sign.
 fn forget_unmoved(curve: &Curve, found: &mut Vec<Turning>, column: usize) {
-    let gained = match curve.end {
-        End::Closed => curve.gained()[column],
-        _ => f64::INFINITY,
+    let gained = if curve.is_closed() {
+        curve.gained()[column]
+    } else {
+        f64::INFINITY
     };
     while found.len() > 1 {
         let count = found.len();
@@ -169,7 +170,7 @@ fn turnings_by(curve: &Curve, chain: &Chain, column: usize, still: f64) -> Vec<T
 
 /// Of a closed curve that begins among nodes whose rates rounding hides: the rate before these, and the node where it is least.
 fn blurred_start(curve: &Curve, column: usize, rounded: &dyn Fn(&Node) -> bool) -> Option<(f64, usize)> {
-    if curve.end != End::Closed || !rounded(&curve.nodes[0]) {
+    if !curve.is_closed() || !rounded(&curve.nodes[0]) {
         return None;
     }
     let rate = |k: usize| curve.nodes[k].rates[0][column];
@@ -211,7 +212,7 @@ fn turns_back_over(curve: &Curve, node: usize, column: usize, still: f64) -> boo
         loop {
             let ends = if ahead { k == last } else { k == 0 };
             k = match (ends, ahead) {
-                (true, _) if curve.end != End::Closed => return 0.0,
+                (true, _) if !curve.is_closed() => return 0.0,
                 (true, true) => 1,
                 (true, false) => last - 1,
                 (false, true) => k + 1,
@@ -282,7 +283,7 @@ pub(crate) fn insert(chain: &Chain, curve: &mut Curve, turnings: &[Turning], col
     let places: Vec<Option<usize>> = turnings.iter().map(known).collect();
     for &k in places.iter().flatten() {
         curve.nodes[k].rates[0][column] = 0.0;
-        if curve.end == End::Closed && (k == 0 || k == last) {
+        if curve.is_closed() && (k == 0 || k == last) {
             curve.nodes[last - k].rates[0][column] = 0.0;
         }
     }
@@ -331,5 +332,5 @@ pub(crate) fn begun_at(curve: &Curve, start: usize) -> Curve {
         }
         n
     }));
-    Curve { nodes, end: curve.end }
+    Curve { nodes, why: curve.why }
 }

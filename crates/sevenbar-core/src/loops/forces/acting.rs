@@ -1,6 +1,6 @@
 //! What acts on the links of a loop: bodies and gravity, loads, springs and dampers.
 //!
-//! Lengths are parts of the size, so forces are in kg size/s^2 and torques in kg size^2/s^2.
+//! Lengths are relative to the size, so forces are in kg size/s^2 and torques in kg size^2/s^2.
 
 use crate::rigid::Vec3;
 

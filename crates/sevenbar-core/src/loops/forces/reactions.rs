@@ -50,7 +50,7 @@ pub struct Reactions {
     pub free: Vec<f64>,
     /// How many of these a row has.
     pub redundant: usize,
-    /// Derivatives of the torque (rows, numbers) and below of the wrenches (rows, numbers, seats, 6); empty if not asked for.
+    /// Derivatives of the torque (rows, numbers) and below of the wrenches (rows, numbers, seats, 6); empty where not wanted.
     pub torque_by_number: Vec<f64>,
     /// Of the wrenches, their frames moving along.
     pub wrenches_by_number: Vec<f64>,

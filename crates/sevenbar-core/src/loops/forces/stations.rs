@@ -36,7 +36,7 @@ pub(super) struct Acts<N> {
     pub supplied: N,
 }
 
-/// Closer than this [parts of the size] the ends of a spring have no line between them.
+/// Closer than this [relative to the size] the ends of a spring have no line between them.
 const NO_LINE: f64 = 1e-12;
 
 fn vector<N: Number>(v: Vec3) -> [N; 3] {
@@ -96,7 +96,7 @@ pub(super) fn power<N: Number>(twist: &Twist<N>, wrench: &Twist<N>) -> N {
 pub(super) trait Moved<N> {
     /// A place in its station's frame.
     fn place(&self, place: &Place) -> [N; 3];
-    /// A direction that is fixed beside a place.
+    /// A direction that is fixed at a place.
     fn direction(&self, place: &Place, v: Vec3) -> [N; 3];
     /// A body's centre and inertia in its station's frame.
     fn body(&self, body: &Body) -> ([N; 3], Rotation<N>);

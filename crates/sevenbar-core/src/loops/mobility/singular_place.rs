@@ -14,26 +14,29 @@ const NEARLY_ZERO: f64 = 1e-3;
 
 const AS_SMALL: f64 = 100.0;
 
-/// Farther than this [rad, or parts of the size] from where it was looked for, a place is another.
+/// Farther than this [rad, or relative to the size] from where it was looked for, a place is another.
 const NEAR: f64 = 0.05;
 
-/// Two limits of a joint nearer than this [rad, or parts of the size] are a change point.
+/// Two limits of a joint nearer than this [rad, or relative to the size] are a change point.
 const SAME_LIMIT: f64 = 1e-6;
 
-/// Curves that pass each other at more than this [rad, or parts of the size] are followed apart, whatever their limits.
+/// Curves that pass each other at more than this [rad, or relative to the size] are followed apart, whatever their limits.
 const APART: f64 = 1e-5;
 
-/// Curves that pass each other nearer than this [rad, or parts of the size] are not distinct: a relative change of some 1e-12 in a
+/// Curves that pass each other nearer than this [rad, or relative to the size] are not distinct: a relative change of some 1e-12 in a
 /// dimension makes as much, and rounding hides the way between them.
 const TOUCHING: f64 = 1e-6;
 
 /// A second-order form below this part of the closure's is none: a redundant constraint's.
 const NO_FORM: f64 = 1e-7;
 
+/// A closure error below this [rad, or relative to the size] is rounding, however weak the form that it is held against.
+const NO_VALUE: f64 = 1e-15;
+
 /// Steps of Newton's method; where it converges by halves only, as to a cusp, a place is known to the square root of rounding.
 pub(crate) const MOST_STEPS: usize = 40;
 
-/// A step [rad, or parts of the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
+/// A step [rad, or relative to the size] below which steps that no longer shrink are rounding, and one above which nothing was found.
 pub(crate) const LAST_STEP: f64 = 1e-15;
 
 pub(crate) const STEADY: f64 = 1e-9;
@@ -57,13 +60,14 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// By how much curves pass each other there [rad, or parts of the size], as seen in all columns.
+    /// By how much curves pass each other there [rad, or relative to the size], as seen in all columns.
     pub fn passing(&self) -> f64 {
         let passes = |(value, form): &(f64, Vec<f64>)| {
             let norm = form.iter().map(|x| x * x).sum::<f64>().sqrt();
             (2.0 * value.abs() / norm).sqrt()
         };
-        self.forms.iter().map(passes).fold(0.0, f64::max)
+        let known = self.forms.iter().filter(|(value, _)| value.abs() > NO_VALUE);
+        known.map(passes).fold(0.0, f64::max)
     }
 
     /// How far apart two limits of a column are there, also where they are complex.
@@ -78,6 +82,14 @@ impl Place {
         let (a, b) = (x[column], y[column]);
         let bent = (a * a * form[3] - 2.0 * a * b * form[1] + b * b * form[0]) / determinant;
         2.0 * (2.0 * (value * bent).abs()).sqrt()
+    }
+
+    /// Whether motions lead over it within what redundant constraints may miss each other by: two forms in two free directions have
+    /// no curve in common but through the pose itself, so nothing passes near it.
+    pub fn is_let_pass(&self) -> bool {
+        let values = self.forms.iter().map(|(value, _)| value * value);
+        let missed = (self.open * self.open + values.sum::<f64>()).sqrt();
+        self.free.len() == 2 && self.forms.len() > 1 && missed < self.agree
     }
 
     /// Whether it counts as a change point for these columns: it is one, up to rounding, or their limits nearly meet; or nothing

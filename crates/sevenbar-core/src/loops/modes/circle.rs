@@ -22,7 +22,7 @@ const MOST_STEPS: usize = 60;
 /// The same where steps are kept short.
 const MOST_SHORT_STEPS: usize = 400;
 
-/// What a solution at the end of a way may be off [rad, or parts of the size] as its last two corrections have it.
+/// What a solution at the end of a way may be off [rad, or relative to the size] as its last two corrections have it.
 const ARRIVED: f64 = 1e-9;
 
 /// A linkage as its closure has it, all constants real: cosines and sines of twists and of given turns, and shifts.

@@ -14,7 +14,7 @@ use num_complex::Complex64;
 /// How short the steps are kept.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pace {
-    /// First correction [rad, or parts of the size] that steps aim at, and that which they must not exceed.
+    /// First correction [rad, or relative to the size] that steps aim at, and that which they must not exceed.
     pub aimed: f64,
     pub largest: f64,
     /// Second correction that a step must not exceed; the next would be its square.
@@ -51,7 +51,7 @@ pub(crate) trait Homotopy {
     fn watch(&self) -> Option<&Watch>;
     /// Most steps on one way.
     fn most_steps(&self, pace: Pace) -> usize;
-    /// Whether the end of a way is known well enough after corrections of these sizes [rad, or parts of the size].
+    /// Whether the end of a way is known well enough after corrections of these sizes [rad, or relative to the size].
     fn settled(&self, first: f64, second: f64) -> bool;
     /// The parameter a step along a way.
     fn ahead<V: Vector>(&self, at: Lanes<V>, by: Lanes<V>) -> Lanes<V>;

@@ -45,14 +45,14 @@ impl Completeness {
 pub(crate) struct Polished {
     /// Those that close, in order.
     pub modes: Vec<Configuration>,
-    /// By how much redundant constraints keep the others open [rad, or parts of the size].
+    /// By how much redundant constraints keep the others open [rad, or relative to the size].
     pub misfits: Vec<f64>,
 }
 
 /// A solution whose turns or slides have larger imaginary parts than this is not tried as a real one.
 pub(crate) const REAL: f64 = 1e-5;
 
-/// A real solution may move by this much [rad, or parts of the size] when it is polished on the chain itself.
+/// A real solution may move by this much [rad, or relative to the size] when it is polished on the chain itself.
 const POLISHED_MOVE: f64 = 1e-3;
 
 /// By how much farther than a solution is from real it may move.
@@ -224,7 +224,7 @@ impl<'a> ModeFinder<'a> {
         Some(Algebraic { finder: self, generic: self.generic(closure), parameters, zeros })
     }
 
-    /// All modes at the one value that is asked for [rad, or parts of the size].
+    /// All modes at the one value that is asked for [rad, or relative to the size].
     pub fn once(&self, value: f64) -> Polished {
         let Some(closure) = &self.closure else {
             return self.polished(&searched(self.chain, self.input, value));
@@ -241,12 +241,12 @@ impl<'a> ModeFinder<'a> {
         }
     }
 
-    /// All modes with the input at this value [rad, or parts of the size].
+    /// All modes with the input at this value [rad, or relative to the size].
     pub fn at(&self, value: f64) -> Polished {
         self.polished(&self.rough_at(value, REAL))
     }
 
-    /// The same, some of them rough to [`POLISHED_MOVE`]: solutions whose imaginary parts are below `real` [rad, or parts of the size].
+    /// The same, some of them rough to [`POLISHED_MOVE`]: solutions whose imaginary parts are below `real` [rad, or relative to the size].
     pub fn rough_at(&self, value: f64, real: f64) -> Vec<Configuration> {
         let Some(closure) = &self.closure else {
             return searched(self.chain, self.input, value);
@@ -386,7 +386,7 @@ impl<'a> ModeFinder<'a> {
         modes
     }
 
-    /// The joints of a solution that is real within so much [rad, or parts of the size]; `None` for another, or where an added joint moved.
+    /// The joints of a solution that is real within so much [rad, or relative to the size]; `None` for another, or where an added joint moved.
     pub fn configuration(
         &self,
         solution: &Solution,

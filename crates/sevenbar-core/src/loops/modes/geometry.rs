@@ -12,7 +12,7 @@ use crate::loops::equation::complex_frame::{Frame, NO_TWIST};
 use crate::rigid::Pose;
 use num_complex::Complex64;
 
-/// Numbers of the form below this [rad, or parts of the size] are rounding. What lies farther off a class does not belong to it: it has
+/// Numbers of the form below this [rad, or relative to the size] are rounding. What lies farther off a class does not belong to it: it has
 /// solutions near infinity that the class has not.
 const ROUNDING: f64 = NO_TWIST;
 

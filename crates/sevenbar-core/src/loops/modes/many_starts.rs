@@ -11,7 +11,7 @@ const SEARCH_STARTS: usize = 1500;
 /// Turns to each side within which a screw joint is searched.
 pub(super) const SCREW_TURNS: f64 = 1.0;
 
-/// Modes nearer than this in every joint [rad, or parts of the size] are one.
+/// Modes nearer than this in every joint [rad, or relative to the size] are one.
 pub(crate) const SAME_MODE: f64 = 1e-7;
 
 pub(crate) fn same(chain: &Chain, a: &Configuration, b: &Configuration) -> bool {

@@ -10,17 +10,17 @@ use crate::loops::equation::dense::{COLUMNS, Columns, Factored, ROWS, least_squa
 use crate::loops::equation::rotations::squared_up;
 use crate::loops::mobility::rank::{rank, unyielding};
 
-/// The closure error [rad, or parts of the size] that a mode may keep in constraints that count.
+/// The closure error [rad, or relative to the size] that a mode may keep in constraints that count.
 pub(crate) const CLOSED: f64 = 1e-11;
 
 /// The misfit [rad, or relative to the size] up to which a pose counts as kept open by redundant constraints alone: links of 100 mm cut
 /// to a hundredth of a millimetre.
 const NEARLY: f64 = 1e-4;
 
-/// A move [rad, or parts of the size] after which the next would be rounding.
+/// A move [rad, or relative to the size] after which the next would be rounding.
 const SETTLED: f64 = 1e-12;
 
-/// Most steps; a pose that is still so far from closing [rad, or parts of the size] after so many of them will not close.
+/// Most steps; a pose that is still so far from closing [rad, or relative to the size] after so many of them will not close.
 const MOST_STEPS: usize = 60;
 const HOPELESS_AFTER: usize = 25;
 const HOPELESS: f64 = 1e-3;
@@ -34,7 +34,7 @@ const LOOK: usize = 8;
 /// A pose that closes as well as it can with the input held.
 pub(crate) struct Settled {
     pub at: Configuration,
-    /// The closure error that is left in redundant constraints [rad, or parts of the size].
+    /// The closure error that is left in redundant constraints [rad, or relative to the size].
     pub misfit: f64,
     /// Whether its redundant constraints agree, so that it is a mode.
     pub agrees: bool,

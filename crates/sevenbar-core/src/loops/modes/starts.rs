@@ -182,7 +182,7 @@ fn by_monodromy(slides: &Slides, random: &mut Random) -> Start {
     }
 }
 
-/// Each solution once; those nearer than `apart` [rad, or parts of the size] are one.
+/// Each solution once; those nearer than `apart` [rad, or relative to the size] are one.
 pub(crate) fn distinct(
     slides: &Slides,
     solutions: impl Iterator<Item = Solution>,

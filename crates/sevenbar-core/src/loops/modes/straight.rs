@@ -19,7 +19,7 @@ const MOST_STEPS: usize = 800;
 /// Second correction at the end of a path, where the next would be rounding.
 const LAST_SECOND: f64 = 1e-8;
 
-/// The closure is known to this times one to six [rad, or parts of the size]. Added to it, so that paths seldom arrive at a solution that
+/// The closure is known to this times one to six [rad, or relative to the size]. Added to it, so that paths seldom arrive at a solution that
 /// does not stand alone: where numbers are exact, as in special geometry, nothing else would move one along its continuum.
 const ROUNDING: f64 = 2e-16;
 

@@ -83,7 +83,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
     let Wanted { driver, follower, grid, speed, law, keep } = *wanted;
     let curve = &passes.curve;
     let gained = curve.gained();
-    let closed = curve.end == End::Closed;
+    let closed = curve.is_closed();
     let crosses = curve.crosses();
     let turns = curve.goes_round(chain, driver.inner);
     // never stopped by a dead centre
@@ -98,7 +98,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
     let seen = Seen { linkage, passes, driver, follower, shift };
     let turnings = turnings::turnings(curve, chain, follower.inner);
     let (input, output) = (seen.input_range(), seen.output_range(&turnings));
-    let singular = curve.end == End::Singular || crosses;
+    let singular = curve.ends_by(End::Singular) || crosses;
     let role = |column: Column, range: Option<[f64; 2]>| linkage.role(column, range, !closed && !singular);
     let measures = CircuitMeasures {
         motion_type: if singular {
@@ -161,7 +161,7 @@ pub(super) fn circuit(linkage: &Loop, passes: &Passes, wanted: &Wanted) -> Circu
 fn grid_rows(passes: &Passes, grid: (f64, f64)) -> Vec<Row> {
     let (chain, curve) = (passes.chain, &passes.curve);
     let mut rows = passes.rows(grid.0, grid.1);
-    if curve.end != End::Closed {
+    if !curve.is_closed() {
         // an input of the grid may touch an end at which the motion is not smooth, and nothing closes there
         let lost = |r: &Row| r.status == RowStatus::NoSolution;
         rows.truncate(rows.len() - rows.iter().rev().take_while(|r| lost(r)).count());
@@ -200,7 +200,7 @@ impl Seen<'_> {
         };
         let limits = passes.limits.len();
         // round a closed circuit the last is the first
-        let again = usize::from(passes.curve.end == End::Closed && limits > 1);
+        let again = usize::from(passes.curve.is_closed() && limits > 1);
         let inputs = passes.limits[..limits - again]
             .iter()
             .enumerate()
@@ -218,7 +218,7 @@ impl Seen<'_> {
 
     fn output_range(&self, turnings: &[Turning]) -> Option<[f64; 2]> {
         // a closed circuit has its extremes where it turns back, an open one perhaps at its ends
-        let open = self.passes.curve.end != End::Closed || turnings.is_empty();
+        let open = !self.passes.curve.is_closed() || turnings.is_empty();
         let ends = self.ends().into_iter().filter(|_| open);
         self.range(self.follower, &mut turnings.iter().map(|t| &t.node).chain(ends))
     }

@@ -12,7 +12,7 @@ use crate::loops::description::joint_values::{configuration, joint_values};
 use crate::loops::modes::finder::Completeness;
 use crate::loops::modes::polish::{Settled, polish};
 
-/// How far a joint of a given pose [rad, or parts of the size] may be moved to close the loop.
+/// How far a joint of a given pose [rad, or relative to the size] may be moved to close the loop.
 const PUT_RIGHT: f64 = 0.05;
 
 /// A pose at which curves meet, or one that stands alone.

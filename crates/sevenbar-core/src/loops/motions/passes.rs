@@ -2,7 +2,7 @@
 
 use super::row::{self, Row, Solved, UNIT};
 use super::row_lanes::{Near, rows_near};
-use crate::loops::circuits::curve::{self, Curve, End, Node};
+use crate::loops::circuits::curve::{self, Curve, Node};
 use crate::loops::circuits::follow;
 use crate::loops::circuits::turnings::{self, begun_at, insert, turns_at};
 use crate::loops::equation::chain::{Chain, Configuration};
@@ -21,7 +21,7 @@ const SAME_LIMIT: f64 = 1e-12;
 /// Rows that are solved before they are put down: whole blocks of lanes, and few enough that what they begin from takes no room.
 const AT_ONCE: usize = 512 * LANES;
 
-/// The closure error [rad, or parts of the size] that a row may keep.
+/// The closure error [rad, or relative to the size] that a row may keep.
 const ROW_CLOSED: f64 = 1e-10;
 
 /// A place near a node of the curve: so far along its tangent.
@@ -78,7 +78,7 @@ impl<'a> Passes<'a> {
         // each turning becomes a node; a closed curve then begins at the lowest
         insert(chain, &mut curve, &turnings, input);
         let is_turning = |n: &Node| turns_at(n, input);
-        if curve.end == End::Closed && !turnings.is_empty() {
+        if curve.is_closed() && !turnings.is_empty() {
             let value = |k: usize| curve.nodes[k].at.values[input];
             let goes_round = curve.goes_round(chain, input);
             // which is the lowest of an input that gains turns depends on where the round begins: of its low ends that in the turn's
@@ -278,7 +278,7 @@ impl<'a> Passes<'a> {
     /// Rows on a grid of inputs `origin + k step`, with exact rows at dead centres; the input has unit speed.
     pub fn rows(&self, origin: f64, step: f64) -> Vec<Row> {
         let mut rows = Vec::new();
-        let closed = self.curve.end == End::Closed;
+        let closed = self.curve.is_closed();
         let slack = SAME_ROW * step;
         for (n, pass) in self.passes.iter().enumerate() {
             let at_limit = |node: usize| turns_at(&self.curve.nodes[node], self.input);

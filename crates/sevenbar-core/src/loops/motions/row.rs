@@ -47,10 +47,10 @@ pub(super) struct Solved<N> {
     pub condition: N,
 }
 
-/// A correction [rad, or parts of the size] after which the next is rounding.
+/// A correction [rad, or relative to the size] after which the next is rounding.
 const SETTLED: f64 = 1e-7;
 
-/// Corrections of a row, and how far they may lead together [rad, or parts of the size].
+/// Corrections of a row, and how far they may lead together [rad, or relative to the size].
 const MOST_CORRECTIONS: usize = 8;
 const FARTHEST_CORRECTION: f64 = 0.3;
 

@@ -8,7 +8,7 @@ use crate::loops::rates::velocities::ORDERS;
 use crate::outcome::RowStatus;
 use crate::vectors::{LANES, LaneKernel, Vector, dispatch};
 
-/// A last correction [rad, or parts of the size] after which the next is rounding.
+/// A last correction [rad, or relative to the size] after which the next is rounding.
 const SETTLED: f64 = 1e-8;
 
 /// Terms of Neumann's series in the second correction, whose inverse is that of the first.

@@ -20,12 +20,12 @@ use crate::loops::equation::rotations::{Rotation, product, rotation};
 use crate::loops::equation::screws::Twist;
 use crate::rigid::{Pose, Vec3};
 
-/// Newton's steps on the closure: the most, the longest [rad, or parts of the size], and one after which only rounding is left.
+/// Newton's steps on the closure: the most, the longest [rad, or relative to the size], and one after which only rounding is left.
 const MOST_STEPS: usize = 20;
 const LONGEST: f64 = 0.3;
 const LAST: f64 = 1e-8;
 
-/// A closure error [rad, or parts of the size] that rounding leaves where the loop is ill conditioned.
+/// A closure error [rad, or relative to the size] that rounding leaves where the loop is ill conditioned.
 const NEARLY_CLOSED: f64 = 1e-9;
 
 /// A twist of what lies behind a fixed transform, by one of a number.

@@ -22,7 +22,7 @@ pub struct Slopes {
     pub points: Vec<f64>,
     /// Their derivatives (rows, points, 2, numbers + 1, 3).
     pub points_by_number: Vec<f64>,
-    /// The part of each number that no joint can follow (rows, numbers) [rad, or parts of the size].
+    /// The part of each number that no joint can follow (rows, numbers) [rad, or relative to the size].
     pub aside: Vec<f64>,
     /// What moves with each idle joint that is held, for one of it (rows, held, columns).
     pub idle: Vec<f64>,

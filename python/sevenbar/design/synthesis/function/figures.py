@@ -12,10 +12,11 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.design.synthesis.candidates import Candidate
 from sevenbar.design.synthesis.closure import outputs, row_of, transmissions
 from sevenbar.design.synthesis.function.wish import Wish
-from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.figure import page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled
 from sevenbar.drawing.ticks import DegreeLocator
+from sevenbar.text.words import say
 
 GENERATED: dict[str, Any] = {"color": COMPUTED, "lw": 1.8, "zorder": 2}
 WANTED: dict[str, Any] = {"color": OTHER, "lw": 1.3, "ls": (0, (4, 2.5)), "zorder": 3}
@@ -40,24 +41,24 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
     near = np.interp(at, inputs, readings) - errors
     turn = 360.0 * np.round((near[0] - math.degrees(wish.output[0])) / 360.0)
     with styled():
-        figure = new_figure(6.4, 6.0, pads=(0.05, 0.06))
+        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
         top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
-        top.plot(inputs, readings - turn, label="generated", **GENERATED)
+        top.plot(inputs, readings - turn, label=say("generated"), **GENERATED)
         below.axhline(0.0, color="#505050", lw=0.8, zorder=1)
         size = 5.0 if len(wish.input) <= MANY or wish.function is not None else 2.2
         if wish.function is not None:
-            top.plot(inputs, near - turn, label="wanted", **WANTED)
+            top.plot(inputs, near - turn, label=say("wanted"), **WANTED)
             below.plot(inputs, errors, **GENERATED)
         else:
-            top.plot(at, near - turn, ms=size, label="wanted", **POINTS)
+            top.plot(at, near - turn, ms=size, label=say("wanted"), **POINTS)
             below.plot(at, errors, ms=size, **POINTS)
         if wish.function is not None and wish.exact:
             points = np.degrees(wish.point_input)
-            top.plot(points, np.degrees(wish.point_output), ms=size, label="precision point", **POINTS)
+            top.plot(points, np.degrees(wish.point_output), ms=size, label=say("precision point"), **POINTS)
             below.plot(points, np.interp(points, inputs, errors), ms=size, **POINTS)
-        top.set_ylabel("output reading [deg]")
-        below.set_ylabel("generated less\nwanted [deg]")
-        below.set_xlabel("input reading [deg]")
+        top.set_ylabel(say("output reading [deg]"))
+        below.set_ylabel(say("generated less\nwanted [deg]"))
+        below.set_xlabel(say("input reading [deg]"))
         for axes in (top, below):
             axes.grid(lw=0.6)
             axes.xaxis.set_major_locator(DegreeLocator(9))
@@ -65,7 +66,7 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
             below.set_ylim(-1.0, 1.0)
         below.yaxis.set_major_locator(MaxNLocator(5))
         figure.align_ylabels()
-        figure.suptitle(_title(candidate, wish), fontsize=11)
+        figure.suptitle(_title(candidate, wish))
         handles, labels = top.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(handles), frameon=False)
     return figure
@@ -74,8 +75,10 @@ def function_figure(candidate: Candidate, wish: Wish) -> Figure:
 def _title(candidate: Candidate, wish: Wish) -> str:
     greatest, rms = (math.degrees(e) for e in (candidate.error_greatest, candidate.error_rms))
     if wish.exact and wish.function is None:
-        return f"{short(candidate.name, 60)}\n{len(wish.input)} precision points, met to {greatest:.1e}°"
-    return f"{short(candidate.name, 60)}\nerror at most {greatest:.3g}°, RMS {rms:.3g}°"
+        met = say("{count} precision points, met to {error:.1e}°", count=len(wish.input), error=greatest)
+        return f"{short(candidate.name, 60)}\n{met}"
+    reached = say("error at most {greatest:.3g}°, RMS {rms:.3g}°", greatest=greatest, rms=rms)
+    return f"{short(candidate.name, 60)}\n{reached}"
 
 
 def swing_figure(candidate: Candidate) -> Figure:
@@ -92,7 +95,7 @@ def swing_figure(candidate: Candidate) -> Figure:
     angles -= 360.0 * np.round(angles.mean() / 360.0)
     across = np.degrees(inputs)
     with styled():
-        figure = new_figure(6.4, 6.0, pads=(0.05, 0.06))
+        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
         top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
         top.plot(across, angles, **GENERATED)
         for name in ("input_at_low_deg", "input_at_high_deg"):
@@ -102,16 +105,15 @@ def swing_figure(candidate: Candidate) -> Figure:
         below.plot(across, np.degrees(np.arcsin(np.sqrt(transmissions(row, inputs)[0]))), **GENERATED)
         below.set_ylim(0.0, 90.0)
         below.yaxis.set_major_locator(DegreeLocator(4))
-        top.set_ylabel("output: rocker [deg]")
-        below.set_ylabel("transmission\nangle [deg]")
-        below.set_xlabel("input: crank [deg]")
+        top.set_ylabel(say("output: {joint}", joint="rocker [deg]"))
+        below.set_ylabel(say("transmission\nangle [deg]"))
+        below.set_xlabel(say("input: {joint}", joint="crank [deg]"))
         below.set_xlim(0.0, 360.0)
         below.xaxis.set_major_locator(DegreeLocator(9))
         for axes in (top, below):
             axes.grid(lw=0.6)
         figure.align_ylabels()
         lowest = math.degrees(candidate.transmission_lowest or 0.0)
-        figure.suptitle(
-            f"{short(candidate.name, 60)}\ntransmission angle at least {lowest:.3g}°", fontsize=11
-        )
+        least = say("transmission angle at least {lowest:.3g}°", lowest=lowest)
+        figure.suptitle(f"{short(candidate.name, 60)}\n{least}")
     return figure

@@ -9,6 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.description.load_moving import moved_loads
 from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked
 from sevenbar.design.synthesis.path.match import STILL, Placing, placed
 from sevenbar.design.synthesis.path.refine import Refined
@@ -99,7 +100,7 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
     """
     draft = task.drawn(solution.varied)
     try:
-        linkage = Draft.of(draft.toml(), "design").linkage
+        linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
         found = made(linkage, task.point.name, solution.inputs, task.wanted, place=task.place)
     except (DescriptionError, RequestError) as error:
         return Refusal("assembly", str(error))
@@ -156,4 +157,6 @@ def moved(draft: Draft, placing: Placing) -> Draft:
     draft = draft.with_value(("joint",), [put(joint) for joint in described["joint"]])
     if "point" in described:
         draft = draft.with_value(("point",), [put(point) for point in described["point"]])
+    for head, tables in moved_loads(described, placing.put, placing.rotation).items():
+        draft = draft.with_value((head,), tables)
     return draft

@@ -14,11 +14,13 @@ from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate
 from sevenbar.design.synthesis.path.check import made
 from sevenbar.design.synthesis.path.task import PathTask
-from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.asked import asked_view
+from sevenbar.drawing.figure import page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.page import place_picture
-from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
 from sevenbar.drawing.view import view_of
+from sevenbar.text.words import say
 
 USED: dict[str, Any] = {"color": COMPUTED, "lw": 1.8, "zorder": 2, "label": "path, used part"}
 WHOLE: dict[str, Any] = {"color": "#a8a8a8", "lw": 1.1, "zorder": 1, "label": "rest of its circuit"}
@@ -90,16 +92,18 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
     unit = task.draft.linkage.length_unit
     errors = candidate.claim.errors
     with styled():
-        figure = new_figure(10.4, 7.6)
+        figure = page_figure(10.4, 7.6)
         seen = np.concatenate([task.wanted, path.used])
         near = _near(path.whole, seen)
         every = np.concatenate([seen, near[np.isfinite(near).all(axis=1)]])
         width, height = figure.get_size_inches()
         room = (0.015 * width, 0.35 * height, 0.47 * width, 0.53 * height)
-        space = place_picture(figure, every, room, unit, view_of("space", task.draft.linkage, every))
+        space = place_picture(
+            figure, every, room, unit, view_of(asked_view() or "space", task.draft.linkage, every)
+        )
         for line, look in ((near, WHOLE), (path.used, USED), (task.wanted, WANTED)):
-            space.line(line, **look)
-        figure.text(0.25, 0.885, "(a) in space", fontsize=10, ha="center", va="bottom")
+            space.line(line, **_named(look))
+        figure.text(0.25, 0.885, "(a) " + say("in space"), fontsize=letters() + 1, ha="center", va="bottom")
         sides = (
             ("b", 0, 1, (0.565, 0.605, 0.18, 0.27)),
             ("c", 0, 2, (0.565, 0.19, 0.18, 0.27)),
@@ -108,29 +112,41 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
         for letter, across, up, place in sides:
             axes = figure.add_axes(place)
             _side(axes, task, path, near, (across, up))
-            axes.set_title(f"({letter}) {'xyz'[across]} and {'xyz'[up]}", fontsize=10)
+            axes.set_title(f"({letter}) " + say(" and ").join(("xyz"[across], "xyz"[up])))
             axes.set_xlabel(f"{'xyz'[across]} [{unit}]", labelpad=1)
             axes.set_ylabel(f"{'xyz'[up]} [{unit}]", labelpad=1)
         below = figure.add_axes((0.085, 0.085, 0.39, 0.19))
         below.bar(np.arange(1, len(errors) + 1), errors, color=BAR, width=0.62)
-        below.set_xlabel("wanted point")
-        below.set_ylabel(f"distance [{unit}]")
+        below.set_xlabel(say("wanted point"))
+        below.set_ylabel(say("distance [{unit}]", unit=unit))
         below.set_xlim(0.3, len(errors) + 0.7)
         below.xaxis.set_major_locator(MaxNLocator(10, integer=True))
         below.yaxis.set_major_locator(MaxNLocator(4))
         below.grid(axis="y", lw=0.6)
         below.set_axisbelow(True)
         below.set_title(
-            f"(e) error: greatest {candidate.error_greatest:.3g} {unit}, "
-            f"root mean square {candidate.error_rms:.3g} {unit}",
-            fontsize=10,
-        )
+            "(e) "
+            + say(
+                "error: greatest {greatest:.3g} {unit}, root mean square {rms:.3g} {unit}",
+                greatest=candidate.error_greatest, rms=candidate.error_rms, unit=unit,
+            )
+        )  # fmt: skip
         handles, labels = space.axes.get_legend_handles_labels()
         figure.legend(handles[::-1], labels[::-1], loc="center", bbox_to_anchor=(0.90, 0.325), frameon=False)
         figure.suptitle(
-            f"{short(candidate.name, 70)}: {candidate.motion_type}, circuit {candidate.circuit}", fontsize=11
+            say(
+                "{linkage}: {motion_type}, circuit {number}",
+                linkage=short(candidate.name, 70),
+                motion_type=say(candidate.motion_type),
+                number=candidate.circuit,
+            )
         )
     return figure
+
+
+def _named(look: dict[str, Any]) -> dict[str, Any]:
+    """A look with its label in the language that is spoken."""
+    return {**look, "label": say(look["label"])}
 
 
 def _near(whole: Floats, seen: Floats) -> Floats:
@@ -144,14 +160,19 @@ def _near(whole: Floats, seen: Floats) -> Floats:
 def _side(axes: Axes, task: PathTask, path: Drawn, near: Floats, plane: tuple[int, int]) -> None:
     """Wanted points and path, seen along an axis."""
     for line, look in ((near, WHOLE), (path.used, USED), (task.wanted, WANTED)):
-        axes.plot(line[:, plane[0]], line[:, plane[1]], **look)
+        axes.plot(line[:, plane[0]], line[:, plane[1]], **_named(look))
     count = len(task.wanted)
     # only where the path is not seen from its edge
     flat = np.ptp(task.wanted[:, list(plane)], axis=0).min() < EDGE * task.extent
     for i in () if flat else np.unique(np.linspace(0, count - 1, min(NUMBERED, count)).astype(int)):
         x, y = task.wanted[i, list(plane)]
         axes.annotate(
-            str(i + 1), (x, y), xytext=(4, 4), textcoords="offset points", fontsize=7.5, color="#303030"
+            str(i + 1),
+            (x, y),
+            xytext=(4, 4),
+            textcoords="offset points",
+            fontsize=letters() - 1.5,
+            color="#303030",
         )
     low, high = axes.get_xlim(), axes.get_ylim()
     # to one scale, and no line of a flat path pressed to the frame

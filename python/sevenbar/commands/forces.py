@@ -1,0 +1,126 @@
+"""The command `sevenbar forces`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import sevenbar as sb
+from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.given import agreed, check_law, law_of, look_of
+from sevenbar.commands.options import (
+    Agree,
+    Figures,
+    FigureSize,
+    FigureStyle,
+    Force,
+    InputJoint,
+    Json,
+    Law,
+    Samples,
+    Source,
+    figure_formats,
+    words,
+)
+from sevenbar.errors import RequestError, no_joint, shown
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.motion import chosen_circuit
+from sevenbar.text.units import split_quantity
+
+
+def forces(
+    linkage: Source,
+    circuit: Annotated[int, typer.Option(help="The circuit whose forces are reported, from 0.")] = 0,
+    branch: Annotated[
+        int | None,
+        typer.Option(help="The pass of a circuit that rocks; of a law's 0 by default."),
+    ] = None,
+    samples: Samples = 360,
+    input_joint: InputJoint = None,
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            help="Speed of the input, as in '10 rad/s' or '60 rpm'; the file's by default; 0 for statics: at "
+            "rest on every row."
+        ),
+    ] = None,
+    law: Law = None,
+    unevenness: Annotated[
+        float | None,
+        typer.Option(help="(highest - lowest) / mean speed that a flywheel shall keep, as in 0.01."),
+    ] = None,
+    joint: Annotated[
+        list[str] | None,
+        typer.Option(help="A joint whose reactions are drawn; may be repeated; all of them."),
+    ] = None,
+    agree: Agree = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for forces.csv, with every row, forces.json and the figures.")
+    ] = None,
+    figures: Figures = None,
+    size: FigureSize = None,
+    style: FigureStyle = None,
+    force: Force = False,
+    json: Json = False,
+) -> None:
+    """Torque of the input and what every joint bears, from bodies, loads and springs of the file."""
+    from sevenbar.reporting.force_words import NOTHING_ACTS
+    from sevenbar.reporting.forces import CircuitForces, forces_report
+
+    look = look_of(None, size, style)
+    formats = figure_formats(figures, out)
+    check_law(law, speed)
+    unit = _unit_at_rest(speed)
+    at_rest = unit is not None
+    loaded = sb.load(linkage)
+    if loaded.loading.is_empty:
+        raise RequestError(f"{linkage}: {NOTHING_ACTS}")
+    names = words(joint or [])
+    for name in names:
+        if name not in [one.name for one in loaded.joints]:
+            raise RequestError(f"--joint: {no_joint(name, [one.name for one in loaded.joints])}")
+    if at_rest and unevenness is not None:
+        raise RequestError("--unevenness: at rest nothing fluctuates; give another speed, or leave it out")
+    if law is not None and unevenness is not None:
+        raise RequestError(
+            "--unevenness: a flywheel is found for a constant speed; give --speed in place of --law"
+        )
+    report = forces_report(formats, look, names)
+    check_out(report, out, force=force)
+    motion = loaded.motion(
+        samples,
+        input=input_joint,
+        # any speed does at rest, but its unit must be one
+        speed=f"1 {unit}" if unit else None if at_rest else speed,
+        law=law_of(law, loaded, input_joint),
+        agree=agreed(agree),
+    )
+    chosen = chosen_circuit(motion, circuit)
+    found = chosen.forces(at_rest=at_rest)
+    passed = _pass(chosen, branch, one=law is not None)
+    if passed is not None:
+        found = found.on(found.branch == passed)
+    deliver(
+        CircuitForces.of(motion, chosen, found, unevenness=unevenness), report, out, json=json, force=force
+    )
+
+
+def _unit_at_rest(speed: str | None) -> str | None:
+    """The unit of a speed of 0, which a motion does not have and statics do; `None` for any other."""
+    parts = None if speed is None else split_quantity(speed)
+    return parts[1] if parts is not None and float(parts[0]) == 0 else None
+
+
+def _pass(circuit: Circuit, branch: int | None, *, one: bool) -> int | None:
+    """The chosen pass of a circuit; `None` for all rows."""
+    count = int(circuit.branch.max(initial=0)) + 1
+    if branch is None:
+        return 0 if one and count > 1 else None
+    if not 0 <= branch < count:
+        allowed = f"0 to {count - 1}" if count > 1 else "0"
+        raise RequestError(
+            f"--branch: {shown(branch)} is not a pass of circuit {circuit.index}; give {allowed}"
+        )
+    return branch if count > 1 else None

@@ -1,0 +1,331 @@
+"""Figures of forces along a circuit: torque and power, reactions, bearing loads, shaking, energies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from sevenbar.arrays import Floats
+from sevenbar.drawing.figure import given_axes, headline, key_below, new_figure, tidy
+from sevenbar.drawing.force_panels import (
+    AXES,
+    ROUNDING,
+    WHOLE,
+    chosen_reactions,
+    curve,
+    digits,
+    first_dot,
+    greatest_of,
+    grid_of,
+    hodograph,
+    input_axis,
+    mark_peak,
+    outer_labels,
+    reach_of,
+    stack,
+    title_of_forces,
+)
+from sevenbar.drawing.names import shown_name
+from sevenbar.drawing.style import INK, LINE_STYLES, OTHER, QUIET, page_size, stroke, styled
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.forces.result import COMPONENTS, Forces, Reaction
+from sevenbar.forces.sizing import Sizing
+from sevenbar.text.words import say
+
+
+def torque(
+    forces: Forces,
+    sizing: Sizing | None = None,
+    *,
+    ax: Any = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """Torque and power of the input over it, with their peaks and the root mean square; at rest the torque.
+
+    `sizing` is that of the forces where it is at hand. `ax`: axes to draw in, two, or one at rest. The rest
+    is as for `configuration`.
+
+        >>> import sevenbar as sb
+        >>> circuit = sb.load("rssr").motion().circuits[0]
+        >>> figure = torque(circuit.forces(bodies={3: sb.Body(2.0, solid="rod")}))
+        >>> [axes.get_ylabel() for axes in figure.axes]
+        ['input torque [N m]', 'power [W]']
+    """
+    count = 1 if forces.at_rest else 2
+    found = sizing or sizing_of(forces)
+    with styled(style):
+        figure, panels = stack(count, ax, figsize, style, 2.3)
+        word = say("input force") if forces.slides else say("input torque")
+        curve(panels[0], forces, forces.torque, WHOLE, shade=True)
+        panels[0].set_ylabel(f"{word} [{forces.unit}]")
+        if found is not None:
+            # on the side of the peak
+            rms = math.copysign(found.rms_torque, found.peak_torque.value)
+            panels[0].axhline(rms, color=QUIET, lw=0.9 * stroke(), ls=(0, (4, 2)))
+        if count > 1:
+            curve(panels[1], forces, forces.power, OTHER, shade=True)
+            panels[1].set_ylabel(say("power [W]"))
+        input_axis(panels, forces)
+        if ax is None:
+            headline(
+                figure,
+                title,
+                title_of_forces(forces, say("{torque} and power", torque=word) if count > 1 else word),
+            )
+            if legend and found is not None:
+                line = Line2D([], [], color=QUIET, lw=0.9 * stroke(), ls=(0, (4, 2)))
+                value = f"{digits(found.rms_torque)} {forces.unit}"
+                line.set_label(say("rms {value}", value=value))
+                key_below(figure, [line])
+            tidy(figure)
+        if found is not None:
+            mark_peak(panels[0], forces, found.peak_torque.input, found.peak_torque.value, forces.unit, WHOLE)
+            if count > 1:
+                mark_peak(panels[1], forces, found.peak_power.input, found.peak_power.value, "W", OTHER)
+                if found.braking_power is not None:
+                    low = found.braking_power
+                    mark_peak(panels[1], forces, low.input, low.value, "W", OTHER)
+    return figure
+
+
+def reactions(
+    forces: Forces,
+    *,
+    joints: Sequence[str] | None = None,
+    what: str = "force",
+    ax: Any = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """What joints bear over the input: a panel a joint, the components in its own frame and their size.
+
+    `what`: "force" [N] or "moment" [N m]. Components that equilibrium does not determine are not drawn, nor
+    the size without all three. `joints` names those that are drawn, the first nine by default. `ax`: axes to
+    draw in, one for each joint. The rest is as for `configuration`.
+
+        >>> import sevenbar as sb
+        >>> found = sb.load("rssr").motion().circuits[0].forces(bodies={3: sb.Body(2.0, solid="rod")})
+        >>> [axes.get_title() for axes in reactions(found, joints=["crank", "rocker"]).axes]
+        ['crank', 'rocker']
+    """
+    if what not in ("force", "moment"):
+        raise RequestError(f"what: {shown(what)} is not offered; give force or moment")
+    chosen = chosen_reactions(forces, joints)
+    letters = COMPONENTS[3:] if what == "force" else COMPONENTS[:3]
+    scale = max((greatest_of(getattr(reaction, what)) for reaction in forces.reactions.values()), default=0.0)
+    with styled(style):
+        figure, panels, across = grid_of(len(chosen), ax, figsize, style)
+        whole = False
+        for axes, reaction in zip(panels, chosen, strict=True):
+            values = getattr(reaction, what)
+            known = np.isfinite(values).any(axis=0)
+            for i in np.flatnonzero(known):
+                own = np.where(np.abs(values[:, i]) > ROUNDING * scale, values[:, i], 0.0 * values[:, i])
+                curve(axes, forces, own, AXES[i], style=LINE_STYLES[i], zero=False)
+            if known.all():
+                whole = True
+                curve(axes, forces, np.linalg.norm(values, axis=1), INK, width=1.0, zero=False)
+            if not known.any():
+                where: dict[str, Any] = {"transform": axes.transAxes, "ha": "center", "va": "center"}
+                axes.text(0.5, 0.5, say("not determined"), color=QUIET, **where)
+                axes.set_yticks([])
+            axes.axhline(0, color=QUIET, lw=0.6 * stroke())
+            axes.set_title(shown_name(reaction.joint, 28))
+            axes.set_ylabel(say("force [N]") if what == "force" else say("moment [N m]"))
+        input_axis(panels, forces, most=5)
+        if ax is None:
+            outer_labels(panels, across)
+            which = say("forces in the joints") if what == "force" else say("moments in the joints")
+            headline(figure, title, title_of_forces(forces, which))
+            if legend:
+                made = [
+                    Line2D([], [], color=AXES[i], ls=LINE_STYLES[i], label=letters[i])
+                    for i in range(3)
+                    if any(np.isfinite(getattr(r, what)[:, i]).any() for r in chosen)
+                ]
+                if whole:
+                    made.append(Line2D([], [], color=INK, lw=1.0 * stroke(), label=say("size")))
+                if made:
+                    key_below(figure, made)
+            tidy(figure)
+    return figure
+
+
+def drawn_bearings(forces: Forces, joints: Sequence[str] | None = None) -> list[Reaction]:
+    """The joints whose force square to the axis is determined: those of a polar picture."""
+    return [
+        reaction
+        for reaction in chosen_reactions(forces, joints)
+        if reaction.determinate[3:5].all() and reaction.kind != "S"
+    ]
+
+
+def bearings(
+    forces: Forces,
+    *,
+    joints: Sequence[str] | None = None,
+    ax: Any = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """Polar pictures of bearing loads: the force square to each joint's axis, in the joint's own frame.
+
+    The curve is where the tip of the force is in one cycle, the dot its place on the first row. `joints`
+    names those that are drawn. Raises `RequestError` where none of them is determined. The rest is as for
+    `reactions`.
+    """
+    chosen = drawn_bearings(forces, joints)
+    if not chosen:
+        raise RequestError(
+            "joints: these are balls, which have no axis, or their forces are not determined; nothing to draw"
+        )
+    with styled(style):
+        figure, panels, _ = grid_of(len(chosen), ax, figsize, style, square=True)
+        for axes, reaction in zip(panels, chosen, strict=True):
+            hodograph(axes, forces, reaction.force[:, :2], WHOLE)
+            axes.set_title(shown_name(reaction.joint, 28))
+            axes.set_xlabel("Fx [N]")
+            axes.set_ylabel("Fy [N]")
+        if ax is None:
+            headline(figure, title, title_of_forces(forces, say("forces square to the joints' axes")))
+            if legend:
+                key_below(figure, [first_dot(forces, WHOLE)])
+            tidy(figure)
+    return figure
+
+
+def shaking(
+    forces: Forces,
+    *,
+    ax: Any = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """The hodograph of the shaking force, seen along the axes of the report frame, and its size.
+
+    Views in which nothing but a line is to be seen are left out. `ax`: axes to draw in, one for each view and
+    one for the size. Raises `RequestError` at rest. The rest is as for `configuration`.
+    """
+    if forces.at_rest:
+        raise RequestError("shaking: at rest nothing shakes; give forces of a motion")
+    force = forces.shaking[:, 3:]
+    scale = greatest_of(force)
+    force = np.where(np.abs(force) > ROUNDING * scale, force, 0.0 * force)
+    moves = [i for i in range(3) if greatest_of(force[:, i]) > 0]
+    views = list(combinations(moves, 2))
+    with styled(style):
+        if ax is None:
+            down = 2 if len(views) > 1 else 1
+            usual = (7.2, 3.1 * down + 0.6) if views else (6.4, 3.6)
+            figure = new_figure(*page_size(style, figsize, usual, wide=bool(views)), pads=(0.05, 0.06))
+            panels = list(figure.subplots(down, 2 if views else 1, squeeze=False).flat)
+        else:
+            panels = given_axes(ax, len(views) + 1, "one for each view and one for the size")
+            figure = panels[0].figure.figure
+        reach = reach_of(force, forces)
+        for axes, (i, j) in zip(panels, views, strict=False):
+            hodograph(axes, forces, force[:, [i, j]], WHOLE, reach=reach)
+            axes.set_xlabel(f"F{'xyz'[i]} [N]")
+            axes.set_ylabel(f"F{'xyz'[j]} [N]")
+        size = panels[len(views)]
+        curve(size, forces, np.linalg.norm(force, axis=1), INK, zero=False)
+        size.set_ylabel(say("shaking force [N]"))
+        input_axis([size], forces, most=5)
+        size.set_ylim(bottom=0)
+        if ax is None:
+            headline(figure, title, title_of_forces(forces, say("shaking force on the ground")))
+            if legend and views:
+                key_below(figure, [first_dot(forces, WHOLE)])
+            tidy(figure)
+    return figure
+
+
+def energies(
+    forces: Forces,
+    *,
+    ax: Any = None,
+    figsize: Sequence[float] | None = None,
+    style: str | None = None,
+    title: bool | str = True,
+    legend: bool = True,
+) -> Figure:
+    """Kinetic and potential energy over the input, those that there are, and their sum.
+
+    `ax`: axes to draw in, one. The rest is as for `configuration`.
+    """
+    with styled(style):
+        figure, panels = stack(1, ax, figsize, style, 3.2)
+        axes = panels[0]
+        total = forces.kinetic + forces.potential
+        drawn: list[tuple[str, Floats, str, Any]] = [
+            (say("kinetic"), forces.kinetic, WHOLE, "-"),
+            (say("potential"), forces.potential, AXES[1], LINE_STYLES[1]),
+        ]
+        drawn = [one for one in drawn if greatest_of(one[1]) > 0]
+        if len(drawn) > 1:
+            drawn.append((say("sum"), total, INK, LINE_STYLES[3]))
+        for label, values, colour, line in drawn:
+            curve(axes, forces, values, colour, style=line, label=label, zero=False)
+        axes.set_ylabel(say("energy [J]"))
+        input_axis(panels, forces)
+        if ax is None:
+            headline(figure, title, title_of_forces(forces, say("energies")))
+            if legend:
+                key_below(figure, axes.get_legend_handles_labels()[0])
+            tidy(figure)
+    return figure
+
+
+#: The figures of forces by their names.
+KINDS: dict[str, Callable[..., Figure]] = {
+    "torque": torque,
+    "reactions": reactions,
+    "bearings": bearings,
+    "shaking": shaking,
+    "energies": energies,
+}
+
+
+def figure_of_kind(forces: Forces, kind: str, options: dict[str, Any]) -> Figure:
+    """The figure of a kind; raises `RequestError` for another."""
+    if kind not in KINDS:
+        raise RequestError(
+            f"kind: {shown(kind)} is not a figure of forces; {suggestion(kind, KINDS)}give {', '.join(KINDS)}"
+        )
+    return KINDS[kind](forces, **options)
+
+
+def small(forces: Forces) -> Figure | None:
+    """A small picture of the torque, for notebooks."""
+    if not np.isfinite(forces.torque).any():
+        return None
+    with styled():
+        figure = new_figure(4.6, 2.8, pads=(0.05, 0.06))
+        axes = figure.subplots()
+        curve(axes, forces, forces.torque, WHOLE, shade=True)
+        word = say("input force") if forces.slides else say("input torque")
+        axes.set_ylabel(f"{word} [{forces.unit}]")
+        input_axis([axes], forces, most=6)
+    return figure
+
+
+def sizing_of(forces: Forces) -> Sizing | None:
+    """The sizing of rows that have one: not of several passes one after the other."""
+    if forces.period is None and len(np.unique(forces.branch)) > 1:
+        return None
+    return forces.sizing()

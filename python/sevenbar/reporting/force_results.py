@@ -1,0 +1,202 @@
+"""What forces, reactions, sizings and balances print of themselves, and their figures."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from sevenbar.curves.curve import Peak
+from sevenbar.forces.counterweights import Balance, Counterweight
+from sevenbar.forces.result import COMPONENTS, Forces, Reaction
+from sevenbar.forces.shaking import Shaking
+from sevenbar.forces.sizing import Bearing, Burden, Sizing
+from sevenbar.reporting.force_words import (
+    LISTED,
+    OPEN,
+    ROUNDING,
+    Places,
+    acting_text,
+    check_text,
+    found_text,
+    greatest,
+    number,
+    open_facts,
+    quantity,
+    spin_facts,
+)
+from sevenbar.text.printing import figure_of, lines, picture_of, text_of
+
+
+@text_of.register(Forces)
+def _(forces: Forces) -> str:
+    place = Places(forces)
+    mass = sum(body.mass for body in forces.bodies.values())
+    facts = [("acts", acting_text(forces.loading)), ("mass", f"{mass:.6g} kg" if mass else "")]
+    lost = int((~np.isfinite(forces.torque)).sum())
+    peak = ""
+    if lost < len(forces.torque):
+        row = int(np.nanargmax(np.abs(forces.torque)))
+        peak = f"{number(forces.torque[row])} {forces.unit} @ {place(float(forces.input[row]))}"
+    dead = "dead-centre" in forces.status
+    facts.append(
+        (
+            f"input {quantity(forces)}",
+            f"no bound at dead centres of {forces.driver}" if dead else f"greatest of the rows {peak}",
+        )
+    )
+    if not forces.at_rest and not dead and lost < len(forces.torque):
+        low, high = np.nanmin(forces.power), np.nanmax(forces.power)
+        facts.append(("power", f"{number(float(low))} to {number(float(high))} W"))
+    every = forces.reactions.values()
+    scale = {
+        word: float(np.nanmax([greatest(getattr(r, word)) for r in every] + [0.0]))
+        for word in ("force", "moment")
+    }
+    for name, reaction in forces.reactions.items():
+        facts.append((name, _of_joint(reaction, scale, bounded=not dead)))
+    facts += spin_facts(forces)
+    facts += [(label, said) for label, said in open_facts(forces) if label]
+    facts.append(("checks", check_text(forces)))
+    state = " at rest" if forces.at_rest else ""
+    words, counts = np.unique(forces.status, return_counts=True)
+    rows = ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
+    return lines(f"Forces{state} of '{forces.heading}', driven by {forces.driver}: {rows}", facts)
+
+
+def _of_joint(reaction: Reaction, scale: dict[str, float], *, bounded: bool) -> str:
+    """What a joint bears at most, of the rows; nothing where it is rounding of the `scale`."""
+    lost = [c for c, known in zip(COMPONENTS, reaction.determinate, strict=True) if not known]
+    said = []
+    if bounded:
+        for word, unit, values in (("force", "N", reaction.force), ("moment", "N m", reaction.moment)):
+            known = values[:, np.isfinite(values).any(axis=0)]
+            size = greatest(np.linalg.norm(known, axis=1)) if known.shape[1] else 0.0
+            if size > ROUNDING * scale[word]:
+                part = "" if known.shape[1] == 3 else " of what is known"
+                said.append(f"{word}{part} up to {number(size)} {unit}")
+    return ", ".join(said + ([f"{' '.join(lost)} open"] if lost else []))
+
+
+@text_of.register(Reaction)
+def _(reaction: Reaction) -> str:
+    facts = []
+    for unit, values, names in (
+        ("N", reaction.force, COMPONENTS[3:]),
+        ("N m", reaction.moment, COMPONENTS[:3]),
+    ):
+        for name, own in zip(names, values.T, strict=True):
+            known = own[np.isfinite(own)]
+            said = (
+                f"{number(float(known.min()))} to {number(float(known.max()))} {unit}" if known.size else OPEN
+            )
+            facts.append((name, said))
+    if not reaction.determinate.all():
+        facts.append(("", "what is open is not determined by equilibrium of rigid bodies"))
+    return lines(
+        f"Reaction in {reaction.joint}: {len(reaction.force)} rows, "
+        "in its own frame, of the link before on the link after",
+        facts,
+    )
+
+
+@text_of.register(Sizing)
+def _(found: Sizing) -> str:
+    def at(peak: Peak | None) -> str:
+        return "" if peak is None else f"{number(peak.value)} at {peak.input:.6g}"
+
+    most = [
+        f"{name} {number(bearing.force.peak.value)} N"
+        for name, bearing in found.bearings.items()
+        if math.isfinite(bearing.force.peak.value)
+    ]
+    return lines(
+        "Sizing of a drive",
+        [
+            ("peak torque", at(found.peak_torque)),
+            ("rms, mean", f"{number(found.rms_torque)}, {number(found.mean_torque)}"),
+            ("peak power", f"{at(found.peak_power)} W"),
+            ("braking power", at(found.braking_power) + " W" * (found.braking_power is not None)),
+            ("fluctuation", f"{number(found.fluctuation)} J"),
+            (
+                "flywheel",
+                ""
+                if found.flywheel is None
+                else f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}",
+            ),
+            ("peak forces", ", ".join(most)),
+            ("found", found_text(found)),
+        ],
+    )
+
+
+@text_of.register(Bearing)
+def _(bearing: Bearing) -> str:
+    facts = []
+    for part, unit in LISTED.items():
+        burden: Burden = getattr(bearing, part)
+        said = OPEN
+        if math.isfinite(burden.peak.value):
+            said = (
+                f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}, "
+                f"cubic mean {number(burden.mean_cube)} {unit}"
+            )
+        facts.append((part, said))
+    return lines("Loads of a bearing", facts)
+
+
+@text_of.register(Shaking)
+def _(found: Shaking) -> str:
+    return lines(
+        "Shaking",
+        [
+            (
+                "force",
+                f"peak {number(found.force.value)} N at {found.force.input:.6g}, "
+                f"rms {number(found.rms_force)} N",
+            ),
+            (
+                "moment",
+                f"peak {number(found.moment.value)} N m at {found.moment.input:.6g}, rms "
+                f"{number(found.rms_moment)} N m",
+            ),
+        ],
+    )
+
+
+@text_of.register(Balance)
+def _(found: Balance) -> str:
+    unit = "N"
+    facts = [(f"link {one.link}", _weight(one)) for one in found.counterweights]
+    facts.append(
+        (
+            "shaking",
+            f"{found.measure} {number(found.before)} {unit} before, {number(found.after)} {unit} after",
+        )
+    )
+    facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
+    facts.append(("idle", "; ".join(found.idle)))
+    return lines("Counterweights", facts)
+
+
+def _weight(one: Counterweight) -> str:
+    if not one.product:
+        return "none"
+    way = ", ".join(f"{x + 0.0:.4g}" for x in one.direction)
+    mass = "" if one.mass is None else f", {number(one.mass)} kg"
+    return f"{number(one.product)} kg length towards ({way}){mass}"
+
+
+@figure_of.register(Forces)
+def _(forces: Forces, *, kind: str = "torque", **options: Any) -> Any:
+    from sevenbar.drawing.force_figures import figure_of_kind
+
+    return figure_of_kind(forces, kind, options)
+
+
+@picture_of.register(Forces)
+def _(forces: Forces) -> Any:
+    from sevenbar.drawing.force_figures import small
+
+    return small(forces)

@@ -1,0 +1,327 @@
+"""The report of forces: printed, as JSON, and as files in a folder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sevenbar.curves.curve import Peak
+from sevenbar.forces.result import COMPONENTS, Forces
+from sevenbar.forces.shaking import Shaking
+from sevenbar.forces.sizing import Burden, Sizing
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.columns import joint_column
+from sevenbar.kinematics.motion import Motion
+from sevenbar.reporting.figures import FigureLook
+from sevenbar.reporting.files import Files, Report, columns_file, figure_files, json_file
+from sevenbar.reporting.force_words import (
+    LISTED,
+    OPEN,
+    Places,
+    acting_facts,
+    check_text,
+    check_values,
+    drive_facts,
+    found_text,
+    greatest,
+    no_peak,
+    number,
+    open_facts,
+    quantity,
+    shaking_facts,
+    shaking_found,
+    spin_facts,
+)
+from sevenbar.reporting.page import Facts, drive_text, number_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class CircuitForces:
+    """The forces on a circuit of a motion, or on one pass of it, with what a designer reads of them."""
+
+    motion: Motion
+    circuit: Circuit
+    forces: Forces
+    sizing: Sizing | None
+    shaking: Shaking | None
+
+    @classmethod
+    def of(
+        cls, motion: Motion, circuit: Circuit, forces: Forces, *, unevenness: float | None = None
+    ) -> CircuitForces:
+        """With the sizing for an unevenness."""
+        found = forces.sizing(unevenness=unevenness)
+        return cls(motion, circuit, forces, found, shaking_found(forces))
+
+
+def forces_report(
+    figures: Sequence[str] = ("png",), look: FigureLook | None = None, joints: Sequence[str] = ()
+) -> Report[CircuitForces]:
+    """How forces are reported, with figures in these formats; reactions of some joints, or of all."""
+    files: Files[CircuitForces] = {
+        "forces.json": json_file(as_dict),
+        "forces.csv": columns_file(lambda found: columns(found.forces)),
+    }
+    return Report(text, as_dict, files, partial(_figures, figures, look or FigureLook(), tuple(joints)))
+
+
+def _figures(
+    formats: Sequence[str], look: FigureLook, joints: tuple[str, ...], found: CircuitForces
+) -> Files[CircuitForces]:
+    """The figures of a result: torque and power, reactions, bearings, shaking, energies."""
+    from sevenbar.drawing import force_figures
+
+    forces, sizing = found.forces, found.sizing
+    chosen = joints or None
+    draw: dict[str, Any] = {
+        "torque": partial(force_figures.torque, forces, sizing),
+        "reactions": partial(force_figures.reactions, forces, joints=chosen),
+        "bearings": partial(force_figures.bearings, forces, joints=chosen),
+    }
+    if found.shaking is not None:
+        draw["shaking"] = partial(force_figures.shaking, forces)
+    draw["energies"] = partial(force_figures.energies, forces)
+    files: Files[CircuitForces] = {}
+    for name, one in draw.items():
+        if name == "bearings" and not force_figures.drawn_bearings(forces, chosen):
+            continue
+        files = {**files, **figure_files(name, formats, partial(_drawn, one, look))}
+    return files
+
+
+def _drawn(draw: Callable[..., Figure], look: FigureLook, _found: CircuitForces) -> Figure:
+    return draw(**look.of_curves)
+
+
+def drive_fact(found: CircuitForces) -> str:
+    """Which circuit, and how it is driven."""
+    motion, circuit, forces = found.motion, found.circuit, found.forces
+    which = f"{circuit.index} of {len(motion.circuits)}"
+    if len(np.unique(circuit.branch)) > 1 and len(np.unique(forces.branch)) == 1:
+        which += f", pass {int(forces.branch[0])}"
+    if forces.at_rest:
+        return f"{which}, at rest at each {forces.driver}: no inertia, no damping"
+    speed = motion.speed if motion.law is None else None
+    unit = motion.linkage.unit_of(motion.input)
+    return f"{which}, {drive_text(motion.input, speed, unit, written=motion.speed_written)}"
+
+
+def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
+    """All that a report says of forces above the table of joints."""
+    forces, linkage = found.forces, found.motion.linkage
+    sliding = [c for c, kind in zip(linkage.columns, linkage.column_kinds, strict=True) if kind == "slide"]
+    facts = [("circuit", drive_fact(found)), *acting_facts(forces, sliding)]
+    facts += drive_facts(forces, found.sizing)
+    facts += shaking_facts(forces, found.shaking)
+    facts += spin_facts(forces)
+    facts += open_facts(forces)
+    facts.append(("found", found_text(found.sizing, law=found.motion.law is not None)))
+    facts.append(("checks", check_text(forces)))
+    words, counts = np.unique(forces.status, return_counts=True)
+    rows = ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
+    facts.append(("rows", f"{len(forces.status)}: {rows}"))
+    return [(label, said) for label, said in facts if said]
+
+
+def text(found: CircuitForces) -> RenderableType:
+    """The forces on a circuit as a page."""
+    forces = found.forces
+    facts = Facts()
+    for label, said in facts_of_forces(found):
+        strong = label == f"input {quantity(forces)}"
+        facts.add(label, said, style="bold" if strong else "")
+    parts: list[RenderableType] = [Text(found.motion.linkage.heading, style="bold underline"), facts.grid]
+    if found.sizing is not None:
+        head, rows = bearing_rows(forces, found.sizing)
+        parts += [
+            Text(),
+            number_table(head, rows),
+            Text(
+                "peaks of what the link before puts on the link after; radial square to the joint's axis, "
+                "axial along it, tilting moment square to it, turning about it",
+                style="dim",
+            ),
+        ]
+    return Group(*parts)
+
+
+def bearing_rows(forces: Forces, found: Sizing) -> tuple[list[str], list[list[str]]]:
+    """The table of joints: what each bears at most, and the force's place and cubic mean."""
+    place = Places(forces)
+    head = [
+        "joint", "force\n[N]", "@", "cubic mean\n[N]", "radial\n[N]", "axial\n[N]", "tilting\n[N m]",
+        "turning\n[N m]",
+    ]  # fmt: skip
+    rows = []
+    for name, bearing in found.bearings.items():
+        force = bearing.force
+        known = math.isfinite(force.peak.value)
+        cells = [
+            name,
+            _peak(force),
+            place(force.peak.input) if known else "",
+            number(force.mean_cube) if known else "",
+        ]
+        parts = (bearing.radial, bearing.axial, bearing.tilting, bearing.turning)
+        # a ball has no axis
+        ball = forces.reactions[name].kind == "S"
+        rows.append([*cells, *("" if ball else _peak(part) for part in parts)])
+    scales = [_scale(rows, (1, 4, 5)), _scale(rows, (6, 7))]
+    for row in rows:
+        for column, scale in ((1, 0), (4, 0), (5, 0), (6, 1), (7, 1)):
+            # what is left of rounding
+            if row[column] not in (OPEN, "") and abs(float(row[column])) < 1e-12 * scales[scale]:
+                row[column] = "0"
+    return head, rows
+
+
+def _scale(rows: list[list[str]], of: tuple[int, ...]) -> float:
+    return max((float(row[i]) for row in rows for i in of if row[i] not in (OPEN, "")), default=0.0)
+
+
+def _peak(burden: Burden) -> str:
+    return number(burden.peak.value) if math.isfinite(burden.peak.value) else OPEN
+
+
+def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
+    """Every row as a table; what equilibrium does not determine has no value.
+
+    >>> import sevenbar as sb
+    >>> circuit = sb.load("rssr").motion(12).circuits[0]
+    >>> list(columns(circuit.forces(bodies={2: sb.Body(1.3, solid="rod")})))[:6]
+    ['time_s', 'crank_deg', 'branch', 'status', 'torque_Nm', 'power_W']
+    """
+    slides = forces.slides
+    head = joint_column(forces.driver, slides=slides, order=0, length=forces.length_unit, angle="deg")
+    found: dict[str, npt.NDArray[Any]] = {} if forces.at_rest else {"time_s": forces.time}
+    found |= {
+        head: forces.input if slides else np.degrees(forces.input),
+        "branch": forces.branch,
+        "status": forces.status,
+        "force_N" if slides else "torque_Nm": forces.torque,
+    }
+    if not forces.at_rest:
+        found |= {"power_W": forces.power, "supplied_W": forces.supplied, "kinetic_energy_J": forces.kinetic}
+    found["potential_energy_J"] = forces.potential
+    units = ("Nm",) * 3 + ("N",) * 3
+    for name, reaction in forces.reactions.items():
+        six = np.concatenate([reaction.moment, reaction.force], axis=1)
+        for i in (3, 4, 5, 0, 1, 2):
+            found[f"{name}_{COMPONENTS[i]}_{units[i]}"] = six[:, i]
+    if not forces.at_rest:
+        for i in (3, 4, 5, 0, 1, 2):
+            found[f"shaking_{COMPONENTS[i]}_{units[i]}"] = forces.shaking[:, i]
+    for link, moment in forces.spin.items():
+        found[f"{link.replace(' ', '')}_spin_moment_Nm"] = moment
+    return found
+
+
+def as_dict(found: CircuitForces) -> dict[str, Any]:
+    """Forces as plain values: inputs in radians or lengths, null where nothing is determined."""
+    motion, forces = found.motion, found.forces
+    linkage = motion.linkage
+    return {
+        "format": 1,
+        "linkage": {"name": linkage.name, "kind": linkage.kind},
+        "units": {
+            "length": linkage.length_unit,
+            "angle": "rad",
+            "time": "s",
+            "mass": "kg",
+            "force": "N",
+            "moment": "N m",
+            "power": "W",
+            "energy": "J",
+            "inertia": "kg m^2",
+            "torque": forces.unit,
+        },
+        "drive": {
+            "input": forces.driver,
+            "speed": None if motion.law is not None or forces.at_rest else motion.speed,
+            "law": motion.law is not None,
+            "at_rest": forces.at_rest,
+        },
+        "circuit": found.circuit.index,
+        "rows": len(forces.status),
+        "acting": _acting(forces),
+        **numbers(found),
+        "not_determined": list(forces.indeterminate),
+        "idle_spin": {link: greatest(moment) for link, moment in forces.spin.items()},
+        "checks": check_values(forces),
+    }
+
+
+def numbers(found: CircuitForces) -> dict[str, Any]:
+    """What a designer asks first, as plain values: the drive, the joints, the shaking."""
+    forces, sizing, shaken = found.forces, found.sizing, found.shaking
+    drive = None
+    if sizing is not None:
+        drive = {
+            "peak_torque": _plain(sizing.peak_torque),
+            "rms_torque": sizing.rms_torque,
+            "mean_torque": sizing.mean_torque,
+            "peak_power": _plain(sizing.peak_power),
+            "braking_power": _plain(sizing.braking_power),
+            "fluctuation": sizing.fluctuation,
+            "fastest": sizing.fastest,
+            "slowest": sizing.slowest,
+            "unevenness": sizing.unevenness,
+            "flywheel": sizing.flywheel,
+            "found": sizing.found,
+            "tail": sizing.tail,
+        }
+    joints = {}
+    for name, reaction in forces.reactions.items():
+        flags = zip(COMPONENTS, reaction.determinate.tolist(), strict=True)
+        joints[name] = {"determinate": dict(flags)}
+        if sizing is not None:
+            bearing = sizing.bearings[name]
+            for part in LISTED:
+                burden: Burden = getattr(bearing, part)
+                joints[name][part] = {**_plain(burden.peak), "mean_cube": burden.mean_cube}
+    return {
+        "sizing": drive,
+        "no_sizing": no_peak(forces) if sizing is None else None,
+        "joints": joints,
+        "shaking": None
+        if shaken is None
+        else {
+            "force": _plain(shaken.force) | {"rms": shaken.rms_force},
+            "moment": _plain(shaken.moment) | {"rms": shaken.rms_moment},
+        },
+    }
+
+
+def _plain(peak: Peak | None) -> dict[str, float]:
+    return {} if peak is None else {"value": peak.value, "at": peak.input}
+
+
+def _acting(forces: Forces) -> dict[str, Any]:
+    """What acts as plain values."""
+    loading = forces.loading
+    return {
+        "gravity": list(loading.gravity),
+        "bodies": [
+            {
+                "link": link,
+                "mass": forces.bodies[link].mass,
+                "centre": list(forces.bodies[link].centre or ()),
+                "from": [body.solid or "given" for body in own],
+            }
+            for link, own in sorted(loading.bodies.items())
+            if own
+        ],
+        "loads": len(loading.loads),
+        "springs": len(loading.springs),
+    }

@@ -1,0 +1,103 @@
+"""The language of reports and figures: sentences are written in English, a catalogue has them in another."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+from importlib.resources import files
+
+from sevenbar.errors import RequestError, shown, suggestion
+
+#: The languages by their codes, and what each calls itself.
+LANGUAGES = {"en": "English", "zh": "中文"}
+
+#: The part of a catalogue with sentences that are made before a language is chosen.
+MADE_BEFORE = "made before"
+
+_spoken: ContextVar[str] = ContextVar("language", default="en")
+
+#: A place for a value in a sentence.
+_PLACE = re.compile(r"\\\{(\w+)\\\}")
+
+
+@contextmanager
+def language(code: str | None) -> Iterator[None]:
+    """Reports and figures that are made within are in a language, "en" or "zh"; `None` changes nothing.
+
+    Names of joints and points, units, CSV and JSON stay as they are. Raises `RequestError` for another code.
+
+        >>> import sevenbar as sb
+        >>> with sb.language("zh"):
+        ...     figure = sb.plot.transmission(sb.load("rssr").motion())
+        ...     title = sb.report.markdown(sb.load("rssr").motion()).splitlines()[4]
+        >>> title
+        '- 驱动: crank，10 rad/s；输出 rocker'
+    """
+    token = _spoken.set(_spoken.get() if code is None else check_language(code))
+    try:
+        yield
+    finally:
+        _spoken.reset(token)
+
+
+def check_language(code: str, key: str = "language") -> str:
+    """The code of a language; raises `RequestError` for another."""
+    if code not in LANGUAGES:
+        known = " or ".join(f"{each} ({name})" for each, name in LANGUAGES.items())
+        raise RequestError(
+            f"{key}: {shown(code)} is not offered; {suggestion(str(code), list(LANGUAGES))}give {known}"
+        )
+    return code
+
+
+def spoken() -> str:
+    """The code of the language that is spoken now."""
+    return _spoken.get()
+
+
+def say(sentence: str, /, **values: object) -> str:
+    """A sentence in the language that is spoken, its places filled with values.
+
+    >>> say("{count} circuits", count=3)
+    '3 circuits'
+    """
+    found = catalogue(_spoken.get()).get(sentence, sentence)
+    return found.format(**values) if values else found
+
+
+def retold(text: str) -> str:
+    """A text that was made in English, in the language that is spoken if the catalogue has its sentence."""
+    known = catalogue(_spoken.get()).get(text)
+    if known is not None:
+        return known
+    for pattern, translation in _patterns(_spoken.get()):
+        if match := pattern.fullmatch(text):
+            return translation.format(**match.groupdict())
+    return text
+
+
+@cache
+def catalogue(code: str) -> Mapping[str, str]:
+    """What each English sentence is in a language; empty for English."""
+    return {sentence: text for part in _parts(code).values() for sentence, text in part.items()}
+
+
+@cache
+def _parts(code: str) -> Mapping[str, Mapping[str, str]]:
+    if code == "en":
+        return {}
+    text = files("sevenbar.text").joinpath(f"words_{code}.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+@cache
+def _patterns(code: str) -> list[tuple[re.Pattern[str], str]]:
+    """The sentences that are made before, each as a pattern with a group for each value."""
+    return [
+        (re.compile(_PLACE.sub(r"(?P<\1>.+?)", re.escape(sentence))), text)
+        for sentence, text in _parts(code).get(MADE_BEFORE, {}).items()
+    ]
