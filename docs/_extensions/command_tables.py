@@ -21,11 +21,8 @@ PAGES = {
     "compare": "measured.md",
     "calibrate": "measured.md",
     "axodes": "theory_measures.md",
-<<<<<<< HEAD
     "free": "theory_free_motion.md",
-=======
     "forces": "forces.md",
->>>>>>> main
     "simulate": "simulation.md",
     "export": "export.md",
     "axes": "tables.md#axes-picked-from-a-cad-model",

@@ -154,11 +154,8 @@ _NAMES_ON_DEMAND = {
 
 # what results print is written where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
-<<<<<<< HEAD
 SAID_IN["sevenbar.forces.free_motion"] = "sevenbar.reporting.free_motion"
-=======
 SAID_IN["sevenbar.forces"] = "sevenbar.reporting.force_results"
->>>>>>> main
 for _folder in ("design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"
 # bodies that are given as drawn are those of exports, which stand above the kinematics

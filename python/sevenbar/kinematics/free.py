@@ -136,11 +136,7 @@ class FreeCourse:
         return float(places[np.linalg.norm(off / self.solver.numbers.scales[smooth], axis=1).argmin()])
 
     def rate(self, place: float, speed: float | str | None, energy: float | None) -> float:
-<<<<<<< HEAD
         """The rate s' at a place, from the input's speed [rad/s, or length/s] or the kinetic energy [J]."""
-=======
-        """S' at a place, from the input's speed [rad/s, or length/s] or the kinetic energy [J]."""
->>>>>>> main
         if speed is not None and energy is not None:
             raise RequestError("energy: speed and energy are both given; give one of them")
         inside = np.array([place % self.path.length if self.path.closed else place])
