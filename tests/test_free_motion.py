@@ -319,7 +319,7 @@ def test_rates_of_rows_are_those_of_their_differences() -> None:
 
 
 def test_a_rocking_input_is_carried_over_its_dead_centres() -> None:
-    linkage = sb.four_bar(crank=50, coupler=130, rocker=80, ground=100)
+    linkage = sb.four_bar(crank=50, coupler=130, rocker=90, ground=100)
     rod = sb.Body(1.0, solid="rod")
     given: dict[str, Any] = {"bodies": {1: rod, 2: rod, 3: rod}, "gravity": DOWN}
     crank = linkage.motion().circuits[0]
@@ -391,7 +391,7 @@ def test_a_load_over_a_range_brakes_where_it_acts() -> None:
 
 
 def test_equilibria_are_all_zeros_of_the_slope() -> None:
-    linkage = sb.four_bar(crank=50, coupler=130, rocker=80, ground=100)
+    linkage = sb.four_bar(crank=50, coupler=130, rocker=90, ground=100)
     rod = sb.Body(1.0, solid="rod")
     given: dict[str, Any] = {"bodies": {1: rod, 2: rod, 3: rod}, "gravity": DOWN}
     circuit = linkage.motion(3600).circuits[0]

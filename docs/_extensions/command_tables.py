@@ -21,7 +21,7 @@ PAGES = {
     "compare": "measured.md",
     "calibrate": "measured.md",
     "axodes": "theory_measures.md",
-    "free": "theory_free_motion.md",
+    "free": "theory_free.md",
     "forces": "forces.md",
     "simulate": "simulation.md",
     "export": "export.md",

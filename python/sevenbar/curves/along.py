@@ -7,7 +7,7 @@ On the piece from a to b, with x = (2 s - a - b) / (b - a),
 passes through the values at Chebyshev's nodes. Where f is analytic the c_k fall geometrically, so the last of
 them tell what is missing.
 
-Source: docs/theory_free_motion.md, (3).
+Source: docs/theory_free.md, (3).
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ On a piece one joint drives that moves all along it, so a dead centre of the inp
 A change point lies in the middle of its piece, with no node on it: values on both sides carry the motion
 straight across.
 
-Source: docs/theory_free_motion.md, (1) to (3).
+Source: docs/theory_free.md, (1) to (3).
 """
 
 from __future__ import annotations

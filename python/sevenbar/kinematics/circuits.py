@@ -533,7 +533,7 @@ class Circuit(Printed):
             >>> fall.kind
             'oscillation'
 
-        Source: docs/theory_free_motion.md, (1) to (13).
+        Source: docs/theory_free.md, (1) to (13).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
         options = {
@@ -572,7 +572,7 @@ class Circuit(Printed):
             >>> [(place.kind, round(place.input % 6.283185307, 9)) for place in found]
             [('unstable', 1.570796327), ('stable', 4.71238898)]
 
-        Source: docs/theory_free_motion.md, (11).
+        Source: docs/theory_free.md, (11).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
         return self._answers.equilibria(

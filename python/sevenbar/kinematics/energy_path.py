@@ -6,7 +6,7 @@ At the scaled rates u by the joint that drives a piece, ds = |u| dx, so
 
 The torque at rest is that of statics: weights, springs and loads are in it.
 
-Source: docs/theory_free_motion.md, (5).
+Source: docs/theory_free.md, (5).
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
     dq/dt = q' s',   d2q/dt2 = q'' s'^2 + q' s''                                                          (13)
 
-Source: docs/theory_free_motion.md, (13).
+Source: docs/theory_free.md, (13).
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ Between neighbouring marks of the course U rises or falls all the way, so the fi
 energy has the turning point before it: none is missed. Between two turning points, or once round, the motion
 repeats itself for ever.
 
-Source: docs/theory_free_motion.md, (6) to (10).
+Source: docs/theory_free.md, (6) to (10).
 """
 
 from __future__ import annotations

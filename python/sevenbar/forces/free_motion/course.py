@@ -5,7 +5,7 @@
 U is the potential energy of weights and springs less the work of loads, which depends on the place only, so
 on a closed circuit it may rise or fall with every lap.
 
-Source: docs/theory_free_motion.md, (4) and (5).
+Source: docs/theory_free.md, (4) and (5).
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
 Solved by an explicit method of order eight with tight tolerances (scipy's DOP853), from break to break of the
 loads, twice: the difference of the two is the accuracy reported.
 
-Source: docs/theory_free_motion.md, (12).
+Source: docs/theory_free.md, (12).
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
 A load that sets in at a place makes U' jump; where it jumps over zero upwards the linkage rests as well, held
 from both sides.
 
-Source: docs/theory_free_motion.md, (11).
+Source: docs/theory_free.md, (11).
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ class FreeMotion(Drawable):
     in arc length [rad, or shares of the size] from a solution at a hundred times the tolerance. `tail` is
     what the polynomials along the circuit leave out, as a part of the greatest value.
 
-    Source: docs/theory_free_motion.md, (1) to (12).
+    Source: docs/theory_free.md, (1) to (12).
     """
 
     time: Floats

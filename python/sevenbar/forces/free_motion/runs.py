@@ -6,7 +6,7 @@ At a turning point c, where E = U, s = c - l (1 - w)^2 makes the integrand smoot
 
     dt/dw = 2 sqrt(l m / (2 M)),    M the mean of U' from s to c                                          (7)
 
-Source: docs/theory_free_motion.md, (6) to (8).
+Source: docs/theory_free.md, (6) to (8).
 """
 
 from __future__ import annotations
