@@ -1,4 +1,4 @@
-"""Free motion with dampers, or with a motor by its speed or by time: an ordinary equation in s and s'.
+"""Free motion with dampers, or with a motor by its speed or by time: an ordinary equation along s.
 
     m s'' = -U' - D s' - m' s'^2 / 2 + torque(t, dx/dt) dx/ds                                             (12)
 

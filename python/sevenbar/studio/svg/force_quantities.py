@@ -84,7 +84,9 @@ class ForceQuantity(Quantity):
         return None if self.acting is None else self.acting.forces(view)
 
 
-def force_quantities(view: View, acting: SwitchedLoading, taken: Collection[str]) -> tuple[ForceQuantity, ...]:
+def force_quantities(
+    view: View, acting: SwitchedLoading, taken: Collection[str]
+) -> tuple[ForceQuantity, ...]:
     """All of forces that can be drawn, in the order of a menu, with names that are not `taken`.
 
     None where nothing acts. Nothing is computed.
