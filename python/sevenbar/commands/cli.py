@@ -16,7 +16,7 @@ import typer
 import typer.core
 
 import sevenbar as sb
-from sevenbar.commands.command import Command
+from sevenbar.commands.command import Command, number_of
 from sevenbar.commands.consent import confirm
 from sevenbar.commands.deliver import check_out, deliver, tell_written, write_files
 from sevenbar.commands.given import (
@@ -161,8 +161,16 @@ def analyze(
     view: FigureView = None,
     size: FigureSize = None,
     style: FigureStyle = None,
-    fps: Annotated[float | None, typer.Option(help="Pictures a second of the film.")] = None,
-    seconds: Annotated[float | None, typer.Option(help="Length of the film.")] = None,
+    fps: Annotated[
+        float | None,
+        typer.Option(
+            parser=number_of("--fps", "30"), metavar="NUMBER", help="Pictures a second of the film."
+        ),
+    ] = None,
+    seconds: Annotated[
+        float | None,
+        typer.Option(parser=number_of("--seconds", "10"), metavar="NUMBER", help="Length of the film."),
+    ] = None,
     force: Force = False,
     yes: Yes = False,
     json: Json = False,

@@ -1,4 +1,4 @@
-"""What every command has: `-o` for `--out`, and an option that is given once only; and whole numbers."""
+"""What every command has: `-o` for `--out`, and an option that is given once only; and numbers."""
 
 from __future__ import annotations
 
@@ -191,5 +191,23 @@ def count_of(option: str) -> Callable[[object], int]:
                 f"{option}: {shown(text)} is not a count; give a whole number, as in 360 or 1e6"
             )
         return int(value)
+
+    return read
+
+
+def number_of(option: str, example: str) -> Callable[[object], float]:
+    """What reads the number of an option, or a formula: 0.01, 1e-5, 1/100.
+
+    >>> number_of("--unevenness", "0.01")("1/50")
+    0.02
+    """
+
+    def read(given: object) -> float:
+        from sevenbar.text.expression import constant_of
+
+        value = constant_of(str(given))
+        if value is None:
+            raise SevenbarError(f"{option}: {shown(str(given))} is not a number; give one, as in {example}")
+        return value
 
     return read

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.command import number_of
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import opened
 from sevenbar.commands.options import (
@@ -138,7 +139,14 @@ def calibrate(
     start: Start = "0",
     circuit: ChosenCircuit = None,
     branch: ChosenBranch = None,
-    confidence: Annotated[float, typer.Option(help="How often an interval holds the true value.")] = 0.95,
+    confidence: Annotated[
+        float,
+        typer.Option(
+            parser=number_of("--confidence", "0.95"),
+            metavar="NUMBER",
+            help="How often an interval holds the true value.",
+        ),
+    ] = 0.95,
     out: Annotated[
         Path | None,
         typer.Option(

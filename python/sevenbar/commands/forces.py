@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 import sevenbar as sb
+from sevenbar.commands.command import number_of
 from sevenbar.commands.deliver import check_out, deliver
 from sevenbar.commands.given import agreed, check_law, law_of, look_of
 from sevenbar.commands.options import (
@@ -49,7 +50,11 @@ def forces(
     law: Law = None,
     unevenness: Annotated[
         float | None,
-        typer.Option(help="(highest - lowest) / mean speed that a flywheel shall keep, as in 0.01."),
+        typer.Option(
+            parser=number_of("--unevenness", "0.01"),
+            metavar="NUMBER",
+            help="(highest - lowest) / mean speed that a flywheel shall keep, as in 0.01.",
+        ),
     ] = None,
     joint: Annotated[
         list[str] | None,
@@ -71,6 +76,10 @@ def forces(
 
     look = look_of(None, size, style)
     formats = figure_formats(figures, out)
+    if out is None:
+        for option, given in (("--joint", joint), ("--size", size), ("--style", style)):
+            if given:
+                raise RequestError(f"{option}: no figure is drawn; give --out")
     check_law(law, speed)
     unit = _unit_at_rest(speed)
     at_rest = unit is not None

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from sevenbar.commands.command import number_of
 from sevenbar.commands.deliver import check_out, command_line, deliver
 from sevenbar.commands.given import angle, angles, limits_of, numbers
 from sevenbar.commands.options import Figures, Force, Json, figure_formats
@@ -102,7 +103,12 @@ def function(
 def swing(
     swing: Annotated[str, typer.Option(help="Angle through which the rocker swings.")],
     time_ratio: Annotated[
-        float, typer.Option(help="Time of the slower stroke over the quicker, >= 1.")
+        float,
+        typer.Option(
+            parser=number_of("--time-ratio", "1.2"),
+            metavar="NUMBER",
+            help="Time of the slower stroke over the quicker, >= 1.",
+        ),
     ] = 1.0,
     transmission: Transmission = "30deg",
     size: Size = None,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from sevenbar.commands.command import STYLE_HELP, VIEW_HELP, count_of
+from sevenbar.commands.command import STYLE_HELP, VIEW_HELP, count_of, number_of
 from sevenbar.errors import RequestError, shown
 
 
@@ -61,8 +61,10 @@ FigureStyle = Annotated[str | None, typer.Option("--style", help=STYLE_HELP)]
 Agree = Annotated[
     float | None,
     typer.Option(
+        parser=number_of("--agree", "1e-5"),
+        metavar="NUMBER",
         help="Closure error up to which redundant constraints agree, in rad or relative to the size: "
-        "1e-9 by default, 1e-3 at most."
+        "1e-9 by default, 1e-3 at most.",
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace files that are there already.")]

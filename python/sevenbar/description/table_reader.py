@@ -292,6 +292,8 @@ class _Reader(TableCells):
         if "pitch" in self.columns and (pitch := self.amount(row, "pitch", "pitch")) is not None:
             table["pitch"] = pitch
             self.places[f"{place}.pitch"] = self.grid.place(row, self.columns["pitch"])
+        if kind in KINDS and "axis" in KINDS[kind].drawn_keys and "axis" not in table:
+            self.wrong(f"no axis; a joint of kind {kind} needs one, in columns axis x, axis y, axis z", row)
         # a ball has no axis, whatever a list of axes holds
         if kind in KINDS and not KINDS[kind].drawn_keys:
             table.pop("axis", None)

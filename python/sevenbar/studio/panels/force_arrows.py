@@ -15,7 +15,7 @@ from sevenbar.reporting.force_words import number
 from sevenbar.studio.panels.controls import Asked, put
 from sevenbar.studio.panels.scenery import arrow_unit
 from sevenbar.studio.pictures.stage import Arrow, Stage
-from sevenbar.studio.state.acting import Acting, known_force
+from sevenbar.studio.state.acting import SwitchedLoading, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 
@@ -76,7 +76,7 @@ class ForceArrows:
             return list(range(len(self._names)))
         return [self._names.index(chosen)] if chosen in self._names else []
 
-    def _follow(self, view: View, acting: Acting, wanted: list[int]) -> None:
+    def _follow(self, view: View, acting: SwitchedLoading, wanted: list[int]) -> None:
         """Computes the forces along the path, and the scale that all arrows share."""
         forces = acting.forces(view)
         self._along, self._unit = [], 0.0
