@@ -19,7 +19,7 @@ from sevenbar.text.units import LENGTHS
 #: What every joint has, and one with an axis: words of the name, and components of the force in its frame.
 PARTS = {"force": (0, 1, 2), "radial force": (0, 1)}
 
-#: The greatest force is looked for among all rows but this share [%], those nearest to dead centres.
+#: The greatest force is that of all rows but this share [%], those nearest to dead centres.
 ENDLESS = 5.0
 
 
@@ -68,7 +68,7 @@ class ForceQuantity(Quantity):
         return force * (arm if self.unit == "N m" else 1.0)
 
     def absence(self, view: View) -> str:
-        """What stands in the place of a curve that has no value."""
+        """What is shown in place of a curve that has no value."""
         forces = self._forces(view)
         if forces is None:
             return self.acting.reason(view) if self.acting else ""
