@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -219,6 +220,14 @@ def test_a_body_that_cannot_be_is_a_reason_and_no_fault(monkeypatch: pytest.Monk
 
 
 # --- peaks and arrows
+
+
+def test_the_manual_has_the_peaks_of_the_press_with_its_work_and_without() -> None:
+    manual = (Path(__file__).parents[1] / "docs" / "studio.md").read_text(encoding="utf-8")
+    press = sb.load("rssr_press")
+    peaks = [one.motion(360).circuits[0].forces().sizing() for one in (press.loaded(loads=[]), press)]
+    light, work = (abs(peak.peak_torque.value) for peak in peaks if peak is not None)
+    assert f"is {light:.0f} N m in place of {work:.0f} N m" in manual
 
 
 @pytest.mark.parametrize("name", ["rssr_press", "engine"])

@@ -119,7 +119,7 @@ class SwitchedLoading:
 
 
 def _named(sort: str, acting: Sequence[Load] | Sequence[Spring], words: Sequence[str]) -> Iterator[Switch]:
-    """The switches of loads or springs; names that stand twice, or not at all, are numbered."""
+    """The switches of loads or springs; names used twice and missing ones are numbered."""
     names = [one.name for one in acting]
     for i, (name, text) in enumerate(zip(names, words, strict=True), 1):
         key = f"{sort} {i}"

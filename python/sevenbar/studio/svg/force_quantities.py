@@ -19,7 +19,7 @@ from sevenbar.text.units import LENGTHS
 #: What every joint has, and one with an axis: words of the name, and components of the force in its frame.
 PARTS = {"force": (0, 1, 2), "radial force": (0, 1)}
 
-#: The greatest force is sought among all rows but this share [%], those nearest to dead centres.
+#: The greatest force is that of all rows but this share [%], those nearest to dead centres.
 ENDLESS = 5.0
 
 
