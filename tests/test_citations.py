@@ -59,6 +59,7 @@ def test_the_pages_of_theory_are_numbered():
         "theory",
         "theory_design",
         "theory_forces",
+        "theory_free_motion",
         "theory_many",
         "theory_measures",
     ]

@@ -24,7 +24,7 @@ def folder(tmp_path):
     [
         (["no.toml"], f"no.toml: no such file; {LISTED}"),
         (["Seven-R"], f"Seven-R: no such file; did you mean 'seven_r'? {LISTED}"),
-        (["7r"], f"7r: no such file; did you mean 'seven_r' or 'seven_r_bodies'? {LISTED}"),
+        (["7r"], f"7r: no such file; did you mean 'seven_r'? {LISTED}"),
         (
             ["bricard"],
             "bricard: no such file; did you mean 'bricard_line' or 'bricard_plane' or 'bricard_trihedral'? "

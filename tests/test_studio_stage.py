@@ -155,6 +155,26 @@ def test_arrows_point_along_their_vectors_and_none_clears_them(stage: Stage, ser
     assert node(server, "/arrow_labels/0") is None
 
 
+def test_arrows_of_joints_are_apart_from_those_of_points_and_seen_round_a_rod(
+    stage: Stage, server: ViserServer
+) -> None:
+    _, frame = show(stage, "rssr")
+    origin, way = frame.pose(0)[1], np.array([0.0, 0.0, 300.0])
+    stage.arrows([(origin, way, "#ff0000", "v")])
+    stage.arrows([(origin, way, "#00ff00", "12 N")], "joints")
+    point, joint = (node(server, f"/{name}/cylinder") for name in ("arrows", "force_arrows"))
+    assert joint.batched_scales[0, 0] > 1.5 * point.batched_scales[0, 0]
+    assert joint.batched_positions == pytest.approx(point.batched_positions, abs=1e-6)
+    assert node(server, "/force_labels/0").text == "12 N"
+    stage.arrows([], "joints")
+    assert node(server, "/force_arrows/cone") is None
+    assert node(server, "/arrows/cone") is not None
+    stage.arrows([(origin, way, "#00ff00", "12 N")], "joints")
+    stage.clear()
+    assert node(server, "/force_arrows/cone") is None
+    assert node(server, "/arrows/cone") is None
+
+
 def test_marks_stand_at_their_points_with_their_texts(stage: Stage, server: ViserServer) -> None:
     _, frame = show(stage, "rssr")
     stage.marks(frame.places[[0, 100], 2], ["least", "most"])

@@ -21,6 +21,7 @@ PAGES = {
     "compare": "measured.md",
     "calibrate": "measured.md",
     "axodes": "theory_measures.md",
+    "free": "theory_free_motion.md",
     "forces": "forces.md",
     "simulate": "simulation.md",
     "export": "export.md",

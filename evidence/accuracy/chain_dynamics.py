@@ -1,12 +1,12 @@
-"""Free motion of a closed chain of hinges by Newton-Euler, multipliers and an integrator: shares nothing with the core.
+"""Free motion of a closed chain of hinges by Newton-Euler, multipliers and an integrator of its own.
 
-Bodies hang on each other from a fixed hinge on, with relative angles q; the last hinge to the ground is held by
-equations on its place and its axis, phi = 0. With the bodies' Jacobians J,
+It shares nothing with the core. Bodies hang on each other from a fixed hinge on, with relative angles q; the
+last hinge to the ground is held by equations phi = 0 on its place and axis. With the bodies' Jacobians J,
 
     sum J^T (inertia of q'') = sum J^T (weights - inertia of q' alone) + phi_q^T lambda,   phi_q q'' = gamma
 
-is solved by least squares, so redundant equations do no harm, integrated by DOP853 with steps of a tolerance of
-1e-13, and brought back to phi = 0 after each short stretch.
+is solved by least squares, so redundant equations do no harm, integrated by DOP853 at a tolerance of 1e-13,
+and brought back to phi = 0 after each short stretch.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ REDUNDANT = 1e-9
 
 @dataclass(frozen=True)
 class HingedChain:
-    """Hinges in one drawn pose: places and axes (n, 3), and the bodies between them: mass, centre, inertia."""
+    """Hinges in one drawn pose: places and axes (n, 3), and the bodies between: mass, centre, inertia."""
 
     places: Floats
     axes: Floats
@@ -55,7 +55,7 @@ class HingedChain:
         return found
 
     def accelerations(self, q: Floats, rate: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """q'', phi, phi_q and phi_q q'."""
+        """The angles' second derivatives, phi, phi_q and phi_q q'."""
         count = len(self.masses)
         walk = self.walk(q, rate)
         mass, force = np.zeros((count, count)), np.zeros(count)
@@ -108,7 +108,7 @@ class HingedChain:
         return q, rate - np.linalg.pinv(slopes, rcond=REDUNDANT) @ open_rate
 
     def states(self, q: Floats, rate: Floats, times: Sequence[float]) -> Floats:
-        """q and q' (times, 2, n) from a state at time 0."""
+        """Angles and rates (times, 2, n) from a state at time 0."""
 
         def push(t: float, y: Floats) -> Any:  # noqa: ARG001
             own, speed = np.split(y, 2)

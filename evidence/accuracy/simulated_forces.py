@@ -1,4 +1,4 @@
-"""Torque and reactions beside Exudyn's at two step sizes, and with both extrapolated to no step.
+"""Torque and reactions compared with Exudyn's at two step sizes, and with both extrapolated to no step.
 
 python -m evidence.accuracy.simulated_forces [NAME ..]
 """
@@ -53,7 +53,7 @@ class Rows:
     forces: Floats
     moments: Floats
 
-    def beside(self, other: Rows) -> list[float]:
+    def off(self, other: Rows) -> list[float]:
         """Greatest differences as parts of the greatest torque, force, and moment or torque."""
         torque = float(np.abs(other.torque).max())
         force = float(np.abs(other.forces).max(initial=0.0))
@@ -135,7 +135,7 @@ def measured(linkage: sb.Linkage, steps: int = STEPS) -> list[list[float]]:
             (coarse.moments, fine.moments),
         )
     ]
-    return [coarse.beside(own), fine.beside(again), Rows(*found).beside(own)]
+    return [coarse.off(own), fine.off(again), Rows(*found).off(own)]
 
 
 def main(names: Sequence[str]) -> None:

@@ -46,6 +46,8 @@ if TYPE_CHECKING:
     from sevenbar.description.step_axes import PartAxis, axes_of_step
     from sevenbar.description.tables import from_table
     from sevenbar.forces.bodies import Body
+    from sevenbar.forces.free_motion.equilibria import Equilibrium
+    from sevenbar.forces.free_motion.result import FreeMotion
     from sevenbar.forces.loading import Load, Loading, Spring
     from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
     from sevenbar.kinematics.screw_axes import ScrewAxes
@@ -57,8 +59,10 @@ __all__ = [
     "Count",
     "DeadCentre",
     "Drive",
+    "Equilibrium",
     "Extremes",
     "FourBar",
+    "FreeMotion",
     "InstantCentre",
     "InstantCentres",
     "Joint",
@@ -118,6 +122,8 @@ _ON_DEMAND = {
 #: Names that many programs do without, and the modules that have them.
 _NAMES_ON_DEMAND = {
     "Body": "sevenbar.forces.bodies",
+    "Equilibrium": "sevenbar.forces.free_motion.equilibria",
+    "FreeMotion": "sevenbar.forces.free_motion.result",
     "InstantCentre": "sevenbar.kinematics.instant_centres",
     "InstantCentres": "sevenbar.kinematics.instant_centres",
     "Load": "sevenbar.forces.loading",
@@ -148,6 +154,7 @@ _NAMES_ON_DEMAND = {
 
 # what results print is written where the reports' words are, which a program that prints none does without
 SAID_IN["sevenbar.kinematics"] = "sevenbar.reporting.results"
+SAID_IN["sevenbar.forces.free_motion"] = "sevenbar.reporting.free_motion"
 SAID_IN["sevenbar.forces"] = "sevenbar.reporting.force_results"
 for _folder in ("design.maps", "design.points", "measuring", "simulation"):
     SAID_IN[f"sevenbar.{_folder}"] = f"sevenbar.{_folder}.report"

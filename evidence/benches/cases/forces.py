@@ -1,4 +1,4 @@
-"""All forces of one turn of the 7R paper's linkage, beside its motion alone and beside Exudyn's run."""
+"""All forces of one turn of the 7R paper's linkage, next to its motion alone and Exudyn's run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from sevenbar.kinematics.circuits import Circuit
 TITLE = "The 7R paper's linkage: forces"
 ABOUT = """\
 360 inputs of circuit 0 with a body on each link and its weight: the torque, the reaction in every joint
-with what equilibrium determines, energies, shaking (`circuit.forces`), beside the motion alone
+with what equilibrium determines, energies, shaking (`circuit.forces`), and the motion alone
 (`linkage.circuit`: angles, velocities, accelerations, jerks). Exudyn's run is `sevenbar simulate`'s for
 the same turn with the same bodies, without the steps ahead of it; its error falls with the square of its
 steps: *torque off* is the greatest difference, in parts of the greatest torque. CPU time, one thread."""

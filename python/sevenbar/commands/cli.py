@@ -74,6 +74,7 @@ _ELSEWHERE = {
     "simulate": "sevenbar.commands.simulate:simulate",
     "export": "sevenbar.commands.export:export",
     "axes": "sevenbar.commands.axes:axes",
+    "free": "sevenbar.commands.free:free",
     "sweep": "sevenbar.commands.sweep:sweep",
     "map": "sevenbar.commands.maps:map_",
     "tolerance": "sevenbar.commands.tolerance:tolerance",

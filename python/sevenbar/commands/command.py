@@ -48,6 +48,10 @@ EXAMPLES = {
         "sevenbar axodes rssr --link 2",
         "sevenbar axodes planar_4r --link 2 --relative-to 1 -o axodes",
     ),
+    "free": (
+        "sevenbar free drop.toml --time 10s --from 30deg",
+        "sevenbar free drop.toml --speed '60 rpm' --film drop.html -o free",
+    ),
     "gallery": ("sevenbar gallery", "sevenbar gallery rssr > mine.toml"),
     "studio": ("sevenbar studio seven_r", "sevenbar studio mine.toml --port 9000 --no-open"),
     "simulate": (

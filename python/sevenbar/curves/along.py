@@ -2,12 +2,12 @@
 
 On the piece from a to b, with x = (2 s - a - b) / (b - a),
 
-    f(s) = sum c_k T_k(x)                                                                                 (42)
+    f(s) = sum c_k T_k(x)                                                                                 (3)
 
 passes through the values at Chebyshev's nodes. Where f is analytic the c_k fall geometrically, so the last of
 them tell what is missing.
 
-Source: docs/theory_free_motion.md, (42).
+Source: docs/theory_free_motion.md, (3).
 """
 
 from __future__ import annotations

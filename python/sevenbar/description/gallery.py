@@ -39,7 +39,7 @@ def nearest(word: str, others: Iterable[str] = ()) -> tuple[str, ...]:
         >>> nearest("Seven-R")
         ('seven_r',)
         >>> nearest("7R")
-        ('seven_r', 'seven_r_bodies')
+        ('seven_r',)
     """
     plain = {_plain(name): name for name in (*names(), *others)}
     sought = _plain(word[:100])

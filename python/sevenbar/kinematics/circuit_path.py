@@ -1,12 +1,12 @@
 """A circuit by its own arc length: all joint values as polynomials, through dead centres and change points.
 
-    ds^2 = sum (dq_c)^2,   lengths in parts of the size, balls left out                                   (40)
+    ds^2 = sum (dq_c)^2,   lengths as shares of the size, balls left out                                (1)
 
 On a piece one joint drives that moves all along it, so a dead centre of the input is a place like any other.
 A change point lies in the middle of its piece, with no node on it: values on both sides carry the motion
 straight across.
 
-Source: docs/theory_free_motion.md, (40) to (42).
+Source: docs/theory_free_motion.md, (1) to (3).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -29,14 +30,14 @@ from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 #: Nodes on a piece: even, so that none lies in its middle.
 TERMS = 24
 
-#: Length of a piece before any is divided [rad, or parts of the size].
+#: Length of a piece before any is divided [rad, or shares of the size].
 PIECE = 0.5
 
 #: Half the length of the piece round a change point, at most, and as a part of the way to the next one.
 ROUND_CHANGE_POINT = 0.25
 TO_THE_NEXT = 0.35
 
-#: A piece is fine enough where the last terms of its series are below this [rad, or parts of the size].
+#: A piece is fine enough where the last terms of its series are below this [rad, or shares of the size].
 RESOLVED = 2e-13
 
 #: Last terms below this part of the greatest value, or of a radian or the size, are rounding.
@@ -67,8 +68,8 @@ class CircuitPath:
     """A circuit by its arc length s, from 0 to `length`; closed ones go on by whole lengths.
 
     `poses` has all columns of the word by s, `drivers` (m,) the column that drives each piece; `gain`
-    (columns,) is what a closed circuit adds to them. `tail` [rad, or parts of the size] is the greatest of the
-    last terms of a joint's series.
+    (columns,) is what a closed circuit adds to them. `tail` [rad, or shares of the size] is the greatest of
+    the last terms of a joint's series.
     """
 
     poses: Along
@@ -119,6 +120,9 @@ class PathBuilder:
         rows = rows[np.isfinite(rows).all(axis=1)]
         if len(rows) < 4:
             raise RequestError("circuit: it has no rows to follow; ask a motion with more samples")
+        # turns of a ball that holds a spin come from arctangents
+        spun = [c for joint in numbers.spun for c in numbers.word.freedoms[joint][0].columns]
+        rows[:, spun] = np.unwrap(rows[:, spun], axis=0)
         gain = np.zeros(rows.shape[1])
         if circuit.closed:
             turns = np.round((rows[-1] - rows[0]) / math.tau)
@@ -195,11 +199,11 @@ class PathBuilder:
             half = np.minimum(ROUND_CHANGE_POINT, TO_THE_NEXT * np.minimum(near[:-1], near[1:]))
             edges = sorted([*ends, *(centres - half), *(centres + half)])
         cut = [first]
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
+        for a, b in pairwise(edges):
             whole = centres.size and bool(np.any((centres > a) & (centres < b)))
             parts = 1 if whole else max(1, math.ceil((b - a) / PIECE))
             cut += [a + (b - a) * k / parts for k in range(1, parts + 1)]
-        todo = [(a, b) for a, b in zip(cut[:-1], cut[1:], strict=True)]
+        todo = list(pairwise(cut))
         done: list[tuple[float, int, float, Floats]] = []
         for division in range(DIVISIONS + 1):
             charts = [self._driver(a, b) for a, b in todo]

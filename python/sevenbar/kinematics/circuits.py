@@ -526,14 +526,14 @@ class Circuit(Printed):
         Raises `RequestError` where nothing has a mass, and for a start that the circuit does not have.
 
             >>> import sevenbar as sb
-            >>> linkage = sb.four_bar(crank=50, coupler=130, rocker=80, ground=100)
-            >>> crank = sb.Body(mass=2.0, centre=(25, 0, 0))
+            >>> linkage = sb.four_bar(crank=40, coupler=100, rocker=80, ground=90)
+            >>> crank = sb.Body(mass=2.0, centre=(0, 20, 0))
             >>> circuit = linkage.motion().circuits[0]
             >>> fall = circuit.free_motion("10s", start="30deg", bodies={1: crank}, gravity=(0, -9.81, 0))
             >>> fall.kind
             'oscillation'
 
-        Source: docs/theory_free_motion.md, (40) to (52).
+        Source: docs/theory_free_motion.md, (1) to (13).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
         options = {
@@ -572,7 +572,7 @@ class Circuit(Printed):
             >>> [(place.kind, round(place.input % 6.283185307, 9)) for place in found]
             [('unstable', 1.570796327), ('stable', 4.71238898)]
 
-        Source: docs/theory_free_motion.md, (50).
+        Source: docs/theory_free_motion.md, (11).
         """
         given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
         return self._answers.equilibria(

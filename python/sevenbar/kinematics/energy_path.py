@@ -1,12 +1,12 @@
-"""What moves and acts along a circuit, by its arc length, from the core: mass, slope of the potential, damping.
+"""What moves and acts along a circuit by its arc length: mass, slope of the potential, damping.
 
 At the scaled rates u by the joint that drives a piece, ds = |u| dx, so
 
-    m = 2 T(x' = 1) / |u|^2,    U' = torque(at rest) / |u|,    D = loss(x' = 1) / |u|^2                   (44)
+    m = 2 T(x' = 1) / |u|^2,    U' = torque(at rest) / |u|,    D = loss(x' = 1) / |u|^2                   (5)
 
 The torque at rest is that of statics: weights, springs and loads are in it.
 
-Source: docs/theory_free_motion.md, (44).
+Source: docs/theory_free_motion.md, (5).
 """
 
 from __future__ import annotations
@@ -107,6 +107,8 @@ class EnergyBuilder:
             series = np.moveaxis(coefficients(np.moveaxis(values, 1, 0)), 0, 1)
             size = np.where(scale > 0, scale, 1.0)
             size[1] = max(size[1], 1e3 * floor)
+            # a joint that stands still has slopes of rounding
+            size[3], size[5:] = self.scales[path.input], self.scales[self.smooth]
             worst = (np.abs(series[:, -2:]) / size).max(axis=(1, 2))
             rough = worst > RESOLVED
             if division == DIVISIONS:
@@ -173,6 +175,8 @@ class EnergyBuilder:
         out, potential = np.empty((len(s), 5 + len(self.smooth))), np.empty(len(s))
         inputs = poses[:, self.path.input]
         joule = self.solver.size**2
+        # what loads give and take at once leaves rounding
+        damped = any(spring.damping for spring in self.solver.loading.springs)
         for driver in np.unique(self.path.drivers[pieces]):
             mine = np.flatnonzero(self.path.drivers[pieces] == driver)
             solver = self._solver(int(driver))
@@ -189,7 +193,7 @@ class EnergyBuilder:
                 if speeds is still:
                     out[mine, 1] = torque * joule * factor
             out[mine, 0] = 2 * energies[1][:, 0] * factor**2
-            out[mine, 2] = -(energies[1][:, 2] + energies[2][:, 2]) / 2 * factor**2
+            out[mine, 2] = -(energies[1][:, 2] + energies[2][:, 2]) / 2 * factor**2 if damped else 0.0
             by_s = rates * self.scales * factor[:, None]
             out[mine, 3] = by_s[:, self.path.input]
             out[mine, 4] = sum((torque * by_s[:, c] for c, torque in self.wound), np.zeros(len(mine)))

@@ -1,6 +1,6 @@
 """Free motion and equilibria of a circuit: the path, what acts along it, and the state at any time.
 
-Source: docs/theory_free_motion.md, (40) to (52).
+Source: docs/theory_free_motion.md, (1) to (13).
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -23,7 +24,8 @@ from sevenbar.forces.free_motion.equilibria import Equilibrium, resting_places
 from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, TurningPoint
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuit_path import ENOUGH_ROWS, CircuitPath, path_of
-from sevenbar.kinematics.circuits import Circuit, Words
+from sevenbar.kinematics.circuits import Circuit, Law, Words
+from sevenbar.kinematics.columns import joint_column
 from sevenbar.kinematics.energy_path import EnergyBuilder
 from sevenbar.kinematics.forces import ForceSolver
 from sevenbar.kinematics.free_rows import CourseRows
@@ -87,15 +89,15 @@ class FreeCourse:
         """The place of a start: an input [rad, or length], on a pass between dead centres of the input."""
         if value is None and branch is None:
             row = int(np.flatnonzero(np.isfinite(self.circuit.q).all(axis=1))[0])
-            return self._on_lap(self._place_of_row(), float(self.circuit.q[row, self.path.input]))
+            return self._on_lap(self._first, float(self.circuit.q[row, self.path.input]))
         if value is None:
             raise RequestError("start: is missing; give the input at which the pass `branch` is entered")
         number = joint_number("start", value, self.linkage, self.path.input)
         places = self.path.places(number, turns=self.turns)
         if not places.size:
             raise RequestError(f"start: the circuit has no pose at {shown(value)}; see its input_range")
-        row = self._place_of_row()
-        ordered = places[np.argsort((places - row + 1e-9 * self.path.length) % self.path.length)]
+        first = self._first
+        ordered = places[np.argsort((places - first + 1e-9 * self.path.length) % self.path.length)]
         if branch is None:
             return self._on_lap(float(ordered[0]), number)
         if (
@@ -104,7 +106,7 @@ class FreeCourse:
             or not 0 <= branch < len(ordered)
         ):
             raise RequestError(
-                f"branch: {shown(branch)} is not offered; the circuit has {len(ordered)} poses at this start, "
+                f"branch: {shown(branch)} is not offered; {len(ordered)} poses have this start, "
                 f"give 0 to {len(ordered) - 1}"
             )
         return self._on_lap(float(ordered[branch]), number)
@@ -117,7 +119,8 @@ class FreeCourse:
         own = float(self.path.poses.part(self.path.input).at(np.array([place]))[0, 0])
         return place + round((value - own) / gain) * self.path.length
 
-    def _place_of_row(self) -> float:
+    @cached_property
+    def _first(self) -> float:
         """The place of the circuit's first row that has a pose."""
         circuit, path = self.circuit, self.path
         row = int(np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0])
@@ -133,7 +136,7 @@ class FreeCourse:
         return float(places[np.linalg.norm(off / self.solver.numbers.scales[smooth], axis=1).argmin()])
 
     def rate(self, place: float, speed: float | str | None, energy: float | None) -> float:
-        """S' at a place, from the input's speed [rad/s, or length/s] or the kinetic energy [J]."""
+        """The rate s' at a place, from the input's speed [rad/s, or length/s] or the kinetic energy [J]."""
         if speed is not None and energy is not None:
             raise RequestError("energy: speed and energy are both given; give one of them")
         inside = np.array([place % self.path.length if self.path.closed else place])
@@ -206,7 +209,14 @@ def equilibria_of(
     course = course_of(linkage, circuit, loading)
     energy = course.energy.driven_by(finite_number("torque", torque))
     found = []
-    for place, kind, frequency, rate in resting_places(energy):
+    row = int(np.flatnonzero(np.isfinite(circuit.q).all(axis=1))[0])
+    gain, first = course.path.gain[course.path.input], float(circuit.q[row, course.path.input])
+    for inside, kind, frequency, rate in resting_places(energy):
+        place = inside
+        if gain:
+            # on the lap of the circuit's rows
+            own = float(course.path.poses.at(np.array([inside]))[0, course.path.input])
+            place -= math.floor((own - first) / gain + 1e-12) * course.path.length
         here, still = np.array([place]), (np.zeros(1),) * 3
         q = course.rows.at(here, still)[0][0]
         found.append(
@@ -244,9 +254,11 @@ def free_motion_of(
     times = np.linspace(0.0, seconds, int(samples))
     damped = own.quantities.reach[DAMPING] > UNDAMPED * own.quantities.reach[MASS]
     difference = math.nan
+    period: float | None = None
+    turns: tuple[float, ...] = ()
     if damped or motor is not None:
         solved, coarse = (driven(own, place, rate, seconds, motor, tol) for tol in (TOLERANCE, COARSE))
-        kind, period, turns = "ends" if solved.ended else "driven", None, ()
+        kind = "ends" if solved.ended else "driven"
         difference = float(np.nanmax(np.abs(solved.at(times)[0] - coarse.at(times)[0])))
         state = solved.at
     else:
@@ -285,7 +297,9 @@ def free_motion_of(
         through_change_points=bool(course.path.centres.size),
         heading=linkage.heading,
         _states=states,
+        _law=_as_law,
         _motion=partial(_as_motion, course, state, motor, own),
+        _table=_as_table,
     )
 
 
@@ -366,6 +380,27 @@ def _states(
     return FreeStates(q, dq, ddq, dddq, kinetic, potential, place, rates[0])
 
 
+def _as_law(found: FreeMotion) -> Law:
+    """The input over time, rows past the end left out."""
+    column, rows = found.input_column, np.isfinite(found.input)
+    value, rate, second, third = (part[rows, column] for part in (found.q, found.dq, found.ddq, found.dddq))
+    return Law.of(found.time[rows], value, rate, second, third if np.isfinite(third).all() else 0.0)
+
+
+def _as_table(found: FreeMotion, si: bool) -> dict[str, npt.NDArray[Any]]:
+    """Columns by names that end in their units."""
+    length, angle = ("m", "rad") if si else (found.length_unit, "deg")
+    scale = LENGTHS[found.length_unit] if si else 1.0
+    table: dict[str, npt.NDArray[Any]] = {"time_s": found.time}
+    for order, values in enumerate((found.q, found.dq, found.ddq)):
+        for k, (name, kind) in enumerate(zip(found.columns, found.column_kinds, strict=True)):
+            slides = kind == "slide"
+            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
+            column = values[:, k] * scale if slides else values[:, k]
+            table[head] = np.degrees(column) if head.endswith("_deg") else column
+    return table | {"kinetic_J": found.kinetic, "potential_J": found.potential}
+
+
 def _as_motion(
     course: FreeCourse, state: State, motor: Motor | None, own: EnergyCourse, found: FreeMotion
 ) -> Motion:
@@ -398,7 +433,9 @@ def _as_motion(
         _point=point,  # type: ignore[arg-type]
     )
     whole = linkage.motion(36, input=circuit.columns[circuit.input_column])
-    return replace(whole, circuits=(rows,), law=found.law(), speed=math.nan, samples=count, speed_written="")
+    return replace(
+        whole, circuits=(rows,), law=_as_law(found), speed=math.nan, samples=count, speed_written=""
+    )
 
 
 #: The fields of a circuit that a free motion has of its own.

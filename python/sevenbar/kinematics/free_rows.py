@@ -1,12 +1,13 @@
 """Rows of a linkage that moves along a circuit as it likes: columns, points and links by arc length.
 
-    dq/dt = q' s',   d2q/dt2 = q'' s'^2 + q' s''                                                          (52)
+    dq/dt = q' s',   d2q/dt2 = q'' s'^2 + q' s''                                                          (13)
 
-Source: docs/theory_free_motion.md, (52).
+Source: docs/theory_free_motion.md, (13).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,7 +21,7 @@ from sevenbar.kinematics.circuits import Trace, Words
 from sevenbar.kinematics.energy_path import EnergyBuilder
 from sevenbar.kinematics.poses import frames_of
 
-#: A ball's turns whose series ends above this [rad] are no polynomials there: the ball is near a singular pose.
+#: A ball whose turns' series end above this [rad] is near a singular pose, where they have no rates.
 UNDEFINED = 1e-8
 
 
@@ -73,6 +74,15 @@ class CourseRows:
         return Along(path.poses.edges, series)
 
     @cached_property
+    def gain(self) -> Floats:
+        """What a closed circuit adds to the columns (columns,)."""
+        gain = self.builder.path.gain.copy()
+        balls = np.flatnonzero(self.builder.numbers.is_ball)
+        ends = self.columns.series[-1].sum(axis=0) - self.columns.at(np.zeros(1))[0]
+        gain[balls] = math.tau * np.round(ends[balls] / math.tau)
+        return gain
+
+    @cached_property
     def _undefined(self) -> Floats:
         """Whether a ball's turns are undefined on a piece (m, columns)."""
         last = np.abs(self.columns.series[:, -2:]).max(axis=1)
@@ -87,7 +97,7 @@ class CourseRows:
         inside = place - laps * path.length
         known = np.isfinite(inside)
         inside = np.where(known, inside, 0.0)
-        q = self.columns.at(inside) + laps[:, None] * path.gain
+        q = self.columns.at(inside) + laps[:, None] * self.gain
         found = _by_time([q, *self._slopes(inside)], rates)
         piece = np.clip(np.searchsorted(path.poses.edges, inside, "right") - 1, 0, len(self._undefined) - 1)
         for values in found:

@@ -19,6 +19,9 @@ from sevenbar.text.units import LENGTHS
 #: size: programs take no rod without inertia about its line.
 LEAST_INERTIA = 1e-6
 
+#: How far an engine's input may be from Sevenbar's [rad, or as a part of a slide]: rounding over many turns.
+EDGE = 1e-9
+
 #: A body of the prototype, or `GROUND`, and a place (3,) [length] in its frame.
 Placed = tuple[int, Floats]
 
@@ -124,8 +127,13 @@ def acting(
             turn @ np.array(own.force),
             turn @ np.array(own.torque),
             turns,
-            lambda value: float(own.factors([value], turns=turning)[0]),
+            lambda value: factor(own, value),
         )
+
+    def factor(own: Load, value: float) -> float:
+        # at both ends of its range a load acts, also where an engine's input is a rounding off
+        near = EDGE * (1.0 if turning else abs(value)) if own.between else 0.0
+        return float(own.factors([value, value - near, value + near], turns=turning).max())
 
     def spring(own: Spring) -> PlacedSpring:
         assert own.links is not None

@@ -1,4 +1,4 @@
-"""Torque and reactions as an engine has them, beside Sevenbar's as far as equilibrium determines them."""
+"""Torque and reactions as an engine and Sevenbar have them, as far as equilibrium determines them."""
 
 from __future__ import annotations
 

@@ -28,8 +28,9 @@ LEFT, RIGHT = (440, 300, 0.3), (380, 290, 0.265)
 STYLE = (
     "<style>.mantine-Slider-root + .mantine-NumberInput-root { display: none }"
     " .mantine-Slider-root { margin-bottom: 0.55em }"
-    # five tabs in the narrowest panel
-    " [role=tab] { padding-inline: 0.45em !important }</style>"
+    # five tabs in the narrowest panel: there they have no icons
+    " [role=tab] { padding-inline: 0.45em !important }"
+    " @media (max-width: 1340px) { [role=tab] :has(> svg) { display: none } }</style>"
 )
 
 FAULT = "this is a fault of Sevenbar, not yours; please report the lines in the terminal"

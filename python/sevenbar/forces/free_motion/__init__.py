@@ -1,1 +1,1 @@
-"""Free motion of one freedom: time as an integral along the circuit, equilibria, and what losses and motors do."""
+"""Free motion of one freedom: time as an integral along the circuit, equilibria, losses and motors."""

@@ -4,7 +4,7 @@ Between neighbouring marks of the course U rises or falls all the way, so the fi
 energy has the turning point before it: none is missed. Between two turning points, or once round, the motion
 repeats itself for ever.
 
-Source: docs/theory_free_motion.md, (45) to (49).
+Source: docs/theory_free_motion.md, (6) to (10).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from sevenbar.forces.free_motion.runs import Run, run_between
 JUST = 1e-13
 
 #: How near [parts of the lap] to such a top the exponential law takes over.
-NEAR_TOP = 1e-7
+NEAR_TOP = 1e-6
 
 #: A slope of U below this part of its greatest is that of an equilibrium.
 BALANCED = 1e-13
@@ -32,7 +32,7 @@ BALANCED = 1e-13
 #: Most laps of a motion that does not repeat itself.
 MOST_LAPS = 20_000
 
-#: Parts of the way in which a turning point is looked for first.
+#: The way is cut into so many for the first search of a turning point.
 PARTS = 32
 
 #: Most laps that are taken together.
@@ -65,7 +65,7 @@ class Leg:
 
 @dataclass(frozen=True, eq=False)
 class Conservative:
-    """The motion from a place with a speed: legs, and from `repeats_from` on by `period` [s] again and again."""
+    """The motion from a place with a speed: legs, and by `period` [s] again and again."""
 
     kind: Course
     legs: tuple[Leg, ...]
@@ -75,7 +75,7 @@ class Conservative:
     #: What a period adds to the place.
     advance: float = 0.0
     rests_at: float = math.nan
-    #: Towards a hill's top: its place, when it is so near that only this counts, from where, and the rate [1/s].
+    #: Towards a hill's top: its place, from when on only that counts, from where, and the rate [1/s].
     top: tuple[float, float, float, float] | None = field(default=None)
 
     def at(self, t: Floats) -> tuple[Floats, Floats]:
@@ -108,9 +108,8 @@ def conservative(course: EnergyCourse, place: float, speed: float, duration: flo
     mass, slope = (float(part[0]) for part in course.at(np.array([place]))[:2])
     kinetic = mass * speed**2 / 2
     reference = (place, kinetic)
-    steepest = float(np.abs(course.quantities.reach[1]))
     if speed == 0.0:
-        if abs(slope) <= BALANCED * steepest:
+        if abs(slope) <= BALANCED * course.steepest:
             return Conservative("rest", (), None, (), rests_at=place)
         way = -1 if slope > 0 else 1
     else:
@@ -168,6 +167,8 @@ def _to_the_top(
     turned: float | None = None,
 ) -> Conservative:
     off = NEAR_TOP * course.length
+    # seen from the top, little energy loses no digits
+    reference = (top, 0.0)
     near = top - way * off
     begin = before[-1].end if before else 0.0
     legs = before
@@ -194,7 +195,7 @@ def _passing(
     *,
     rests: bool,
 ) -> Conservative:
-    """A motion on an open circuit, or one that no lap repeats: lap by lap until it turns twice, or time is up."""
+    """A motion that no lap repeats: lap by lap until it turns twice, time is up, or the circuit ends."""
     legs: list[Leg] = []
     here, time, turned = place, 0.0, rests
     first_turn = place if rests else None
@@ -218,8 +219,7 @@ def _passing(
             again = Leg(back.end, swing, way_at_start, 0.0 if way_at_start > 0 else swing.time)
             return Conservative("oscillation", (first, back, again), 2 * swing.time, (low, high))
         if end is not None and end[1] == "top":
-            found = _to_the_top(course, reference, here, way, end[0], tuple(legs), first_turn)
-            return found
+            return _to_the_top(course, reference, here, way, end[0], tuple(legs), first_turn)
         stop = aim if end is None else end[0]
         low, high = sorted((here, stop))
         starts_still = rests and not legs
@@ -244,7 +244,7 @@ def _passing(
         elif not course.closed:
             return Conservative("ends", tuple(legs), None, () if first_turn is None else (first_turn,))
     raise RequestError(
-        f"duration: the motion goes round more than {MOST_LAPS} times without repeating itself; give a shorter one"
+        f"duration: the motion goes round more than {MOST_LAPS} times and repeats nothing; give a shorter one"
     )
 
 
@@ -256,10 +256,10 @@ class _Seeker:
 
     def kinetic(self, s: Floats) -> Floats:
         """T (j,) [J] at places (j,); below zero where the motion does not come."""
-        return np.asarray(self.reference[1] - self.course.rise(np.float64(self.reference[0]), s))
+        return np.asarray(self.reference[1] - self.course.rise(self.reference[0], s))
 
     def end(self, place: float, way: int, aim: float) -> tuple[float, str] | None:
-        """The first place from here on, up to `aim`, where it turns ("turn") or that it never reaches ("top")."""
+        """The first place from here to `aim` where it turns ("turn"), or that it never reaches ("top")."""
         course = self.course
         first, last = np.sort(course.laps(np.array([place, aim])))
         laps = np.arange(first - 1, last + 2) if course.closed else np.zeros(1)
@@ -273,7 +273,7 @@ class _Seeker:
         kinetic = self.kinetic(ordered)
         scale = max(float(np.abs(kinetic).max()), self.reference[1])
         slopes = np.abs(course.slope(ordered))
-        flat = slopes <= 1e-9 * float(course.quantities.reach[1])
+        flat = slopes <= 1e-9 * course.steepest
         for i, (height, level) in enumerate(zip(kinetic, flat, strict=True)):
             if level and abs(height) <= JUST * scale:
                 return float(ordered[i]), "top"
@@ -288,7 +288,8 @@ class _Seeker:
         beyond = np.flatnonzero(self.kinetic(fine[1:-1]) < 0)
         first = int(beyond[0]) + 1 if beyond.size else PARTS
         inside, outside = float(fine[first - 1]), float(fine[first])
-        at = (inside + outside) / 2
+        ends = self.kinetic(np.array([inside, outside]))
+        at = inside + (outside - inside) * float(np.clip(ends[0] / (ends[0] - ends[1]), 0.0, 1.0))
         for _ in range(200):
             here = np.array([at])
             height, slope = float(self.kinetic(here)[0]), -float(self.course.slope(here)[0])
@@ -298,7 +299,7 @@ class _Seeker:
                 outside = at
             step = at - height / slope if slope else math.inf
             after = step if min(inside, outside) < step < max(inside, outside) else (inside + outside) / 2
-            if abs(after - at) <= 2 * np.spacing(abs(at)):
+            if abs(after - at) <= 4 * np.spacing(abs(at)):
                 return after
             at = after
         return at

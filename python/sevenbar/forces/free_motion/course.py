@@ -1,11 +1,11 @@
 """A linkage as one body on its circuit: the mass that arc length sees, potential energy, damping.
 
-    T = m(s) s'^2 / 2,    m s'' + m' s'^2 / 2 = -U' - D s' + torque dx/ds                                 (43)
+    T = m(s) s'^2 / 2,    m s'' + m' s'^2 / 2 = -U' - D s' + torque dx/ds                                 (4)
 
 U is the potential energy of weights and springs less the work of loads, which depends on the place only, so
 on a closed circuit it may rise or fall with every lap.
 
-Source: docs/theory_free_motion.md, (43) and (44).
+Source: docs/theory_free_motion.md, (4) and (5).
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from sevenbar.arrays import Floats
@@ -70,14 +71,10 @@ class EnergyCourse:
         last = self._all.series[-1].sum(axis=0)
         return float(last[-2]), float(last[-1])
 
-    @cached_property
-    def _force(self) -> float:
-        return float(self.quantities.reach[SLOPE])
-
     @property
     def gain(self) -> float:
         """What U gains on a lap; 0 where that is rounding."""
-        return self._gains[0] if abs(self._gains[0]) > 1e-12 * self._force * self.length else 0.0
+        return self._gains[0] if abs(self._gains[0]) > 1e-12 * self.steepest * self.length else 0.0
 
     @property
     def repeats(self) -> bool:
@@ -112,20 +109,41 @@ class EnergyCourse:
         own = self._slopes.at(s - lap * self.length)
         return np.asarray(own[:, 0] + lap * own[:, 1]) if self.winds else own[:, 0]
 
-    def rise(self, a: Floats, b: Floats) -> Floats:
+    def rise(self, a: Floats | float, b: Floats) -> Floats:
         """U(b) - U(a), (j,): over short ways the integral of U', which loses no digits."""
         a, b = np.broadcast_arrays(np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64))
         out = self.at(b)[2] - self.at(a)[2]
-        near = np.flatnonzero(np.abs(b - a) < SHORT * self.shortest)
+        near = np.flatnonzero((np.abs(b - a) < SHORT * self.shortest) & ~self._parted(a, b))
         if near.size:
             out[near] = (b - a)[near] * self.mean_slope(a[near], b[near])
         return np.asarray(out)
+
+    def _parted(self, a: Floats, b: Floats) -> npt.NDArray[np.bool_]:
+        """Whether a break lies between places (j,), where no polynomial leads across."""
+        if not self.breaks.size:
+            return np.zeros(a.shape, dtype=bool)
+        sides = [
+            np.searchsorted(self.breaks, s - lap * self.length) + len(self.breaks) * lap
+            for s in (a, b)
+            for lap in (self.laps(s),)
+        ]
+        return np.asarray(sides[0] != sides[1])
 
     def mean_slope(self, a: Floats, b: Floats) -> Floats:
         """The mean of U' (j,) over short ways from a to b, (j,) each."""
         points, weights = _GAUSS
         where = a[:, None] + (b - a)[:, None] * (points + 1) / 2
         return np.asarray(self.slope(where.ravel()).reshape(where.shape) @ weights / 2)
+
+    @cached_property
+    def steepest(self) -> float:
+        """The greatest size of U'."""
+        return float(self.quantities.reach[SLOPE])
+
+    @cached_property
+    def highest(self) -> float:
+        """The greatest size of U on the first lap, from its own integral."""
+        return float(self._all.reach[5])
 
     @cached_property
     def shortest(self) -> float:

@@ -1,11 +1,11 @@
-"""Free motion with dampers, or a motor whose torque depends on speed or time: an ordinary equation in s and s'.
+"""Free motion with dampers, or with a motor by its speed or by time: an ordinary equation in s and s'.
 
-    m s'' = -U' - D s' - m' s'^2 / 2 + torque(t, dx/dt) dx/ds                                             (51)
+    m s'' = -U' - D s' - m' s'^2 / 2 + torque(t, dx/dt) dx/ds                                             (12)
 
 Solved by an explicit method of order eight with tight tolerances (scipy's DOP853), from break to break of the
-loads, twice: the difference at two tolerances is what is said of the accuracy.
+loads, twice: the difference of the two is the accuracy reported.
 
-Source: docs/theory_free_motion.md, (51).
+Source: docs/theory_free_motion.md, (12).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Motor = Callable[[float, float], float]
 
 @dataclass(frozen=True, eq=False)
 class Driven:
-    """A solution: dense between `bounds`, with the difference `error` (j, 2) from a coarser one where asked."""
+    """A solution, dense between `bounds` [s]."""
 
     bounds: Floats
     parts: tuple[Any, ...]
@@ -99,7 +99,7 @@ def driven(
         events: list[Any] = []
         for bound in (low, high):
             if math.isfinite(bound):
-                event: Any = lambda t, y, bound=bound: y[0] - bound  # noqa: E731
+                event: Any = lambda t, y, bound=bound: y[0] - bound  # noqa: ARG005, E731
                 event.terminal = True
                 event.direction = 1.0 if bound == high else -1.0
                 events.append(event)

@@ -1,11 +1,11 @@
 """Where a linkage can rest: every zero of the slope of its potential on the circuit, found, not sampled.
 
-    U'(s) = 0,    stable where U'' > 0,    omega^2 = U'' / m                                              (50)
+    U'(s) = 0,    stable where U'' > 0,    omega^2 = U'' / m                                              (11)
 
 A load that sets in at a place makes U' jump; where it jumps over zero upwards the linkage rests as well, held
 from both sides.
 
-Source: docs/theory_free_motion.md, (50).
+Source: docs/theory_free_motion.md, (11).
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ Kind = Literal["stable", "unstable", "flat", "edge"]
 class Equilibrium(Printed):
     """A place where the linkage can rest.
 
-    `input` [rad, or length]; `q` (columns,) all joint values; `kind`: "stable", "unstable", "flat" where the
-    curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it.
-    `frequency` [rad/s] is that of small vibrations about a stable one, `rate` [1/s] that at which it leaves an
+    `input` [rad, or length]; `q` (columns,) all joint values; `kind` is "stable", "unstable", "flat"
+    where the curvature of the potential vanishes, "edge" where a load that sets in or ends there holds it.
+    `frequency` [rad/s] is that of small vibrations about a stable one, `rate` [1/s] that of leaving an
     unstable one; NaN where there is none. `potential` [J] is that of weights, springs and loads.
     """
 
@@ -98,7 +98,7 @@ def resting_places(course: EnergyCourse) -> list[tuple[float, Kind, float, float
 
 
 def _zeros(own: Along, piece: int, marks: Floats, heights: Floats) -> list[float]:
-    """Zeros of a piece's polynomial between its marks; a touching one that rounding hides is found as well."""
+    """Zeros of a piece's polynomial between its marks, those that only touch zero among them."""
     touch = 1e-13 * float(own.reach[0])
     found = [float(s) for s, h in zip(marks, heights, strict=True) if abs(h) <= touch]
     whole: npt.NDArray[np.int64] = np.array([piece])

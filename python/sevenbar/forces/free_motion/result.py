@@ -1,26 +1,21 @@
-"""A free motion: time, place, all joint values and rates, energies; how it goes on, and what is known of it."""
+"""A free motion: time, all joint values and rates, energies; how it goes on, and how exact it is."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
 from sevenbar.errors import RequestError, ends_here
 from sevenbar.text.printing import Drawable
 
-if TYPE_CHECKING:
-    from sevenbar.kinematics.circuits import Law
-    from sevenbar.kinematics.motion import Motion
-
 
 @dataclass(frozen=True)
 class TurningPoint:
-    """A pose where the linkage comes to rest and turns back: input [rad, or length] and potential energy [J]."""
+    """A pose where the linkage turns back: the input [rad, or length] and the potential energy [J]."""
 
     input: float
     potential: float
@@ -36,7 +31,7 @@ class FreeStates:
     dddq: Floats
     kinetic: Floats
     potential: Floats
-    #: Arc length [rad, or parts of the size] and its rate.
+    #: Arc length [rad, or shares of the size] and its rate.
     place: Floats
     rate: Floats
 
@@ -47,15 +42,15 @@ class FreeMotion(Drawable):
 
     `time` (n,) [s]; `q`, `dq`, `ddq`, `dddq` (n, columns) [rad, or length, and derivatives by s], unwrapped;
     `kinetic` and `potential` (n,) [J], the latter of weights, springs and loads, and of a constant torque.
-    `kind`: "rotation" and "oscillation" repeat themselves with `period` [s]; "rest"; "asymptotic" comes nearer
-    and nearer to an unstable equilibrium; "passing" repeats nothing within the duration; "ends" leaves an open
+    `kind`: "rotation" and "oscillation" repeat themselves with `period` [s]; "rest"; "asymptotic" comes ever
+    nearer to an unstable equilibrium; "passing" repeats nothing within the duration; "ends" leaves an open
     circuit, rows after that are NaN; "driven" has dampers or a motor. `turning` are the points where it turns
     back, found, not sampled. `energy_error` is the greatest change of energy over the rows that nothing
     explains, as a part of the greatest kinetic energy: NaN for "driven", which has `difference`, the greatest
-    difference in `q` [rad, or parts of the size] from a solution with a hundred times the tolerance. `tail` is
+    in arc length [rad, or shares of the size] from a solution at a hundred times the tolerance. `tail` is
     what the polynomials along the circuit leave out, as a part of the greatest value.
 
-    Source: docs/theory_free_motion.md, (40) to (51).
+    Source: docs/theory_free_motion.md, (1) to (12).
     """
 
     time: Floats
@@ -81,7 +76,9 @@ class FreeMotion(Drawable):
     through_change_points: bool
     heading: str = field(repr=False)
     _states: Callable[[Floats], FreeStates] = field(repr=False)
-    _motion: Callable[[FreeMotion], Motion] = field(repr=False)
+    _law: Callable[[FreeMotion], Any] = field(repr=False)
+    _motion: Callable[[FreeMotion], Any] = field(repr=False)
+    _table: Callable[[FreeMotion, bool], dict[str, npt.NDArray[Any]]] = field(repr=False)
 
     @property
     def input(self) -> Floats:
@@ -112,29 +109,24 @@ class FreeMotion(Drawable):
         knows_all = self.kind in ("rotation", "oscillation", "rest", "asymptotic")
         if not knows_all and asked.size and asked.max() > self.duration:
             raise RequestError(
-                f"times: {asked.max():g} s is after the duration of {self.duration:g} s; give a longer duration"
+                f"times: {asked.max():g} s is after the duration of {self.duration:g} s; "
+                "give a longer duration"
             )
         states = self._states(asked)
         kept = {name: getattr(states, name) for name in ("q", "dq", "ddq", "dddq", "kinetic", "potential")}
         return replace(self, time=asked, **kept)
 
-    def law(self) -> Law:
-        """The input over time as a law, for `linkage.motion(law=..)`: rows in which the input is known.
+    def law(self) -> Any:
+        """The input over time as a `Law`, for `linkage.motion(law=..)`: rows in which the input is known.
 
         A law has the input only; where that turns back, the rows of `motion()` say on which pass the linkage
         is.
         """
-        from sevenbar.kinematics.circuits import Law
-
-        column = self.input_column
-        rows = np.isfinite(self.input)
-        rates = [part[rows, column] for part in (self.q, self.dq, self.ddq)]
-        third = self.dddq[rows, column]
-        return Law.of(self.time[rows], *rates, third if np.isfinite(third).all() else 0.0)
+        return self._law(self)
 
     @ends_here
-    def motion(self) -> Motion:
-        """A motion with one circuit, whose rows are these: for films, figures, tables and forces.
+    def motion(self) -> Any:
+        """A `Motion` with one circuit, whose rows are these: for films, figures, tables and forces.
 
         Its rows run through dead centres of the input, where a law alone does not say how to go on. Forces on
         it are those of the free motion: the input's torque is what a motor gives.
@@ -142,18 +134,5 @@ class FreeMotion(Drawable):
         return self._motion(self)
 
     def table(self, *, si: bool = False) -> dict[str, npt.NDArray[Any]]:
-        """Columns (n,) by names that end in their units, as a file has them: degrees, or radians with `si`."""
-        from sevenbar.kinematics.columns import joint_column
-        from sevenbar.text.units import LENGTHS
-
-        length, angle = ("m", "rad") if si else (self.length_unit, "deg")
-        scale = LENGTHS[self.length_unit] if si else 1.0
-        found: dict[str, npt.NDArray[Any]] = {"time_s": self.time}
-        for order, values in enumerate((self.q, self.dq, self.ddq)):
-            for k, (name, kind) in enumerate(zip(self.columns, self.column_kinds, strict=True)):
-                slides = kind == "slide"
-                head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
-                column = values[:, k] * scale if slides else values[:, k]
-                found[head] = np.degrees(column) if head.endswith("_deg") else column
-        found["kinetic_J"], found["potential_J"] = self.kinetic, self.potential
-        return found
+        """Columns (n,) by names that end in their units, as a file has them; SI units with `si`."""
+        return self._table(self, si)

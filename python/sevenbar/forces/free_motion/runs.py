@@ -1,18 +1,19 @@
 """A motion one way along a circuit without losses: time as an integral of place, and place by time.
 
-    t = integral ds / s',    s' = sqrt(2 (E - U) / m)                                                     (45)
+    t = integral ds / s',    s' = sqrt(2 (E - U) / m)                                                     (6)
 
 At a turning point c, where E = U, s = c - l (1 - w)^2 makes the integrand smooth:
 
-    dt/dw = 2 sqrt(l m / (2 M)),    M the mean of U' from s to c                                          (46)
+    dt/dw = 2 sqrt(l m / (2 M)),    M the mean of U' from s to c                                          (7)
 
-Source: docs/theory_free_motion.md, (45) to (47).
+Source: docs/theory_free_motion.md, (6) to (8).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +21,7 @@ from numpy.polynomial import chebyshev
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.stationary import coefficients, nodes
-from sevenbar.forces.free_motion.course import EnergyCourse
+from sevenbar.forces.free_motion.course import SHORT, EnergyCourse
 
 #: Nodes of a panel.
 TERMS = 20
@@ -28,10 +29,13 @@ TERMS = 20
 #: A panel is fine enough where its last terms are below this part of the first.
 RESOLVED = 1e-14
 
-#: What rounding of a place leaves, in parts of it by the length of a piece.
+#: What rounding of a place leaves, as a share of it by the length of a piece.
 ROUNDING = 4e-15
 
-#: Most halvings of a panel: past an equilibrium that is just not reached the integrand is as sharp as rounding.
+#: What rounding leaves of energies and slopes, as a part of their greatest.
+DIGITS = 2e-15
+
+#: Most halvings of a panel: where an equilibrium is just passed the integrand is as sharp as rounding.
 HALVINGS = 50
 
 #: Steps of Newton's method, or halvings, from times to places.
@@ -45,8 +49,8 @@ LOW, PLAIN, HIGH = -1, 0, 1
 class Run:
     """A motion from `low` up to `high`, or back; its panels in order, and times from `low` on.
 
-    `kind`, `starts`, `ends`, `first`, `last` (m,): what a panel does, its places, and the part of it from w to
-    w that is this piece; `times` (m + 1,) [s]; `series` (m, terms) of dt/dw, in Chebyshev's polynomials.
+    `kind`, `starts`, `ends`, `first`, `last` (m,): what a panel does, its places, and from which w to
+    which w this piece of it goes; `times` (m + 1,) [s]; `series` (m, terms) of dt/dw.
     """
 
     low: float
@@ -135,7 +139,7 @@ def run_between(
     edges = np.concatenate([[low_end], inner, [high_end]])
     keep = np.append(np.diff(edges) > 1e-13 * course.length, True)
     edges = edges[keep]
-    panels = [(PLAIN, a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    panels = [(PLAIN, a, b) for a, b in pairwise(edges)]
     if turns_low:
         panels.insert(0, (LOW, low, low_end))
     if turns_high:
@@ -149,10 +153,10 @@ def run_between(
     resolved = max(RESOLVED, ROUNDING * max(abs(low), abs(high)) / course.shortest)
     for halving in range(HALVINGS + 1):
         w = (first + last)[:, None] / 2 + (last - first)[:, None] / 2 * nodes(TERMS)
-        rates = _rates(course, kind, starts, ends, w, reference)
+        rates, noise = _rates(course, kind, starts, ends, w, reference)
         series = coefficients(rates.T).T
         worst = np.abs(series[:, -2:]).max(axis=1) / np.abs(series[:, 0])
-        rough = worst > resolved if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
+        rough = worst > np.maximum(resolved, noise) if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
         # no finer than places are known
         rough &= (last - first) * (ends - starts) > 1e-14 * course.length
         tail = max(tail, float(worst[~rough].max(initial=0.0)))
@@ -177,26 +181,32 @@ def _rates(
     ends: Floats,
     w: Floats,
     reference: tuple[float, float],
-) -> Floats:
-    """dt/dw (m, terms) on panels (m,) at w (m, terms)."""
+) -> tuple[Floats, Floats]:
+    """dt/dw (m, terms) on panels (m,) at w (m, terms), and what part of it rounding may be (m,)."""
     place, by_w = _place(kind[:, None], starts[:, None], ends[:, None], w)
     mass = course.at(place.ravel())[0].reshape(w.shape)
     kinetic = np.empty(w.shape)
     plain = kind == PLAIN
     origin, there = reference
+    noise = np.empty(w.shape)
     kinetic[plain] = there - course.rise(origin, place[plain].ravel()).reshape(-1, w.shape[1])
+    away = np.abs(place[plain] - origin)
+    near = away < SHORT * course.shortest
+    noise[plain] = DIGITS * (np.where(near, course.steepest * away, course.highest) + there)
     for own, edge, sign in ((kind == LOW, starts, -1.0), (kind == HIGH, ends, 1.0)):
         if own.any():
             at = np.repeat(edge[own], w.shape[1])
             mean = course.mean_slope(place[own].ravel(), at).reshape(-1, w.shape[1])
             kinetic[own] = sign * mean
+            noise[own] = DIGITS * course.steepest
     way = (ends - starts)[:, None]
     kinetic = np.maximum(kinetic, np.finfo(float).tiny)
     mass = np.maximum(mass, 0.0)
     # at a turning point the square root of the way cancels
-    return np.where(
+    rates = np.where(
         plain[:, None], by_w * np.sqrt(mass / (2 * kinetic)), 2 * np.sqrt(way * mass / (2 * kinetic))
     )
+    return rates, (noise / kinetic).max(axis=1)
 
 
 def _inner_marks(course: EnergyCourse, low: float, high: float) -> Floats:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import viser
 
 from sevenbar.studio.panels.controls import Asked, put
-from sevenbar.studio.state.acting import Acting
+from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.curves import Over, panels
@@ -75,7 +75,7 @@ class CurvesPanel:
             for html, panel in zip(self._cursors, self._panels, strict=True):
                 html.content = panel.cursor_html(self._session.row)
 
-    def _offer(self, view: View, acting: Acting) -> None:
+    def _offer(self, view: View, acting: SwitchedLoading) -> None:
         """What can be chosen; a choice that there is no more goes back to the output's curves."""
         usual = quantities(view.motion)
         found = (*usual, *force_quantities(view, acting, [quantity.name for quantity in usual]))

@@ -15,9 +15,12 @@ from sevenbar.reporting.force_words import number
 from sevenbar.studio.panels.controls import Asked, put
 from sevenbar.studio.panels.scenery import arrow_unit
 from sevenbar.studio.pictures.stage import Arrow, Stage
-from sevenbar.studio.state.acting import Acting, known_force
+from sevenbar.studio.state.acting import SwitchedLoading, known_force
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.view import View
+
+#: The longest arrow, as a share of the linkage's extent.
+LONGEST = 0.25
 
 NO_ARROWS, EVERY_JOINT = "none", "all joints"
 
@@ -73,7 +76,7 @@ class ForceArrows:
             return list(range(len(self._names)))
         return [self._names.index(chosen)] if chosen in self._names else []
 
-    def _follow(self, view: View, acting: Acting, wanted: list[int]) -> None:
+    def _follow(self, view: View, acting: SwitchedLoading, wanted: list[int]) -> None:
         """Computes the forces along the path, and the scale that all arrows share."""
         forces = acting.forces(view)
         self._along, self._unit = [], 0.0
@@ -86,7 +89,9 @@ class ForceArrows:
         ]
         if self._along:
             sizes = np.linalg.norm(np.concatenate([force for _, force in self._along]), axis=1)
-            self._unit = arrow_unit(view, sizes, 95 if view.circuit.turns_back else 100)
+            self._unit = arrow_unit(
+                view, sizes, percent=95 if view.circuit.turns_back else 100, longest=LONGEST
+            )
 
     def _at(self, view: View, row: float) -> list[Arrow]:
         places = view.frame.pose(row)

@@ -16,7 +16,7 @@ from sevenbar.studio.state.acting import Switch, drive_sizing
 from sevenbar.studio.state.session import Session
 from sevenbar.studio.state.verdict import facts_block
 
-#: The peaks are looked for so long [s] after the last change: finding them takes longer than a picture may.
+#: The peaks are sought so long [s] after the last change: finding them takes longer than a picture may.
 AT_REST = 0.25
 
 

@@ -250,12 +250,12 @@ class Scenery:
         self.stage.marks(np.array(places).reshape(-1, 3), words)
 
 
-def arrow_unit(view: View, sizes: Floats, percent: float = 95) -> float:
+def arrow_unit(view: View, sizes: Floats, *, percent: float = 95, longest: float = LONGEST_ARROW) -> float:
     """What an arrow as long as the length unit stands for, by the sizes (n,) that arrows show.
 
-    The longest is that of so many percent of the rows: those near dead centres, where sizes grow without
-    bound, do not set the scale.
+    The longest, a share of the linkage's extent, is that of so many percent of the rows: those near dead
+    centres, where sizes grow without bound, do not set the scale.
     """
     kept = sizes[np.isfinite(sizes)]
     usual = float(np.percentile(kept, percent)) if kept.size else 0.0
-    return usual / (LONGEST_ARROW * view.frame.span)
+    return usual / (longest * view.frame.span)

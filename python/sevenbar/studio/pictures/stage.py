@@ -34,6 +34,8 @@ PALE = 0.4
 GHOST, MOST_GHOSTS = 0.2, 16
 #: Radii of an arrow's shaft and head, and its head's length; a mark's radius [1].
 SHAFT, HEAD, HEAD_LENGTH, MARK = 0.011, 0.03, 0.095, 0.022
+#: How much thicker arrows of joints are: the force of a rod lies within it, and has to be seen round it.
+STOUT = 1.8
 #: From a place to its label.
 ABOVE = np.array([0.0, 0.0, 0.045])
 #: The head's greatest share of a short arrow.
@@ -73,8 +75,8 @@ class Stage:
         self._names = Labels(scene, "/names")
         self._mark_labels = Labels(scene, "/mark_labels")
         self._arrows = {
-            "points": (Batches(scene, "/arrows"), Labels(scene, "/arrow_labels")),
-            "joints": (Batches(scene, "/force_arrows"), Labels(scene, "/force_labels")),
+            "points": (1.0, Batches(scene, "/arrows"), Labels(scene, "/arrow_labels")),
+            "joints": (STOUT, Batches(scene, "/force_arrows"), Labels(scene, "/force_labels")),
         }
         self._lines: dict[str, LineSegmentsHandle] = {}
         self._path_colours: dict[str, Colours] = {}
@@ -216,7 +218,7 @@ class Stage:
 
     def arrows(self, rows: Sequence[Arrow], of: str = "points") -> None:
         """The arrows of points or of joints; none clears those."""
-        arrows, labels = self._arrows[of]
+        stout, arrows, labels = self._arrows[of]
         if not rows:
             arrows.clear()
             labels.put([], np.empty((0, 3)))
@@ -226,7 +228,8 @@ class Stage:
         length = np.linalg.norm(way, axis=1, keepdims=True)
         neck = start + way * (1 - np.minimum(HEAD_LENGTH / np.where(length > 0, length, 1.0), HEAD_MOST))
         colours = self._shade(np.array([rgb(name) for name in names]))
-        shafts, heads = stretched(start, neck, SHAFT), stretched(neck, start + way, HEAD)
+        shafts = stretched(start, neck, stout * SHAFT)
+        heads = stretched(neck, start + way, stout * HEAD)
         arrows.put({"cylinder": shafts, "cone": heads}, {"cylinder": colours, "cone": colours})
         labels.put(list(texts), start + way + ABOVE / 2)
 

@@ -38,7 +38,7 @@ class Switch:
 
 
 @dataclass(frozen=True, eq=False)
-class Acting:
+class SwitchedLoading:
     """What acts on a linkage, without what is switched `off`, by the keys of its switches.
 
     The description stays as it is. Nothing is computed before it is asked for.
@@ -75,9 +75,9 @@ class Acting:
         ]
         return (*found, *_named("spring", own.springs, words))
 
-    def switched(self, key: str, *, on: bool) -> Acting:
+    def switched(self, key: str, *, on: bool) -> SwitchedLoading:
         """The same with one of the switches on or off."""
-        return Acting(self.linkage, self.off - {key} if on else self.off | {key})
+        return SwitchedLoading(self.linkage, self.off - {key} if on else self.off | {key})
 
     def forces(self, view: View) -> Forces | None:
         """The forces on the rows of a view's circuit; `None` where there are none."""

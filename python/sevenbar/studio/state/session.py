@@ -13,7 +13,7 @@ from sevenbar.errors import RequestError, SevenbarError
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.word import Place
 from sevenbar.reporting.facts import meaning
-from sevenbar.studio.state.acting import Acting
+from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
 
 #: Inputs in a full turn.
@@ -47,7 +47,7 @@ class Session:
         self.future: list[Draft] = []
         self._last_change: tuple[object, float] = ((), -math.inf)
         self.draft = Draft.of(text, source, agree=agree)
-        self.acting = Acting(self.draft.linkage)
+        self.acting = SwitchedLoading(self.draft.linkage)
         self._take(self.draft)
 
     def open(self, text: str, source: str) -> None:
@@ -61,7 +61,7 @@ class Session:
         if draft.text is not self.draft.text:
             # another file; the one before would be no picture of it
             self.view, self.forwards = None, True
-            self.acting = Acting(draft.linkage)
+            self.acting = SwitchedLoading(draft.linkage)
         self.draft = draft
         self.motion: Motion | None = None
         try:
@@ -77,7 +77,7 @@ class Session:
             self.problem = "its dimensions differ so much in size that its motion is lost in rounding"
         else:
             self.views = views_of(motion)
-            self.acting = Acting(draft.linkage, self.acting.off)
+            self.acting = SwitchedLoading(draft.linkage, self.acting.off)
             self.view, self.row = (
                 (self.views[0], 0.0) if self.view is None else nearest(self.views, self.view, self.row)
             )

@@ -11,7 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import slides
 from sevenbar.forces.result import Forces, Reaction
-from sevenbar.studio.state.acting import Acting
+from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.quantities import Quantity
 from sevenbar.text.units import LENGTHS
@@ -19,7 +19,7 @@ from sevenbar.text.units import LENGTHS
 #: What every joint has, and one with an axis: words of the name, and components of the force in its frame.
 PARTS = {"force": (0, 1, 2), "radial force": (0, 1)}
 
-#: The greatest force is looked for among all rows but this share [%], those nearest to dead centres.
+#: The greatest force is sought among all rows but this share [%], those nearest to dead centres.
 ENDLESS = 5.0
 
 
@@ -30,7 +30,7 @@ class ForceQuantity(Quantity):
     It counts as of the second order: like accelerations, forces grow without bound at dead centres.
     """
 
-    acting: Acting | None = None
+    acting: SwitchedLoading | None = None
     joint: str = ""
 
     @property
@@ -68,7 +68,7 @@ class ForceQuantity(Quantity):
         return force * (arm if self.unit == "N m" else 1.0)
 
     def absence(self, view: View) -> str:
-        """What stands in the place of a curve that has no value."""
+        """What is shown in place of a curve that has no value."""
         forces = self._forces(view)
         if forces is None:
             return self.acting.reason(view) if self.acting else ""
@@ -84,7 +84,7 @@ class ForceQuantity(Quantity):
         return None if self.acting is None else self.acting.forces(view)
 
 
-def force_quantities(view: View, acting: Acting, taken: Collection[str]) -> tuple[ForceQuantity, ...]:
+def force_quantities(view: View, acting: SwitchedLoading, taken: Collection[str]) -> tuple[ForceQuantity, ...]:
     """All of forces that can be drawn, in the order of a menu, with names that are not `taken`.
 
     None where nothing acts. Nothing is computed.

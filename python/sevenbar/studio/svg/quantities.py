@@ -75,7 +75,7 @@ class Quantity:
         return self.point is not None
 
     def absence(self, view: View) -> str:
-        """What stands in the place of a curve that has no value."""
+        """What is shown in place of a curve that has no value."""
         return f"no value along circuit {view.circuit.index}"
 
     def shift(self, view: View) -> float:

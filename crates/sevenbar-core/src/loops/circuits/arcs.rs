@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Rounds of arcs that lead to further change points; the curves of a linkage pass a few.
 const MOST_ROUNDS: usize = 32;
 
-/// No change point is looked for again so near to a pose [rad, or relative to the size] that had none, nor at all after so many of them:
+/// No change point is sought again so near to a pose [rad, or relative to the size] that had none, nor at all after so many of them:
 /// such a loop is degenerate throughout.
 const TRIED: f64 = 1e-3;
 const MOST_FAILED: usize = 16;

@@ -1,0 +1,72 @@
+"""The command `sevenbar free`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+import sevenbar as sb
+from sevenbar.commands.deliver import check_out, deliver
+from sevenbar.commands.options import Figures, Force, InputJoint, Json, Samples, Source, figure_formats
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.motion import chosen_circuit
+from sevenbar.reporting.folder import check_targets
+from sevenbar.text.amounts import amount_in
+
+
+def free(
+    linkage: Source,
+    duration: Annotated[
+        str, typer.Option("--time", help="How long it moves, as in '10s' or '500ms'.")
+    ] = "10s",
+    start: Annotated[
+        str | None,
+        typer.Option(
+            "--from", help="Value of the input at the start, as in '30deg'; the first row by default."
+        ),
+    ] = None,
+    speed: Annotated[
+        str | None, typer.Option(help="Speed of the input at the start, as in '60 rpm'; at rest by default.")
+    ] = None,
+    energy: Annotated[
+        float | None, typer.Option(help="Kinetic energy at the start in J, in place of --speed.")
+    ] = None,
+    torque: Annotated[
+        float | None, typer.Option(help="A constant torque at the input in N m, of a slide a force in N.")
+    ] = None,
+    circuit: Annotated[int, typer.Option(help="The circuit on which it moves.")] = 0,
+    branch: Annotated[
+        int | None, typer.Option(help="Which of the poses with this start, counted along the circuit.")
+    ] = None,
+    rows: Samples = 361,
+    input_joint: InputJoint = None,
+    film: Annotated[
+        Path | None, typer.Option(help="Film of the motion: .html, .gif or .mp4; a second for a second.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for free.json, free.csv and the figure.")] = None,
+    figures: Figures = None,
+    force: Force = False,
+    json: Json = False,
+) -> None:
+    """How the linkage moves by itself: falling, swinging, coasting, starting up; and where it can rest."""
+    from sevenbar.drawing.animate import animate
+    from sevenbar.reporting.free_motion import free_report
+
+    report = free_report(figure_formats(figures, out))
+    seconds = amount_in(duration, "s")
+    if seconds is None or seconds <= 0:
+        raise RequestError(f"--time: {shown(duration)} is not a time; give seconds > 0, as in 10s")
+    check_out(report, out, force=force)
+    if film is not None:
+        check_targets([film], force=force)
+    chosen = chosen_circuit(sb.load(linkage).motion(input=input_joint), circuit)
+    found = chosen.free_motion(
+        seconds, start=start, speed=speed, energy=energy, branch=branch, torque=torque, samples=rows
+    )
+    places = chosen.equilibria(torque=torque or 0.0)
+    also = {}
+    if film is not None:
+        also[film] = lambda path: animate(found.motion(), path, seconds=seconds)
+    deliver((found, places), report, out, json=json, force=force, also=also)

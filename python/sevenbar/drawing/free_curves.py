@@ -1,0 +1,38 @@
+"""Curves of a free motion over time: the input, its speed, and the energies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from sevenbar.drawing.figure import new_figure
+from sevenbar.drawing.names import short
+from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, page_size, styled
+from sevenbar.forces.free_motion.result import FreeMotion
+
+
+def free_figure(
+    found: FreeMotion, *, figsize: Sequence[float] | None = None, style: str | None = None
+) -> Figure:
+    """The input, its speed and the energies over time, one above the other."""
+    with styled(style):
+        figure = new_figure(*page_size(style, figsize, (7.0, 7.5), wide=True))
+        panels = figure.subplots(3, 1, sharex=True)
+        unit = "°" if found.input_turns else found.length_unit
+        scale = np.degrees(1.0) if found.input_turns else 1.0
+        name = found.columns[found.input_column]
+        colour = CIRCUIT_COLOURS[0]
+        panels[0].plot(found.time, scale * found.input, color=colour)
+        panels[0].set_ylabel(f"{name} [{unit}]")
+        panels[1].plot(found.time, scale * found.speed, color=colour)
+        panels[1].set_ylabel(f"speed of {name} [{unit}/s]")
+        parts = (("kinetic", found.kinetic), ("potential", found.potential), ("together", found.energy))
+        for i, (word, values) in enumerate(parts):
+            panels[2].plot(found.time, values, color=CIRCUIT_COLOURS[i], ls=LINE_STYLES[i], label=word)
+        panels[2].set_ylabel("energy [J]")
+        panels[2].set_xlabel("time [s]")
+        panels[2].legend(frameon=False)
+        figure.suptitle(f"{short(found.heading, 60)}\nfree motion")
+    return figure

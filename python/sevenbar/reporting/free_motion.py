@@ -1,0 +1,139 @@
+"""The report of a free motion and of equilibria: printed, as JSON, and as files in a folder."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sevenbar.forces.free_motion.equilibria import Equilibrium
+from sevenbar.forces.free_motion.result import FreeMotion
+from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
+from sevenbar.reporting.page import Facts, number_table
+from sevenbar.text.printing import figure_of, lines, text_of
+
+#: How a motion goes on, in words.
+GOES_ON = {
+    "rotation": "goes round, again and again",
+    "oscillation": "swings between two turning points",
+    "rest": "rests in an equilibrium",
+    "asymptotic": "comes nearer and nearer to an unstable equilibrium",
+    "passing": "repeats nothing within this time",
+    "ends": "leaves the circuit, which ends",
+    "driven": "with dampers or a motor",
+}
+
+
+def _angle(value: float, *, turns: bool, unit: str) -> str:
+    return f"{math.degrees(value):.9g} deg" if turns else f"{value:.9g} {unit}"
+
+
+def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
+    """What there is to say of a free motion: labels and texts."""
+    name = found.columns[found.input_column]
+
+    def value(x: float) -> str:
+        return _angle(float(x), turns=found.input_turns, unit=found.length_unit)
+
+    facts = [
+        ("motion", GOES_ON[found.kind]),
+        ("time", f"0 to {found.duration:g} s, {len(found.time)} rows"),
+        ("start", f"{name} = {value(found.input[0])}, {value(found.speed[0])}/s"),
+        ("end", f"{name} = {value(found.input[-1])}, {value(found.speed[-1])}/s"),
+    ]
+    if found.period is not None:
+        facts.append(("period", f"{found.period:.12g} s"))
+    if found.turning:
+        facts.append(
+            ("turns back at", ", ".join(f"{name} = {value(point.input)}" for point in found.turning))
+        )
+    facts.append(("greatest kinetic energy", f"{np.nanmax(found.kinetic):.9g} J, of these rows"))
+    if math.isfinite(found.energy_error):
+        facts.append(("energy", f"kept to {found.energy_error:.1e} of that"))
+    if math.isfinite(found.difference):
+        facts.append(("accuracy", f"two tolerances differ by {found.difference:.1e} of arc length"))
+    facts.append(("resolution", f"polynomials along the circuit to {found.tail:.1e}"))
+    if found.through_change_points:
+        facts.append(("note", "it passes change points along the circuit's smooth continuation"))
+    return facts
+
+
+@text_of.register
+def _(found: FreeMotion) -> str:
+    return lines(f"free motion of {found.heading}", free_facts(found))
+
+
+@figure_of.register
+def _(found: FreeMotion, **options: Any) -> Any:
+    from sevenbar.drawing.free_curves import free_figure
+
+    return free_figure(found, **options)
+
+
+def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
+    fall, places = found
+    facts = Facts()
+    for label, text in free_facts(fall):
+        facts.add(label, text)
+    parts: list[RenderableType] = [Text(f"free motion of {fall.heading}", style="bold"), facts.grid]
+    if places:
+        rows = [
+            [
+                place.kind,
+                _angle(place.input, turns=fall.input_turns, unit=fall.length_unit),
+                "" if math.isnan(place.frequency) else f"{place.frequency:.9g}",
+                f"{place.potential:.9g}",
+            ]
+            for place in places
+        ]
+        head = ["equilibrium", fall.columns[fall.input_column], "vibration [rad/s]", "potential [J]"]
+        parts += [Text(), number_table(head, rows, words=[0])]
+    return Group(*parts)
+
+
+def free_dict(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> dict[str, Any]:
+    """A free motion and the equilibria of its circuit as plain values, in SI units and radians."""
+    fall, places = found
+    return {
+        "kind": fall.kind,
+        "period_s": fall.period,
+        "duration_s": fall.duration,
+        "input": fall.columns[fall.input_column],
+        "turning": [{"input": point.input, "potential_J": point.potential} for point in fall.turning],
+        "energy_error": fall.energy_error,
+        "difference": fall.difference,
+        "tail": fall.tail,
+        "equilibria": [
+            {
+                "kind": place.kind,
+                "input": place.input,
+                "frequency_rad_s": place.frequency,
+                "rate_1_s": place.rate,
+                "potential_J": place.potential,
+            }
+            for place in places
+        ],
+    }
+
+
+def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equilibrium]]]:
+    """How a free motion is reported: free.json, free.csv and the figure."""
+
+    def draw(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> Any:
+        from sevenbar.drawing.free_curves import free_figure
+
+        return free_figure(found[0])
+
+    return Report(
+        text=_page,
+        as_dict=free_dict,
+        files={
+            "free.json": json_file(free_dict),
+            "free.csv": columns_file(lambda found: found[0].table()),
+            **figure_files("free", formats, draw),
+        },
+    )
