@@ -189,6 +189,8 @@ def test_the_dimensions_of_an_rssr_are_a_row(tmp_path):
          ["line 3, column 'y [mm]': is empty; give a number, 0 where it is none",
           "line 4, column 'kind': no kind of joint; give one of R, P, H, C, U, S, E",
           "line 2, columns 'axis x', 'axis y', 'axis z': [0.0, 0.0, 0.0] has no direction; give three numbers, not all 0"]),
+        ("kind,x [mm],y [mm]\nR,0,0\nS,1,0\nS,1,1\nP,0,1\n",
+         [f"line {line}: no axis; a joint of kind {kind} needs one, in columns axis x, axis y, axis z" for line, kind in ((2, "R"), (5, "P"))]),
         ("kind,x [mm],y [mm],alpha [deg]\nR,0,0,0\n",
          ["'alpha [deg]': of Denavit-Hartenberg rows, x, y, z of joints as drawn; leave one out"]),
         (" \n", ["is empty; give a table with a header and a row for each joint"]),

@@ -30,7 +30,8 @@ def as_json(results: figures.Results) -> str:
     """JSON with a line for each part of a section, so that a change of one linkage is one of its lines."""
     sections = []
     for section, parts in results.items():
-        lines = [f"{json.dumps(name)}: {json.dumps(part)}" for name, part in parts.items()]
+        short = (",", ":")
+        lines = [f"{json.dumps(name)}:{json.dumps(part, separators=short)}" for name, part in parts.items()]
         sections.append(f"{json.dumps(section)}: {{\n" + ",\n".join(lines) + "\n}")
     return "{\n" + ",\n".join(sections) + "\n}\n"
 
