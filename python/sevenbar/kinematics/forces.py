@@ -106,12 +106,11 @@ class ForceSolver:
         if spring.joint not in linkage.drivable() and spring.joint not in [j.name for j in linkage.joints]:
             raise RequestError(f"joint: {no_joint(spring.joint, linkage.drivable())}")
         column = linkage.column(spring.joint, "joint")
+        # stiffness and damping, and the slack value
+        unit, value = 1 / self.size**2, 1.0
         if linkage.column_kinds[column] == "slide":
-            factors = np.array([1.0, 1 / self.numbers.size, 1.0]) / LENGTHS[linkage.length_unit]
-            factors[1] = 1 / self.numbers.size
-        else:
-            factors = np.array([1 / self.size**2, 1.0, 1 / self.size**2])
-        return column, factors * [spring.stiffness, spring.length, spring.damping]
+            unit, value = 1 / LENGTHS[linkage.length_unit], 1 / self.numbers.size
+        return column, np.array([unit * spring.stiffness, value * spring.length, unit * spring.damping])
 
     @cached_property
     def acting(self) -> _core.Acting:
