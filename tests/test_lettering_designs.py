@@ -79,7 +79,7 @@ def least():
 
 @cache
 def function():
-    return function_generation(lambda x: x**2, (0.0, 1.0), count=1)
+    return function_generation(function=lambda x: x**2, x_range=(0.0, 1.0), count=1)
 
 
 #: Every kind of figure of a design, and whether it takes seconds to come by.

@@ -9,7 +9,17 @@ import typer
 
 import sevenbar as sb
 from sevenbar.commands.deliver import check_out, deliver
-from sevenbar.commands.options import Figures, Force, InputJoint, Json, Samples, Source, figure_formats
+from sevenbar.commands.given import agreed
+from sevenbar.commands.options import (
+    Agree,
+    Figures,
+    Force,
+    InputJoint,
+    Json,
+    Samples,
+    Source,
+    figure_formats,
+)
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.motion import chosen_circuit
 from sevenbar.reporting.folder import check_targets
@@ -42,6 +52,7 @@ def free(
     ] = None,
     rows: Samples = 361,
     input_joint: InputJoint = None,
+    agree: Agree = None,
     film: Annotated[
         Path | None, typer.Option(help="Film of the motion: .html, .gif or .mp4; a second for a second.")
     ] = None,
@@ -61,7 +72,8 @@ def free(
     check_out(report, out, force=force)
     if film is not None:
         check_targets([film], force=force)
-    chosen = chosen_circuit(sb.load(linkage).motion(input=input_joint), circuit)
+    loaded = sb.load(linkage, agree=agreed(agree))
+    chosen = chosen_circuit(loaded.motion(input=input_joint), circuit)
     found = chosen.free_motion(
         seconds, start=start, speed=speed, energy=energy, branch=branch, torque=torque, samples=rows
     )

@@ -38,6 +38,9 @@ from sevenbar.kinematics.poses import Walk, walk
 #: Rows in a turn between which extremes are searched, whatever the samples of the motion.
 SAMPLES = 360
 
+#: Angles [rad] nearer than this differ by rounding.
+ALIKE = 4e-15
+
 #: An angle [rad] below this is that of a dead centre of the input, known to the root of rounding.
 AT_DEAD_CENTRE = 1e-7
 
@@ -213,7 +216,10 @@ class _Search:
         kept = [(angle, x) for angle, x in found if math.isfinite(angle)]
         if not kept:
             return None
-        (lowest, lowest_at), (highest, highest_at) = min(kept), max(kept)
+        lowest, highest = min(kept)[0], max(kept)[0]
+        # of places alike up to rounding always the same one
+        lowest_at = min(x for angle, x in kept if angle <= lowest + ALIKE)
+        highest_at = max(x for angle, x in kept if angle >= highest - ALIKE)
         if rows.goes_round and rows.input_turns:
             # between the first row and the first again
             start, whole = float(rows.input[0]), math.tau * rows.turns

@@ -21,6 +21,7 @@ from sevenbar.drawing.asked import asked_view
 from sevenbar.drawing.figure import input_label, page_figure, slides
 from sevenbar.drawing.names import short
 from sevenbar.drawing.page import place_picture
+from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, OTHER, letters, styled
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import view_of
@@ -204,12 +205,16 @@ def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:
 
 
 def _legend_below(figure: Figure, axes: Any, middle: float, columns: int) -> None:
-    """The legend of axes at the foot of the page, about a place across it [share]."""
+    """The legend of axes at the foot of the page, in so many columns at most, about a place [share] across."""
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(
-        handles, labels, frameon=False, fontsize=8.5, loc="lower center", bbox_to_anchor=(middle, 0.0),
-        ncols=columns,
-    )  # fmt: skip
+    for count in range(columns, 0, -1):
+        legend = figure.legend(
+            handles, labels, frameon=False, fontsize=8.5, loc="lower center", bbox_to_anchor=(middle, 0.0),
+            ncols=count,
+        )  # fmt: skip
+        if count == 1 or legend.get_window_extent(measuring(figure)).x1 <= figure.bbox.width:
+            return
+        legend.remove()
 
 
 def _closed(path: Floats, cycle: Cycle) -> Floats:

@@ -46,7 +46,7 @@ def shares_figure(linear: Linear) -> Figure:
             say("share in the variance over the cycle, {output} [%]", output=output_words(linear))
         )
         label = axes.xaxis.label
-        if label.get_window_extent(measuring(figure)).width > 0.9 * figure.bbox.width:
+        if label.get_window_extent(measuring(figure)).width > 0.7 * figure.bbox.width:
             label.set_text(label.get_text().replace(", ", ",\n", 1))
         axes.grid(axis="x", lw=0.6)
         axes.set_axisbelow(True)
