@@ -205,7 +205,7 @@ def _input_axis(axes: Axes, cycle: Cycle, across: Floats) -> None:
 
 
 def _legend_below(figure: Figure, axes: Any, middle: float, columns: int) -> None:
-    """The legend of axes at the foot of the page, in so many columns at most, about a place [share] across."""
+    """The legend of axes at the foot of the page, in at most so many columns, about a place [share]."""
     handles, labels = axes.get_legend_handles_labels()
     for count in range(columns, 0, -1):
         legend = figure.legend(
