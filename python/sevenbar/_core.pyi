@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 __all__ = [
     "AGREE",
+    "Acting",
     "CoreError",
     "Course",
     "Loop",
@@ -26,6 +27,7 @@ __all__ = [
     "classify_rssr",
     "measure_loops",
     "measure_rssr",
+    "reactions",
     "simd_level",
 ]
 
