@@ -224,6 +224,11 @@ class Answers(Protocol):
         ...
 
 
+def _given(**acting: object) -> dict[str, object]:
+    """What is given of what acts, in the place of what the linkage has."""
+    return {key: value for key, value in acting.items() if value is not None}
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Circuit(Printed):
     """One connected motion, row by row along it.
@@ -456,9 +461,8 @@ class Circuit(Printed):
 
         Source: docs/theory_forces.md, (1) to (7).
         """
-        given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
-        known = {key: value for key, value in given.items() if value is not None}
-        return self._answers.forces(self, known, at_rest=at_rest)
+        given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+        return self._answers.forces(self, given, at_rest=at_rest)
 
     @ends_here
     def counterweights(
@@ -535,7 +539,7 @@ class Circuit(Printed):
 
         Source: docs/theory_free.md, (1) to (13).
         """
-        given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
+        given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
         options = {
             "duration": duration,
             "speed": speed,
@@ -546,9 +550,7 @@ class Circuit(Printed):
             "torque_by_time": torque_by_time,
             "samples": samples,
         }
-        return self._answers.free_motion(
-            self, {key: value for key, value in given.items() if value is not None}, options
-        )
+        return self._answers.free_motion(self, given, options)
 
     @ends_here
     def equilibria(
@@ -574,10 +576,8 @@ class Circuit(Printed):
 
         Source: docs/theory_free.md, (11).
         """
-        given = {"bodies": bodies, "gravity": gravity, "loads": loads, "springs": springs}
-        return self._answers.equilibria(
-            self, {key: value for key, value in given.items() if value is not None}, torque
-        )
+        given = _given(bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+        return self._answers.equilibria(self, given, torque)
 
     @ends_here
     def link_motion(self, link: int) -> LinkMotion:

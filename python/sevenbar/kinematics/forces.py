@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 import sevenbar._core as _core
 from sevenbar.arrays import Floats
-from sevenbar.errors import RequestError, no_joint, shown
+from sevenbar.errors import RequestError
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
@@ -66,11 +66,6 @@ class ForceSolver:
 
     def _carrier(self, link: int) -> tuple[int, Product]:
         """The steps before a link, and the frame there in which its points are written."""
-        count = len(self.linkage.joints)
-        if isinstance(link, bool) or not isinstance(link, (int, np.integer)) or not 1 <= link <= count:
-            raise RequestError(
-                f"link: {shown(link)} is not a link; give 1 to {count}, the last is the ground"
-            )
         return self.numbers.word.carrier(int(link))
 
     def _frame(self, link: int) -> Floats:
@@ -103,8 +98,6 @@ class ForceSolver:
     def _joint_spring(self, spring: Spring) -> tuple[int, Floats]:
         assert spring.joint is not None
         linkage = self.linkage
-        if spring.joint not in linkage.drivable() and spring.joint not in [j.name for j in linkage.joints]:
-            raise RequestError(f"joint: {no_joint(spring.joint, linkage.drivable())}")
         column = linkage.column(spring.joint, "joint")
         # stiffness and damping, and the slack value
         unit, value = 1 / self.size**2, 1.0
