@@ -1,0 +1,241 @@
+"""One design task for any loop: which numbers are free, what is wanted, and what must hold.
+
+Angles [rad] and lengths in the linkage's own unit throughout, but the bounds of free numbers, which are in
+the unit that the description gives each of them in, and figures, which are as people read them (`Measure`).
+
+A want leaves residuals, each relative to its own unit: a radian, or for lengths what its docstring says. With
+n residuals r of a want of weight w, the task makes least
+
+    sum over wants of  (w^2 / n) sum r^2                     goal "least squares"                          (1)
+    the greatest  w |r|  of all                              goal "minimax"                                (2)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
+from sevenbar.design.synthesis.limits import Limits
+
+#: What is made least of the residuals.
+Goal = Literal["least squares", "minimax"]
+
+#: How the linkage may stand: as described; anywhere in space; anywhere and in any size.
+Placement = Literal["fixed", "free", "free with scale"]
+
+
+@dataclass(frozen=True)
+class Free:
+    """A number that may change: a dimension by its name ("L1", "crank.axis_x", "P.u"), with its bounds.
+
+    `low` and `high` are in the dimension's unit in the description (`Draft.dimension(name).unit`).
+    """
+
+    name: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class FunctionWant:
+    """The output as a function of the input: readings of the drive's two joints.
+
+    At `input` (n,) the output reads `output` (n,), both [rad, or length], rising or falling in the input. The
+    joints stand at `zeros` (input's, output's) plus the readings; a zero that is `None` is free. Residuals:
+    what the output is off [rad, or relative to the linkage's size].
+    """
+
+    input: Floats
+    output: Floats
+    zeros: tuple[float | None, float | None] = (0.0, 0.0)
+    weight: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class PathWant:
+    """The path of a named point through places (n, 3) in order, the first not repeated where it is `closed`.
+
+    `timing` (n,) [rad, or length] are the inputs at which they are reached, from an unknown start on with
+    `phase`; without timing the inputs are free and follow each other. Residuals: the three parts of the
+    distance, relative to the greatest extent of the places.
+    """
+
+    point: str
+    places: Floats
+    closed: bool = False
+    timing: Floats | None = None
+    phase: bool = False
+    weight: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class PoseWant:
+    """Poses (n, 4, 4) of a link, counted from 1, in order: rotation and shift from its frame to the report's.
+
+    The link's frame is that in which its points are written (`[[point]] at`): of a drawn linkage the report's
+    own in the drawn pose. `timing` and `phase` as of a path. Residuals: where the frame's origin and the ends
+    of its three axes, each `arm` long, are off; relative to `arm`, so that an angle counts by the radian.
+    """
+
+    link: int
+    poses: Floats
+    arm: float
+    timing: Floats | None = None
+    phase: bool = False
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class FigureWant:
+    """A measure of the circuit by its name ("swing", "time_ratio", "peak_torque", ..): a value, or the most.
+
+    `value` is in the unit that the measure is read in (degrees, N m, ..), or "small" or "great". The residual
+    is what it is off, relative to `unit`; for "small" the figure itself and for "great" `unit / figure`.
+    """
+
+    name: str
+    value: float | Literal["small", "great"]
+    unit: float = 1.0
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class DwellWant:
+    """The output stands still while the input goes over a range (low, high) [rad, or length].
+
+    It stays at `level`, a free one where that is `None`. Residuals: what it is off at `samples` inputs
+    [rad, or relative to the size]. A tolerated deviation is a `Most` beside it.
+    """
+
+    range: tuple[float, float]
+    level: float | None = None
+    samples: int = 41
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class StraightWant:
+    """A named point moves along a straight line, a free one, while the input goes over a range (low, high).
+
+    `length` is how far it goes at least [length], which residuals, its distances from the line at `samples`
+    inputs, are relative to; without one they are relative to the linkage's size, and a point that stands
+    still is straight.
+    """
+
+    point: str
+    range: tuple[float, float]
+    length: float | None = None
+    samples: int = 41
+    weight: float = 1.0
+
+
+Want = FunctionWant | PathWant | PoseWant | FigureWant | DwellWant | StraightWant
+
+
+@dataclass(frozen=True)
+class JointRange:
+    """A column's value stays within `low` and `high` [rad, or length] at all poses that are used."""
+
+    column: str
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Cone:
+    """The angle of a ball or a U joint from its seat stays below `angle` [rad] at all poses that are used.
+
+    The angle is that between two directions, each fixed to one of its two links. `seat` (3,) is that of the
+    link before the joint, `rod` (3,) that of the link after it, both as points of these links are written;
+    `seat` of the ground, as the report's frame has it. In the drawn pose of a drawn linkage two equal ones
+    give 0. A `rod` that is `None` goes from the joint to the next one, a `seat` that is `None` is the rod's
+    as described.
+    """
+
+    joint: str
+    angle: float
+    seat: tuple[float, float, float] | None = None
+    rod: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Box:
+    """Named points and joints stay between the corners `low` and `high` (3,) at all poses that are used."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Apart:
+    """Two links, counted from 1, as rods between their joints keep a `least` distance [length]."""
+
+    links: tuple[int, int]
+    least: float
+
+
+@dataclass(frozen=True)
+class FigureMust:
+    """A measure of the circuit by its name stays within `least` and `most`, in the unit it is read in."""
+
+    name: str
+    least: float | None = None
+    most: float | None = None
+
+
+@dataclass(frozen=True)
+class Most:
+    """The residuals of a want, by its place among the task's, are at most so great, weights left out."""
+
+    want: int
+    most: float
+
+
+Must = JointRange | Cone | Box | Apart | FigureMust | Most
+
+
+@dataclass(frozen=True, eq=False)
+class DesignTask:
+    """What is asked: a linkage as the start, its free numbers, wants and musts.
+
+    That all poses of a want lie on one circuit without a dead centre of the input between them, in their
+    order, is always required. `limits` hold motion type, size, and the least transmission angle. With a
+    placement that is not "fixed" the linkage may stand anywhere, which paths and poses alone see.
+    Dimensions in `follow` (L2 of an RSSR whose file leaves it out) follow from the others.
+
+    >>> import sevenbar as sb
+    >>> linkage = sb.load("rssr")
+    >>> want = FunctionWant(np.radians([60.0, 80.0, 100.0]), np.radians([10.0, 20.0, 35.0]))
+    >>> task = DesignTask(Draft.of_linkage(linkage), (Free("L1", 200, 300), Free("M", 500, 900)), (want,))
+    >>> task.goal, task.placement
+    ('least squares', 'fixed')
+    """
+
+    draft: Draft
+    free: tuple[Free, ...]
+    wants: tuple[Want, ...]
+    musts: tuple[Must, ...] = ()
+    placement: Placement = "fixed"
+    goal: Goal = "least squares"
+    limits: Limits = field(default_factory=Limits)
+    follow: tuple[str, ...] = ()
+
+    @property
+    def low(self) -> Floats:
+        """The least values (k,) of the free numbers."""
+        return np.array([one.low for one in self.free])
+
+    @property
+    def high(self) -> Floats:
+        """The greatest values (k,) of the free numbers."""
+        return np.array([one.high for one in self.free])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the free numbers."""
+        return tuple(one.name for one in self.free)
