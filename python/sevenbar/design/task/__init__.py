@@ -2,14 +2,14 @@
 
 from sevenbar.design.task.task import (
     Apart,
-    Box,
     Cone,
     DesignTask,
     DwellWant,
     FigureMust,
     FigureWant,
-    Free,
+    FreeNumber,
     FunctionWant,
+    InBox,
     JointRange,
     Most,
     Must,
@@ -21,14 +21,14 @@ from sevenbar.design.task.task import (
 
 __all__ = [
     "Apart",
-    "Box",
     "Cone",
     "DesignTask",
     "DwellWant",
     "FigureMust",
     "FigureWant",
-    "Free",
+    "FreeNumber",
     "FunctionWant",
+    "InBox",
     "JointRange",
     "Most",
     "Must",

@@ -29,7 +29,7 @@ Placement = Literal["fixed", "free", "free with scale"]
 
 
 @dataclass(frozen=True)
-class Free:
+class FreeNumber:
     """A number that may change: a dimension by its name ("L1", "crank.axis_x", "P.u"), with its bounds.
 
     `low` and `high` are in the dimension's unit in the description (`Draft.dimension(name).unit`).
@@ -163,7 +163,7 @@ class Cone:
 
 
 @dataclass(frozen=True)
-class Box:
+class InBox:
     """Named points and joints stay between the corners `low` and `high` (3,) at all poses that are used."""
 
     low: tuple[float, float, float]
@@ -196,7 +196,7 @@ class Most:
     most: float
 
 
-Must = JointRange | Cone | Box | Apart | FigureMust | Most
+Must = JointRange | Cone | InBox | Apart | FigureMust | Most
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,13 +211,13 @@ class DesignTask:
     >>> import sevenbar as sb
     >>> linkage = sb.load("rssr")
     >>> want = FunctionWant(np.radians([60.0, 80.0, 100.0]), np.radians([10.0, 20.0, 35.0]))
-    >>> task = DesignTask(Draft.of_linkage(linkage), (Free("L1", 200, 300), Free("M", 500, 900)), (want,))
+    >>> task = DesignTask(Draft.of_linkage(linkage), (FreeNumber("L1", 200, 300), FreeNumber("M", 500, 900)), (want,))
     >>> task.goal, task.placement
     ('least squares', 'fixed')
     """
 
     draft: Draft
-    free: tuple[Free, ...]
+    free: tuple[FreeNumber, ...]
     wants: tuple[Want, ...]
     musts: tuple[Must, ...] = ()
     placement: Placement = "fixed"
