@@ -11,7 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, ends_here
-from sevenbar.kinematics.circuits import Law
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
 from sevenbar.text.table import TextTable, read_table
 

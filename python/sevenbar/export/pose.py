@@ -11,8 +11,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import Motion, Solvable, chosen_circuit
 from sevenbar.kinematics.poses import frames_along, joint_frames
 

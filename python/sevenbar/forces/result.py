@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers, Words
 from sevenbar.curves.cycle_series import CycleSeries
 from sevenbar.errors import RequestError, ends_here
 from sevenbar.forces.bodies import Body
@@ -85,8 +85,8 @@ class Forces(Drawable):
     input: Floats
     time: Floats
     speed: Floats
-    status: npt.NDArray[np.str_]
-    branch: npt.NDArray[np.int64]
+    status: Words
+    branch: Integers
     torque: Floats
     power: Floats
     kinetic: Floats

@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.general import expanded, merged, size_of
 from sevenbar.kinematics.geometry import Loop, following_coupler
 from sevenbar.text.printing import Printed

@@ -9,19 +9,10 @@ from functools import partial
 import numpy as np
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import (
-    STATUSES,
-    Circuit,
-    DeadCentre,
-    Extremes,
-    Integers,
-    Law,
-    Sensitivity,
-    Tally,
-    Trace,
-    Words,
-)
+from sevenbar.arrays import Floats, Integers, Words
+from sevenbar.kinematics.circuit_values import STATUSES, DeadCentre, Extremes, Sensitivity, Tally, Trace
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search, Solvable
 
 _STATUS_WORDS = np.array(STATUSES)

@@ -9,7 +9,8 @@ from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.sizing import Bearing, Sizing
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.gradients import MeasureSlopes, measure_slopes

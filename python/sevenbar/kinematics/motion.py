@@ -12,17 +12,13 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.errors import MissingExtraError, RequestError, shown
-from sevenbar.kinematics.circuits import (
-    Answers,
-    Circuit,
-    Law,
-    Words,
-)
+from sevenbar.kinematics.circuits import Answers, Circuit
 from sevenbar.kinematics.columns import joint_column, point_column
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.law import Law
 from sevenbar.text.printing import Drawable, Printed
 from sevenbar.text.units import LENGTHS
 

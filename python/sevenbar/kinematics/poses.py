@@ -11,8 +11,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.arrays import Floats, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.rigid import inverse, pose
 

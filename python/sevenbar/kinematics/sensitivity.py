@@ -24,8 +24,9 @@ import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Circuit, Sensitivity
+from sevenbar.arrays import Floats, Integers
+from sevenbar.kinematics.circuit_values import Sensitivity
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import about, adjoint, cross, zyx_turns
@@ -288,7 +289,7 @@ class NumberedLoop:
         """Which numbers (k,) cannot change alone without opening the loop, on the rows of a circuit."""
         return self.slopes(self.poses(circuit)[1], 0).opening
 
-    def poses(self, circuit: Circuit) -> tuple[npt.NDArray[np.int64], Floats]:
+    def poses(self, circuit: Circuit) -> tuple[Integers, Floats]:
         """Closed poses (n, columns) on rows (n,) of a circuit; those that are lost are left out."""
         q = self.closed(circuit.q[:, self.input], self.numbers.poses(circuit.q))
         rows = np.flatnonzero(np.isfinite(q).all(axis=1))

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Circuit, Extremes, Sensitivity, Trace, Words
+from sevenbar.kinematics.circuit_values import Extremes, Sensitivity, Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output

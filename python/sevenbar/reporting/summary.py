@@ -11,7 +11,8 @@ from typing import Literal
 import numpy as np
 from rich.cells import cell_len
 
-from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes
+from sevenbar.kinematics.circuit_values import DeadCentre, Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Modes, Motion
 from sevenbar.reporting.facts import facts_of, turns_text

@@ -12,7 +12,8 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.curves.stationary import highest_between
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Trace
+from sevenbar.kinematics.circuit_values import Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven as driven_circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 

@@ -10,12 +10,12 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats, short_way
+from sevenbar.arrays import Floats, Integers, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.closure import row_of, transmission_slopes, transmissions
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed, brief, lines, text_of

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, short_way
+from sevenbar.arrays import Floats, Integers, Words, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Circuit, Integers, Words
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.force_measures import force_slopes

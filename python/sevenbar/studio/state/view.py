@@ -12,7 +12,8 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
-from sevenbar.kinematics.circuits import Circuit, Trace
+from sevenbar.kinematics.circuit_values import Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.poses import Walk, along, at_row, frames_of, joint_frames, walk
