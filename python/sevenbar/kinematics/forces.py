@@ -25,11 +25,11 @@ from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven
+from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import half_turn, inverse
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
-from sevenbar.kinematics.word import Product
 from sevenbar.text.units import LENGTHS
 
 

@@ -28,9 +28,10 @@ from sevenbar.arrays import Floats, Integers
 from sevenbar.kinematics.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
+from sevenbar.kinematics.factors import Place, Product, Values, vector
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.rigid import about, adjoint, cross, zyx_turns
-from sevenbar.kinematics.word import Carried, Place, Product, Values, holding_axis, points_of, vector, word_of
+from sevenbar.kinematics.word import Carried, holding_axis, points_of, word_of
 
 #: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
