@@ -19,6 +19,9 @@ Floats = npt.NDArray[np.float64]
 #: An array of whole numbers: indices, counts.
 Integers = npt.NDArray[np.int64]
 
+#: An array of truth values.
+Booleans = npt.NDArray[np.bool_]
+
 #: An array of words, such as the status of each row.
 Words = npt.NDArray[np.str_]
 

@@ -119,7 +119,7 @@ def _travel(linkage: Loop, q: Floats) -> Floats:
 
 def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:
     linkage = motion.linkage
-    turns = linkage.column_kinds[circuit.input_column] == "turn"
+    turns = linkage.turns(circuit.input_column)
     name = linkage.columns[circuit.input_column]
 
     def written(value: float) -> str:

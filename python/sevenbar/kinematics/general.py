@@ -182,7 +182,7 @@ class GeneralLoop:
             speed=math.nan if law is not None else speed,
             samples=samples,
             motion_type=raw.motion_type,
-            limits=merged(limits, turns=linkage.column_kinds[column] == "turn", size=self.size),
+            limits=merged(limits, turns=linkage.turns(column), size=self.size),
             change_points=change_points_from(raw, column),
             circuits=circuits,
             search=search_from(raw.search, linkage.columns),

@@ -58,7 +58,7 @@ class Measure:
 
     def unit(self, linkage: Loop, output: str) -> str:
         """The unit of its numbers, "" where there is none; `output` is the column of the output."""
-        slides = linkage.column_kinds[linkage.columns.index(output)] == "slide"
+        slides = not linkage.turns(output)
         length = linkage.length_unit
         rate = length if slides else "rad"
         return {

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats, Integers
+from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.kinematics.circuit_values import Sensitivity
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
@@ -65,9 +65,9 @@ class Slopes:
     points: Floats
     points_by_number: Floats
     points_by_input: Floats
-    opening: npt.NDArray[np.bool_]
-    idle: npt.NDArray[np.bool_]
-    idle_points: npt.NDArray[np.bool_]
+    opening: Booleans
+    idle: Booleans
+    idle_points: Booleans
 
 
 class Numbers:
@@ -93,7 +93,7 @@ class Numbers:
         self.units = np.array(
             [self.size if d.kind in ("length", "pitch") else 1 / d.scale for d in self.dimensions]
         )
-        self.turns = np.array([kind == "turn" for kind in linkage.column_kinds])
+        self.turns = linkage.turning
         #: What a value of each column is relative to in the core: a radian, or the size.
         self.scales = np.where(self.turns, 1.0, self.size)
         #: Balls, counted among the joints, that stand as two turns.
@@ -161,7 +161,7 @@ class Numbers:
             q[:, column], q[:, column + 1], q[:, column + 2] = first, -back, 0.0
         return q
 
-    def by_columns(self, q: Floats, here: Slopes) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    def by_columns(self, q: Floats, here: Slopes) -> tuple[Floats, Booleans]:
         """Derivatives of the columns as the analysis has them, (n, orders, k, columns), and which spin idly.
 
         `q` (n, columns) are the analysis' own rows. Of a ball's turns there is the position only.
@@ -286,7 +286,7 @@ class NumberedLoop:
         found, sides = self.core.follow(start, inputs, fixed, advances, scaled)
         return found * scales, sides
 
-    def opening(self, circuit: Circuit) -> npt.NDArray[np.bool_]:
+    def opening(self, circuit: Circuit) -> Booleans:
         """Which numbers (k,) cannot change alone without opening the loop, on the rows of a circuit."""
         return self.slopes(self.poses(circuit)[1], 0).opening
 

@@ -66,9 +66,9 @@ def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:
     unit = linkage.length_unit
     count = len(modes)
     columns = [(say("residual\n[{unit}]", unit=unit), [f"{residual:.1e}" for residual in modes.residual])]
-    for name, kind, q in reversed(list(zip(linkage.columns, linkage.column_kinds, modes.q.T, strict=True))):
-        numbers = np.round(np.degrees(q) if kind == "turn" else q, 3) + 0.0  # no -0
-        head = f"{name}\n[{'deg' if kind == 'turn' else unit}]"
+    for name, turns, q in reversed(list(zip(linkage.columns, linkage.turning, modes.q.T, strict=True))):
+        numbers = np.round(np.degrees(q) if turns else q, 3) + 0.0  # no -0
+        head = f"{name}\n[{'deg' if turns else unit}]"
         columns.append((head, [f"{x:.3f}" for x in numbers]))
     sheets = []
     while columns:

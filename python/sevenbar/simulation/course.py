@@ -63,7 +63,7 @@ class Course:
         values = self.circuit.q[self.rows].copy()
         if self.closes:
             ahead = 2 * values[-2] - values[-3]
-            turns = np.array([kind == "turn" for kind in self.motion.linkage.column_kinds])
+            turns = self.motion.linkage.turning
             whole = np.round((ahead - values[-1]) / math.tau) * math.tau
             values[-1] += np.where(turns & np.isfinite(whole), whole, 0.0)
         return values
