@@ -149,17 +149,15 @@ class JointRange:
 class Cone:
     """The angle of a ball or a U joint from its seat stays below `angle` [rad] at all poses that are used.
 
-    The angle is that between two directions, each fixed to one of its two links. `seat` (3,) is that of the
-    link before the joint, `rod` (3,) that of the link after it, both as points of these links are written;
-    `seat` of the ground, as the report's frame has it. In the drawn pose of a drawn linkage two equal ones
-    give 0. A `rod` that is `None` goes from the joint to the next one, a `seat` that is `None` is the rod's
-    as described.
+    The angle is that between two directions: `seat` (3,), of the link before the joint, and `stud` (3,), of the
+    link after it, each as points of that link are written. One that is `None` goes along the rod, from the
+    joint to the link's other joint.
     """
 
     joint: str
     angle: float
     seat: tuple[float, float, float] | None = None
-    rod: tuple[float, float, float] | None = None
+    stud: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -211,7 +209,8 @@ class DesignTask:
     >>> import sevenbar as sb
     >>> linkage = sb.load("rssr")
     >>> want = FunctionWant(np.radians([60.0, 80.0, 100.0]), np.radians([10.0, 20.0, 35.0]))
-    >>> task = DesignTask(Draft.of_linkage(linkage), (FreeNumber("L1", 200, 300), FreeNumber("M", 500, 900)), (want,))
+    >>> free = (FreeNumber("L1", 200, 300), FreeNumber("M", 500, 900))
+    >>> task = DesignTask(Draft.of_linkage(linkage), free, (want,))
     >>> task.goal, task.placement
     ('least squares', 'fixed')
     """

@@ -1,0 +1,308 @@
+"""The nearest optimum of a task: least squares or the least greatest residual, within bounds and rooms.
+
+Least squares begin with rooms as penalties; then both goals end with Newton's method on the conditions of an
+optimum (Karush, Kuhn and Tucker),
+
+    grad f = sum y grad c,    y >= 0,    c >= 0,    y c = 0                                              (1)
+
+with c the rooms and the bounds, and f half the sum of squares, or for the greatest residual t itself with
+rooms t - h of every height h. What (1) is missed by tells how good a local optimum was found.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
+from sevenbar.design.task.problem import Problem, Seed, TaskModel, Values
+from sevenbar.design.task.wants.places import PlacesWanted
+
+#: Evaluations of a first look, and of a design that is kept.
+LOOK, WHOLE = 40, 400
+
+#: Where least squares end: parts of the error's square, of the unknowns.
+TOLERANCE = 1e-15
+
+#: Weights of a missed room beside the residuals, in rounds; and the room kept since a penalty is never met.
+WEIGHTS, KEPT = (1.0, 10.0, 100.0), 1e-5
+
+#: A room so near to zero may be active.
+ACTIVE = 1e-6
+
+#: Residuals are measured against this at least [relative]: smaller ones are rounding of larger steps.
+LEAST = 1e-4
+
+#: Steps of Newton's method at the end, their most [units], and the step of its differences.
+STEPS, FARTHEST, DIFFERENCE = 8, 0.05, 1e-5
+
+#: Residuals below this leave the second derivatives of the squares to the slopes alone.
+EXACT = 1e-7
+
+#: Below this the conditions of an optimum are met.
+MET = 1e-11
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A local optimum as a start of its own; the weighted cost, and by how much (1) is missed, relative.
+
+    `cost` is the root of the weighted mean squares, or the greatest weighted residual.
+    """
+
+    seed: Seed
+    inputs: tuple[Floats, ...]
+    cost: float
+    optimality: float
+    room: float
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """What (1) is made of at unknowns: gradient (m,), rooms (c,) and their slopes (c, m), and the unit."""
+
+    gradient: Floats
+    curved: Floats | None
+    room: Floats
+    room_by: Floats
+    unit: float
+
+
+def solved(model: TaskModel, seed: Seed, evaluations: int = WHOLE, *, whole: bool = True) -> Solved | None:
+    """The nearest optimum of a seed; `None` where its linkage does not close. `whole`: to the last digit."""
+    found = _least_squares(model, seed, evaluations)
+    if found is None:
+        return None
+    problem, z = found
+    if not whole:
+        return _as_solved(problem, z, math.nan, minimax=False)
+    minimax = model.task.goal == "minimax"
+    if minimax:
+        problem = Problem(model, problem.seed(z), minimax=True)
+        z = _lowered(problem)
+    z, missed = settled(problem, z, minimax=minimax)
+    return _as_solved(problem, z, missed, minimax=minimax)
+
+
+def _as_solved(problem: Problem, z: Floats, missed: float, *, minimax: bool) -> Solved | None:
+    here = problem.at(z)
+    if here is None:
+        return None
+    cost = float(_heights(problem, here)[0].max()) if minimax else float(np.linalg.norm(here.left))
+    room = float(here.room.min(initial=math.inf))
+    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room)
+
+
+def _least_squares(model: TaskModel, seed: Seed, evaluations: int) -> tuple[Problem, Floats] | None:
+    from scipy.optimize import least_squares
+
+    weights: tuple[float, ...] = (0.0,)
+    problem, z = None, None
+    for number, weight in enumerate(WEIGHTS):
+        problem = Problem(model, seed)
+        start = _inside(problem, problem.start)
+        here = problem.at(start)
+        if here is None:
+            return None
+        if number and not len(here.room):
+            break
+        length = len(here.left) + len(here.room)
+
+        def residuals(
+            z: Floats, problem: Problem = problem, length: int = length, weight: float = weight
+        ) -> Floats:
+            here = problem.at(z)
+            if here is None:
+                return np.full(length, np.inf)
+            return np.concatenate([here.left, weight * np.minimum(here.room - KEPT, 0.0)])
+
+        def slopes(z: Floats, problem: Problem = problem, weight: float = weight) -> Floats:
+            problem.take(z)
+            here = problem.at(z)
+            assert here is not None
+            missed = weight * (here.room < KEPT)[:, None] * here.room_by
+            return np.concatenate([here.left_by, missed])
+
+        if length == 0:
+            return problem, start
+        # its trust region divides by numbers that may be zero, and mends that itself
+        with np.errstate(all="ignore"):
+            z = least_squares(
+                residuals,
+                start,
+                slopes,
+                bounds=(problem.low, problem.high),
+                ftol=TOLERANCE,
+                xtol=TOLERANCE,
+                gtol=None,
+                max_nfev=evaluations,
+            ).x
+        if problem.at(z) is None:
+            return None
+        seed = problem.seed(z)
+    del weights
+    assert problem is not None and z is not None
+    return problem, z
+
+
+def _inside(problem: Problem, z: Floats) -> Floats:
+    """Unknowns that least squares can begin with: inside their bounds."""
+    wide = np.where(np.isfinite(problem.high - problem.low), problem.high - problem.low, 0.0)
+    return np.clip(z, problem.low + 1e-9 * wide, problem.high - 1e-9 * wide)
+
+
+# ---- the greatest residual
+
+
+def _heights(problem: Problem, here: Values) -> tuple[Floats, Floats]:
+    """Weighted sizes (h,) of single residuals, and their slopes: distances of places, others both ways."""
+    heights, slopes = [], []
+    count = 0
+    for one in problem.model.wanted:
+        rows = slice(count, count + one.count)
+        count += one.count
+        left, by = math.sqrt(one.count) * here.left[rows], math.sqrt(one.count) * here.left_by[rows]
+        if isinstance(one, PlacesWanted):
+            left, by = left.reshape(-1, 3), by.reshape(len(left) // 3, 3, -1)
+            size = np.linalg.norm(left, axis=1)
+            heights.append(size)
+            slopes.append(np.einsum("ni,nik->nk", left, by) / np.maximum(size, 1e-300)[:, None])
+        else:
+            heights += [left, -left]
+            slopes += [by, -by]
+    heights += [here.left[count:], -here.left[count:]]
+    slopes += [here.left_by[count:], -here.left_by[count:]]
+    return np.concatenate(heights), np.concatenate(slopes)
+
+
+def _bounds(problem: Problem, z: Floats) -> tuple[Floats, Floats]:
+    """Rooms to the bounds that there are, and their slopes."""
+    one = np.eye(len(z))
+    low, high = np.isfinite(problem.low), np.isfinite(problem.high)
+    return (
+        np.concatenate([(z - problem.low)[low], (problem.high - z)[high]]),
+        np.concatenate([one[low], -one[high]]),
+    )
+
+
+def _lowered(problem: Problem) -> Floats:
+    def heights(z: Floats) -> MinimaxValues | None:
+        here = problem.at(z)
+        if here is None:
+            return None
+        room, by = _bounds(problem, z)
+        height, height_by = _heights(problem, here)
+        return MinimaxValues(
+            height, height_by, np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
+        )
+
+    return lowered(heights, np.clip(problem.start, problem.low, problem.high), worth=1e-9)
+
+
+# ---- the conditions of an optimum
+
+
+def _conditions(problem: Problem, x: Floats, *, minimax: bool) -> Conditions | None:
+    """At unknowns x: z, and for the greatest residual t behind them."""
+    z = x[:-1] if minimax else x
+    here = problem.at(z)
+    if here is None:
+        return None
+    room, by = _bounds(problem, z)
+    room, by = np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
+    if not minimax:
+        columns = np.linalg.norm(here.left_by, axis=0)
+        unit = max(float(np.linalg.norm(here.left)), LEAST) * max(float(columns.max(initial=0.0)), 1e-300)
+        gradient = here.left_by.T @ here.left
+        return Conditions(gradient, here.left_by.T @ here.left_by, room, by, unit)
+    height, slopes = _heights(problem, here)
+    gradient = np.append(np.zeros(len(z)), 1.0)
+    room = np.concatenate([x[-1] - height, room])
+    by = np.block([[-slopes, np.ones((len(height), 1))], [by, np.zeros((len(by), 1))]])
+    return Conditions(gradient, None, room, by, max(float(np.abs(slopes).max()), 1.0))
+
+
+def _multipliers(at: Conditions) -> tuple[Floats, Floats, float]:
+    """The active rooms, their multipliers >= 0, and by how much (1) is missed."""
+    from scipy.optimize import nnls
+
+    active = np.flatnonzero(at.room <= ACTIVE)
+    missed = max(float(-at.room.min(initial=0.0)), 0.0)
+    if not active.size:
+        return active, np.empty(0), max(float(np.abs(at.gradient).max(initial=0.0)) / at.unit, missed)
+    y, _ = nnls(at.room_by[active].T, at.gradient, maxiter=50 * len(active))
+    rest = np.abs(at.gradient - at.room_by[active].T @ y).max(initial=0.0) / at.unit
+    slack = float(np.abs(y * at.room[active]).max(initial=0.0)) / at.unit
+    return active, y, max(float(rest), missed, slack)
+
+
+def settled(problem: Problem, z: Floats, *, minimax: bool) -> tuple[Floats, float]:
+    """The unknowns after Newton's method on (1), where it makes them better; and what (1) is missed by."""
+    x = z
+    if minimax:
+        here = problem.at(z)
+        if here is None:
+            return z, math.inf
+        x = np.append(z, _heights(problem, here)[0].max())
+    problem.take(z)
+    at = _conditions(problem, x, minimax=minimax)
+    if at is None:
+        return z, math.inf
+    active, y, missed = _multipliers(at)
+    for _ in range(STEPS):
+        if missed < MET:
+            break
+        step = _newton(problem, x, at, active[y > 0], y[y > 0], minimax=minimax)
+        if step is None:
+            break
+        step *= min(1.0, FARTHEST / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+        then = x + step
+        then_at = _conditions(problem, then, minimax=minimax)
+        if then_at is None:
+            break
+        then_active, then_y, then_missed = _multipliers(then_at)
+        if not then_missed < missed:
+            break
+        x, at, active, y, missed = then, then_at, then_active, then_y, then_missed
+        problem.take(x[:-1] if minimax else x)
+    return (x[:-1] if minimax else x), missed
+
+
+def _newton(
+    problem: Problem, x: Floats, at: Conditions, active: Floats, y: Floats, *, minimax: bool
+) -> Floats | None:
+    """The step of Newton's method with these rooms held at zero."""
+    rows = at.room_by[active]
+
+    def pull(point: Floats) -> Floats | None:
+        there = _conditions(problem, point, minimax=minimax)
+        return None if there is None else there.gradient - there.room_by[active].T @ y
+
+    small = not minimax and at.unit <= EXACT and not len(active)
+    curved = at.curved if small else _differences(pull, x)
+    if curved is None:
+        return None
+    count = len(active)
+    matrix = np.block([[curved, -rows.T], [rows, np.zeros((count, count))]])
+    sides = np.concatenate([-at.gradient, -at.room[active]])
+    with np.errstate(all="ignore"):
+        found = np.linalg.lstsq(matrix, sides, rcond=1e-13)[0]
+    return found[: len(x)] if np.isfinite(found).all() else None
+
+
+def _differences(pull: Callable[[Floats], Floats | None], x: Floats) -> Floats | None:
+    """The symmetric slopes (m, m) of a gradient, by central differences."""
+    columns = []
+    for k in range(len(x)):
+        step = np.zeros(len(x))
+        step[k] = DIFFERENCE
+        up, down = pull(x + step), pull(x - step)
+        if up is None or down is None:
+            return None
+        columns.append((up - down) / (2 * DIFFERENCE))
+    found = np.array(columns)
+    return np.asarray((found + found.T) / 2)

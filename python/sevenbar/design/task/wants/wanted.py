@@ -1,0 +1,59 @@
+"""What every want is to the search: inputs at which it looks at the linkage, and what is left there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.synthesis.path.match import Placing
+from sevenbar.design.task.loop import Here
+from sevenbar.design.task.passes import Pass
+from sevenbar.kinematics.circuits import Integers
+
+
+@dataclass(frozen=True, eq=False)
+class Stations:
+    """The inputs `fixed + by u` (n,) of a want with own unknowns u (m,), whose units are `scales` (m,).
+
+    `ordered`: they follow each other; `round`: the last leads to the first again.
+    """
+
+    fixed: Floats
+    by: Floats
+    scales: Floats
+    ordered: bool = True
+    round: bool = False
+
+    def inputs(self, u: Floats) -> Floats:
+        """The inputs (n,)."""
+        return np.asarray(self.fixed + self.by @ u)
+
+
+@dataclass(frozen=True, eq=False)
+class Begun:
+    """How a want may begin on a pass: its unknowns (m,), the rows of the pass (n,), the mean square left."""
+
+    u: Floats
+    rows: Integers
+    error: float
+    placing: Placing | None = None
+
+
+class Wanted(Protocol):
+    """A want in a loop."""
+
+    stations: Stations
+    weight: float
+
+    @property
+    def count(self) -> int:
+        """The number of residuals."""
+
+    def begun(self, one: Pass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+        """How it may begin on a pass, best first; `placing` is `None` where the linkage may stand anywhere."""
+
+    def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
+        """The residuals (r,) at its stations, and their slopes (r, k + m) by free numbers and unknowns."""
