@@ -11,7 +11,7 @@ from sevenbar.description.table_form import TableForm
 from sevenbar.description.values import EXAMPLE_OF_AXES
 from sevenbar.errors import Problem, bare, shown, suggestion
 
-#: What pydantic puts into the place of a value besides keys and numbers.
+#: What pydantic adds to the keys and numbers of a place.
 _NO_PLACE = ("tuple",)
 
 
@@ -79,7 +79,7 @@ class FileForms:
         return f"{what}give one of {', '.join(known)}"
 
     def _home(self, key: str) -> str:
-        """Where a key belongs that stands elsewhere, if it can belong to one place only."""
+        """Where a misplaced key belongs, if it can belong to one place only."""
         homes = [table for table, form in self.tables.items() if key in form.model_fields]
         if key in self.whole.model_fields and not homes:
             return "is a key of the whole file; write it above the first table"

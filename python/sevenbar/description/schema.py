@@ -261,7 +261,9 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
     except ValidationError as error:
         details = [(tuple(detail["loc"]), detail) for detail in error.errors(include_url=False)]
         problems = [
-            Problem(path_of(place), ground_places[place]) if place in ground_places else _FORMS.problem(detail)
+            Problem(path_of(place), ground_places[place])
+            if place in ground_places
+            else _FORMS.problem(detail)
             for place, detail in details
             # an entry that is nothing but a second ground is reported once
             if place in ground_places or place[:2] not in ground_places

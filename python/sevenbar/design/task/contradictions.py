@@ -1,4 +1,4 @@
-"""What of a task contradicts itself or its linkage: found before the long work begins, each with its place."""
+"""What of a task contradicts itself or its linkage, found before the long work begins."""
 
 from __future__ import annotations
 
@@ -92,8 +92,8 @@ def _free(task: DesignTask) -> Iterator[Problem]:
             unit = f" {d.unit}" if d.unit else ""
             yield Problem(
                 place,
-                f"begins at {d.value:g}{unit}, outside {low:g}:{high:g}; give bounds that hold it, or another "
-                "start",
+                f"begins at {d.value:g}{unit}, outside {low:g}:{high:g}; "
+                "give bounds that hold it, or another start",
             )
         if d.name in task.follow:
             yield Problem(place, "is to follow from the others; leave it out here, or in follow")
@@ -206,7 +206,10 @@ def _figure(task: DesignTask, want: FigureWant) -> Flaws:
         yield "unit", f"{want.unit:g} is no unit; give a number > 0"
     if isinstance(want.value, str):
         if want.value not in ("small", "great"):
-            yield "value", f"{shown(want.value)} is neither a number nor 'small' nor 'great'; give one of them"
+            yield (
+                "value",
+                f"{shown(want.value)} is neither a number nor 'small' nor 'great'; give one of them",
+            )
     elif not math.isfinite(want.value):
         yield "value", f"{want.value} is no value; give a finite number"
     elif want.name == "time_ratio" and want.value < 1:
@@ -227,7 +230,9 @@ def _point(linkage: Linkage, name: str) -> Flaws:
     known = {point.name: point.link for point in linkage.points}
     moving = [point for point, link in known.items() if link < len(linkage.joints)]
     if name not in known:
-        has = f"this linkage has {', '.join(moving)}" if moving else "the linkage names none, so add one to it"
+        has = (
+            f"this linkage has {', '.join(moving)}" if moving else "the linkage names none, so add one to it"
+        )
         yield "point", f"no point {shown(name)}; {suggestion(name, known)}{has}"
     elif known[name] == len(linkage.joints):
         yield "point", f"'{name}' is on the ground, which stands still; give one of {', '.join(moving)}"

@@ -22,7 +22,7 @@ from sevenbar.design.task.task import (
 )
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.measures import FORCE_MEASURES, MEASURES, JOINT_MEASURES, measures_named
+from sevenbar.kinematics.measures import FORCE_MEASURES, JOINT_MEASURES, MEASURES, measures_named
 
 #: Messages, each with the key that it is of; "" for a whole table.
 Flaws = Iterator[tuple[str, str]]
@@ -125,7 +125,8 @@ def _box(task: DesignTask, must: InBox) -> Flaws:
         if name not in known:
             yield (
                 "names",
-                f"no point or joint {shown(name)}; {suggestion(name, known)}this linkage has {', '.join(known)}",
+                f"no point or joint {shown(name)}; {suggestion(name, known)}"
+                f"this linkage has {', '.join(known)}",
             )
     for i, want in enumerate(task.wants):
         if isinstance(want, PathWant) and want.point in must.names and task.placement == "fixed":

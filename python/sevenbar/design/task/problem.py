@@ -214,9 +214,7 @@ class Problem:
         self.take(z)
         found = self.at(z)
         placing = STILL if found is None else found.placing
-        return Seed(
-            self.values(z), self.own(z), self._poses[: self._count], self._anchor, math.nan, placing
-        )
+        return Seed(self.values(z), self.own(z), self._poses[: self._count], self._anchor, math.nan, placing)
 
     # ---- what is left there
 
@@ -308,7 +306,8 @@ class Problem:
         puts = [placing.put(parts[i][0]) for i, _ in own]
         every = np.concatenate(puts)
         weights = [
-            np.full(3 * len(put), one.weight / math.sqrt(one.count)) for put, (_, one) in zip(puts, own, strict=True)
+            np.full(3 * len(put), one.weight / math.sqrt(one.count))
+            for put, (_, one) in zip(puts, own, strict=True)
         ]
         units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
         weight = np.concatenate(weights)[:, None]

@@ -38,6 +38,7 @@ from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import examples_of
 
+
 def must_of(form: MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:
     """The must of a table; raises `RequestError` with the key at fault."""
     match form:
@@ -69,7 +70,7 @@ def _everything(linkage: Linkage) -> tuple[str, ...]:
 def _most(form: MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
     """The most of a want's residuals, relative to what they are relative to."""
     if form.want > len(wants):
-        # which is said of the task
+        # the task is checked for it
         return 1.0
     match wants[form.want - 1]:
         case FunctionWant() | DwellWant():
@@ -87,7 +88,7 @@ def _most(form: MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
 
 
 def linkage_size(linkage: Linkage) -> float:
-    """The longest dimension of a linkage's description [length], to which residuals of lengths are relative."""
+    """The longest dimension of a description [length], to which residuals of lengths are relative."""
     return float(Numbers(linkage).size)
 
 

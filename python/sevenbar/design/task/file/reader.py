@@ -1,4 +1,4 @@
-"""A task file read: its linkage found, its values in radians and lengths, its mistakes each with its place."""
+"""A task file read: its linkage found, values in radians and lengths, each mistake with its place."""
 
 from __future__ import annotations
 
@@ -21,7 +21,15 @@ from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
 from sevenbar.design.task.file.units import length_span
 from sevenbar.design.task.file.wants import want_of
 from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
-from sevenbar.errors import DescriptionError, Problem, RequestError, SevenbarError, ends_here, shown, suggestion
+from sevenbar.errors import (
+    DescriptionError,
+    Problem,
+    RequestError,
+    SevenbarError,
+    ends_here,
+    shown,
+    suggestion,
+)
 from sevenbar.kinematics.linkage import Linkage
 
 
@@ -53,7 +61,7 @@ def task_file(path: str | os.PathLike[str], *, agree: float | None = None) -> Ta
 
 
 def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskFile:
-    """The task of a TOML text; files that it names are looked for beside `source`."""
+    """The task of a TOML text; files that it names lie in its folder, that of `source`."""
     raw = toml_tables(text, source)
     folder = Path(source).parent
     draft = _draft(raw, source, folder, agree)
@@ -112,7 +120,7 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
         return Draft.of(tomlkit.dumps(given), f"{source}: [linkage]", agree=agree)
     if not isinstance(given, str) or not given.strip():
         what = "is missing" if given is None else f"{shown(given)} is none"
-        hint = "give a file beside this one, as in 'rssr.toml', a name of the gallery, or a table [linkage]"
+        hint = "give a file in the folder of this one, as in 'rssr.toml', a name of the gallery, or a table [linkage]"
         raise DescriptionError([Problem("linkage", f"{what}; {hint}")], source)
     name = given.strip()
     path = folder / name
@@ -121,7 +129,12 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
     if not path.is_file():
         near = suggestion(name, gallery_names())
         raise DescriptionError(
-            [Problem("linkage", f"no file {shown(name)} beside this one, and none of the gallery; {near}give one")],
+            [
+                Problem(
+                    "linkage",
+                    f"{shown(name)}: no such file in the folder of this one, nor such a name in the gallery; {near}give one",
+                )
+            ],
             source,
         )
     return Draft.of(toml_text(path), str(path), agree=agree)

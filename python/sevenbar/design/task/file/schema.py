@@ -1,4 +1,4 @@
-"""What a task file may hold, checked with pydantic: the only model of it, which the page of its keys is made from.
+"""What a task file may hold, checked with pydantic: the one model of it, and of the page of its keys.
 
 Angles are in degrees where no unit is given, lengths in the linkage's own unit.
 """
@@ -17,29 +17,30 @@ from sevenbar.design.synthesis.limits import MOTION_TYPES
 from sevenbar.design.task.file.values import (
     Flag,
     Goal,
+    Link,
     Links,
     Matrix,
     Numbers,
     Pairs,
     Place,
     Places,
+    Points,
     Positive,
     Radians,
+    Samples,
     Span,
     Timing,
     Unit,
     Value,
+    WantNumber,
     Weight,
     Zero,
-    whole,
 )
-from sevenbar.errors import DescriptionError, Problem, shown, suggestion
+from sevenbar.errors import DescriptionError, Problem, shown
 
 GOALS = ("least squares", "minimax")
 PLACEMENTS = ("fixed", "free", "free with scale")
 
-_Link = whole(1, 1000, "a link")
-_Samples = whole(3, 1000, "a number of samples")
 _OF_INPUT = "degrees, or length"
 
 
@@ -57,7 +58,6 @@ def _words(value: object) -> tuple[str, ...]:
 _Words = Annotated[
     tuple[str, ...], BeforeValidator(_words), WithJsonSchema({"type": "array", "items": {"type": "string"}})
 ]
-_Word = WithJsonSchema
 
 
 class FunctionForm(TableForm):
@@ -71,15 +71,15 @@ class FunctionForm(TableForm):
         Span | None, key("of y: readings of the output from the least y to the greatest", _OF_INPUT)
     ] = None
     points: Annotated[
-        whole(3, 100, "a number of points") | None,
+        Points | None,
         key("of y: so many points by Chebyshev's spacing are wanted, not all of the range"),
     ] = None
     pairs: Annotated[Pairs | None, key("readings of input and output, row by row", _OF_INPUT)] = None
     table: Annotated[
         Text | None, key("a CSV file or workbook of pairs: two columns, their units in the header")
     ] = None
-    input_zero: Annotated[Zero, key("where the input stands at the reading 0, or free", _OF_INPUT)] = "free"
-    output_zero: Annotated[Zero, key("where the output stands at the reading 0, or free", _OF_INPUT)] = "free"
+    input_zero: Annotated[Zero, key("the input's value at the reading 0, or free", _OF_INPUT)] = "free"
+    output_zero: Annotated[Zero, key("the output's value at the reading 0, or free", _OF_INPUT)] = "free"
     exact: Annotated[Flag, key("whether all points must be met exactly")] = False
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
@@ -104,9 +104,9 @@ class PathForm(TableForm):
 
 
 class PoseForm(TableForm):
-    """A pose of a link: where its frame's origin comes to, and how the frame is turned."""
+    """A pose of a link: the place of its frame's origin, and how the frame is turned."""
 
-    at: Annotated[Place, key("where the origin of the link's frame comes to", "length")]
+    at: Annotated[Place, key("the place of the origin of the link's frame", "length")]
     axis: Annotated[Direction, key("about which the frame is turned")] = (0.0, 0.0, 1.0)
     angle: Annotated[Radians, key("by which it is turned about the axis", "degrees")] = 0.0
     matrix: Annotated[Matrix | None, key("the rotation, row by row; in place of axis and angle")] = None
@@ -116,7 +116,7 @@ class PosesForm(TableForm):
     """Poses of a link, in order."""
 
     kind: Annotated[Literal["poses"], key("this want")]
-    link: Annotated[_Link, key("the link, counted from 1")]
+    link: Annotated[Link, key("the link, counted from 1")]
     arm: Annotated[
         Positive | None,
         key("the length at which a radian counts as much as it; left out, the linkage's size", "length"),
@@ -150,8 +150,8 @@ class DwellForm(TableForm):
 
     kind: Annotated[Literal["dwell"], key("this want")]
     range: Annotated[Span, key("of the input", _OF_INPUT)]
-    level: Annotated[Zero, key("where the output stands, or free", _OF_INPUT)] = "free"
-    samples: Annotated[_Samples, key("inputs of the range that are looked at")] = 41
+    level: Annotated[Zero, key("the output's value, or free", _OF_INPUT)] = "free"
+    samples: Annotated[Samples, key("inputs of the range that count")] = 41
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
 
@@ -162,7 +162,7 @@ class StraightForm(TableForm):
     point: Annotated[Text, key("the name of the linkage's point")]
     range: Annotated[Span, key("of the input", _OF_INPUT)]
     length: Annotated[Positive | None, key("how far it goes at least", "length")] = None
-    samples: Annotated[_Samples, key("inputs of the range that are looked at")] = 41
+    samples: Annotated[Samples, key("inputs of the range that count")] = 41
     weight: Annotated[Weight, key("how much its residuals count")] = 1.0
 
 
@@ -218,7 +218,7 @@ class MostMust(TableForm):
     """The residuals of a want are small."""
 
     kind: Annotated[Literal["most"], key("this must")]
-    want: Annotated[whole(1, 100, "a want"), key("its place among [[want]], counted from 1")]
+    want: Annotated[WantNumber, key("its place among [[want]], counted from 1")]
     most: Annotated[
         Value, key("the most that each of its residuals may be, weights left out", "degrees, or length")
     ]
@@ -268,7 +268,9 @@ class TaskForm(TableForm):
 
     linkage: Annotated[
         str | dict[str, Any],
-        key("a file beside this one, a name of the gallery, or [linkage], a linkage file's own tables"),
+        key(
+            "a file in the folder of this one, a name of the gallery, or [linkage], a linkage file's own tables"
+        ),
     ]
     want: Annotated[tuple[_Want, ...], key("what is wanted; one or more")]
     free: Annotated[

@@ -16,9 +16,7 @@ def reading(key: str, value: Given, linkage: Linkage, column: int) -> float:
     return joint_value(value if isinstance(value, str) else repr(value), key, linkage, column)
 
 
-def reading_span(
-    key: str, ends: tuple[Given, Given], linkage: Linkage, column: int
-) -> tuple[float, float]:
+def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: int) -> tuple[float, float]:
     """The two ends of a joint's range [rad, or length]."""
     return reading(key, ends[0], linkage, column), reading(key, ends[1], linkage, column)
 
@@ -35,7 +33,7 @@ def figure_value(key: str, value: Given, linkage: Linkage, name: str) -> float:
     try:
         (measure,) = measures_named([name])
     except RequestError:
-        # which is said of the name
+        # the name is checked with the task
         return 0.0
     unit = measure.unit(linkage, linkage.drive.output)
     return _amount(key, value, unit if unit in ("deg", linkage.length_unit) else "")

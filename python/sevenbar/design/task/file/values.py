@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 from typing import Annotated, Any, Literal
 
@@ -76,20 +75,12 @@ def _whole(value: object, least: int, most: int, what: str) -> int:
     return value
 
 
-def whole(least: int, most: int, what: str) -> Any:
-    """The type of a whole number within ends."""
-    schema = {"type": "integer", "minimum": least, "maximum": most}
-    return Annotated[
-        int, BeforeValidator(partial(_whole, least=least, most=most, what=what)), WithJsonSchema(schema)
-    ]
-
-
 def _zero(value: object) -> Given:
     return "free" if value == "free" else _given(value, example="'free', 30 or '30deg'")
 
 
 def _pairs(value: object) -> tuple[tuple[Given, Given], ...]:
-    rows = value if isinstance(value, list) else [value]
+    rows: list[Any] = value if isinstance(value, list) else [value]
     if not all(isinstance(row, list) and len(row) == 2 for row in rows):
         raise refuse(f"{shown(value)} are no pairs; give rows of input and output, as in [[0, 10], [30, 25]]")
     return tuple((_given(a), _given(b)) for a, b in rows)
@@ -150,27 +141,39 @@ def _goal(value: object) -> Given:
     return value if value in ("small", "great") else _given(value, example="60, '60deg', 'small' or 'great'")
 
 
-def _typed(kind: Any, read: Callable[..., object], schema: dict[str, Any]) -> Any:
-    return Annotated[kind, BeforeValidator(read), WithJsonSchema(schema)]
-
-
 _ANY: dict[str, Any] = {"type": ["number", "string"]}
-_ROWS: dict[str, Any] = {"type": "array"}
+_ENDS = WithJsonSchema({"type": ["string", "array"]})
+_ROWS = WithJsonSchema({"type": "array"})
+
+
+def _counted(least: int, most: int, what: str) -> tuple[BeforeValidator, WithJsonSchema]:
+    """What checks a whole number within ends, and its schema."""
+    schema = {"type": "integer", "minimum": least, "maximum": most}
+    return BeforeValidator(partial(_whole, least=least, most=most, what=what)), WithJsonSchema(schema)
+
 
 #: The kinds of values, as the forms of `schema` have them.
-Value = _typed(Given, _given, _ANY)
-Span = _typed(tuple[Given, Given], _span, {"type": ["string", "array"]})
-Numbers = _typed(tuple[float, float], _numbers, {"type": ["string", "array"]})
-Weight = _typed(float, partial(_positive, what="a weight"), POSITIVE)
-Unit = _typed(float, partial(_positive, what="a unit"), POSITIVE)
-Positive = _typed(float, _length, POSITIVE)
-Radians = _typed(float, _angle, FORMULA)
-Flag = _typed(bool, _flag, {"type": "boolean"})
-Zero = _typed(Given, _zero, _ANY)
-Goal = _typed(Given, _goal, _ANY)
-Pairs = _typed(tuple[tuple[Given, Given], ...], _pairs, _ROWS)
-Places = _typed(tuple[tuple[float, float, float], ...], _places, _ROWS)
-Timing = _typed(tuple[Given, ...] | Literal[True], _timing, {"type": ["array", "boolean"]})
-Matrix = _typed(tuple[tuple[float, float, float], ...], _matrix, _ROWS)
-Links = _typed(tuple[int, int], _links, _ROWS)
+Value = Annotated[Given, BeforeValidator(_given), WithJsonSchema(_ANY)]
+Zero = Annotated[Given, BeforeValidator(_zero), WithJsonSchema(_ANY)]
+Goal = Annotated[Given, BeforeValidator(_goal), WithJsonSchema(_ANY)]
+Span = Annotated[tuple[Given, Given], BeforeValidator(_span), _ENDS]
+Numbers = Annotated[tuple[float, float], BeforeValidator(_numbers), _ENDS]
+Weight = Annotated[float, BeforeValidator(partial(_positive, what="a weight")), POSITIVE]
+Unit = Annotated[float, BeforeValidator(partial(_positive, what="a unit")), POSITIVE]
+Positive = Annotated[float, BeforeValidator(_length), POSITIVE]
+Radians = Annotated[float, BeforeValidator(_angle), WithJsonSchema(FORMULA)]
+Flag = Annotated[bool, BeforeValidator(_flag), WithJsonSchema({"type": "boolean"})]
+Pairs = Annotated[tuple[tuple[Given, Given], ...], BeforeValidator(_pairs), _ROWS]
+Places = Annotated[tuple[tuple[float, float, float], ...], BeforeValidator(_places), _ROWS]
+Timing = Annotated[
+    tuple[Given, ...] | Literal[True],
+    BeforeValidator(_timing),
+    WithJsonSchema({"type": ["array", "boolean"]}),
+]
+Matrix = Annotated[tuple[tuple[float, float, float], ...], BeforeValidator(_matrix), _ROWS]
+Links = Annotated[tuple[int, int], BeforeValidator(_links), _ROWS]
+Link = Annotated[int, *_counted(1, 1000, "a link")]
+Samples = Annotated[int, *_counted(3, 1000, "a number of samples")]
+Points = Annotated[int, *_counted(3, 100, "a number of points")]
+WantNumber = Annotated[int, *_counted(1, 100, "a want")]
 Place = Vector

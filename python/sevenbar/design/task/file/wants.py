@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Literal, TypeVar, cast
 
 import numpy as np
 
@@ -40,9 +42,14 @@ from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import pose
 from sevenbar.text.expression import function_of
 
+T = TypeVar("T")
+
+#: What a figure may be wanted to be, other than a value.
+Way = Literal["small", "great"]
+
 
 def want_of(form: WantForm, linkage: Linkage, folder: Path) -> Want:
-    """The want of a table; files are looked for in `folder`. Raises `RequestError` with the key at fault."""
+    """The want of a table; files lie in `folder`. Raises `RequestError` with the key at fault."""
     match form:
         case FunctionForm():
             return _function(form, linkage, folder)
@@ -51,10 +58,9 @@ def want_of(form: WantForm, linkage: Linkage, folder: Path) -> Want:
         case PosesForm():
             return _poses(form, linkage, folder)
         case FigureForm():
-            value = form.value
-            if value not in ("small", "great"):
-                value = figure_value("value", value, linkage, form.name)
-            return FigureWant(form.name, value, form.unit, form.weight)  # type: ignore[arg-type]
+            word = form.value if form.value in ("small", "great") else None
+            value = 0.0 if word else figure_value("value", form.value, linkage, form.name)
+            return FigureWant(form.name, cast(Way, word) if word else value, form.unit, form.weight)
         case DwellForm():
             level = _zero("level", form.level, linkage, _output(linkage))
             return DwellWant(_of_input("range", form.range, linkage), level, form.samples, form.weight)
@@ -78,15 +84,18 @@ def _function(form: FunctionForm, linkage: Linkage, folder: Path) -> FunctionWan
         x, y = _of_formula(form, linkage, columns)
     elif form.pairs is not None:
         x, y = (
-            np.array([reading(f"pairs[{i + 1}]", row[side], linkage, column) for i, row in enumerate(form.pairs)])
+            np.array(
+                [reading(f"pairs[{i + 1}]", row[side], linkage, column) for i, row in enumerate(form.pairs)]
+            )
             for side, column in enumerate(columns)
         )
     else:
         if not all(map(linkage.turns, columns)):
             raise RequestError("table: holds angles, and a joint of the drive slides; give pairs")
         x, y = _read("table", read_pairs, folder / str(form.table))
-    zeros = _zero("input_zero", form.input_zero, linkage, columns[0]), _zero(
-        "output_zero", form.output_zero, linkage, columns[1]
+    zeros = (
+        _zero("input_zero", form.input_zero, linkage, columns[0]),
+        _zero("output_zero", form.output_zero, linkage, columns[1]),
     )
     return FunctionWant(x, y, zeros, form.weight)
 
@@ -180,8 +189,8 @@ def _timing(given: object, of_table: Floats | None, linkage: Linkage) -> Floats 
     if given is True:
         if of_table is None:
             raise RequestError(
-                f"timing: no table has a column for the input '{linkage.drive.joint}'; give the inputs, as in "
-                "[0, 10, 20]"
+                f"timing: no table has a column for the input '{linkage.drive.joint}'; "
+                "give the inputs, as in [0, 10, 20]"
             )
         return of_table
     column = linkage.columns.index(linkage.drive.joint)
@@ -201,7 +210,7 @@ def _zero(key: str, value: Given, linkage: Linkage, column: int) -> float | None
     return None if value == "free" else reading(key, value, linkage, column)
 
 
-def _read(key, reader, path):  # type: ignore[no-untyped-def]
+def _read(key: str, reader: Callable[[Path], T], path: Path) -> T:
     """What a reader finds in a table; its mistakes are those of the key."""
     try:
         return reader(path)

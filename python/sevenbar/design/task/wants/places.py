@@ -123,4 +123,3 @@ class PlacesWanted:
     def _firsts(self, curve: Floats) -> list[Placing]:
         """Placings that bring every other row of a curve (rows, p, 3) to the first pose."""
         return [placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT)]
-
