@@ -44,6 +44,8 @@ at = [0, 0, 0]
 
 def written(folder: Path, body: str, linkage: str = "planar.toml") -> Path:
     (folder / "drawn.toml").write_text(DRAWN)
+    apart = gallery_text("planar_4r").replace("length = 90", "length = 300")
+    (folder / "apart.toml").write_text(apart + POINT)
     (folder / "planar.toml").write_text(gallery_text("planar_4r") + POINT)
     (folder / "path.csv").write_text("x [cm],y [cm]\n0,10\n2,11\n4,10\n")
     (folder / "pairs.csv").write_text("input_deg,output_deg\n0,10\n20,30\n40,35\n")
@@ -261,6 +263,16 @@ WRONG = {
     "unknown motion type": ("planar.toml", FREE + PATH + "[limits]\nmotion_type = 'crank'\n", "task.toml: limits.motion_type: 'crank' is not a motion type; allowed: crank-rocker"),
     "size turned round": ("planar.toml", FREE + PATH + "[limits]\nsize = '90:10'\n", "task.toml: limits.size: 90:10 is no range of lengths"),
     "placed for nothing": ("planar.toml", 'placement = "free"\n' + FREE + FUNCTION, "task.toml: placement: 'free' changes nothing: no path and no poses are wanted"),
+    "a twist opens a plane": (
+        "planar.toml",
+        '[free]\ntwist_1 = "-5:5"\n' + PATH,
+        "task.toml: free.twist_1: cannot change alone without opening the loop; leave it out",
+    ),
+    "a chain that does not close": (
+        "apart.toml",
+        FREE + PATH,
+        "task.toml: linkage: moves nowhere as it is described",
+    ),
     "no TOML": ("planar.toml", "[free\n", "task.toml: line 2: '[free' is not valid TOML"),
 }  # fmt: skip
 

@@ -10,6 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.synthesis.path.task import wanted_inputs, wanted_places
+from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must
 from sevenbar.design.task.task import (
     DesignTask,
@@ -29,13 +30,16 @@ from sevenbar.kinematics.linkage import Linkage
 #: The most that residuals are where points are to be met exactly.
 EXACT = 1e-6
 
+#: Inputs of a turn at which numbers that open the loop show.
+OPENINGS = 12
+
 #: By how much a rotation's matrix may miss being one.
 ROTATION = 1e-3
 
 
 def refuse_contradictions(task: DesignTask) -> None:
     """Raises `RequestError` with every contradiction of a task, a line each."""
-    if found := list(contradictions(task)):
+    if found := list(contradictions(task)) or list(start_flaws(task)):
         raise RequestError("\n".join(map(str, found)))
 
 
@@ -60,6 +64,30 @@ def contradictions(task: DesignTask) -> Iterator[Problem]:
             "limits.transmission",
             "its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out",
         )
+
+
+def start_flaws(task: DesignTask) -> Iterator[Problem]:
+    """What is wrong with a task's linkage as a start: it moves nowhere, or a free number opens its loop.
+
+    For a task without other contradictions, since its linkage is moved.
+    """
+    loop = TaskLoop(task.draft.holding(task.follow), task.names)
+    for circuit in loop.linkage.motion(OPENINGS).circuits:
+        good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
+        if good.size:
+            q = loop.closed(loop.start, circuit.input[good], loop.poses(loop.start, circuit.q[good]))
+            q = q[np.isfinite(q).all(axis=1)]
+            if len(q):
+                for number in loop.openings(loop.start, q):
+                    yield Problem(
+                        f"free.{task.free[number].name}",
+                        "cannot change alone without opening the loop; leave it out",
+                    )
+                return
+    yield Problem(
+        "linkage",
+        "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
+    )
 
 
 def _free(task: DesignTask) -> Iterator[Problem]:

@@ -15,7 +15,7 @@ from sevenbar.description.files import toml_tables, toml_text
 from sevenbar.description.gallery import names as gallery_names
 from sevenbar.description.table_form import TableForm
 from sevenbar.design.synthesis.limits import Limits
-from sevenbar.design.task.contradictions import EXACT, contradictions
+from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
 from sevenbar.design.task.file.musts import must_of
 from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
 from sevenbar.design.task.file.units import length_span
@@ -86,7 +86,7 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
             limits,
             form.follow or (),
         )
-        mistakes.found += contradictions(task)
+        mistakes.found += list(contradictions(task)) or list(start_flaws(task))
     if mistakes.found:
         raise DescriptionError(list(dict.fromkeys(mistakes.found)), source)
     return TaskFile(task, form.name or draft.linkage.heading, source)
@@ -120,7 +120,10 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
         return Draft.of(tomlkit.dumps(given), f"{source}: [linkage]", agree=agree)
     if not isinstance(given, str) or not given.strip():
         what = "is missing" if given is None else f"{shown(given)} is none"
-        hint = "give a file in the folder of this one, as in 'rssr.toml', a name of the gallery, or a table [linkage]"
+        hint = (
+            "give a file in the folder of this one, as in 'rssr.toml', a name of the gallery, "
+            "or a table [linkage]"
+        )
         raise DescriptionError([Problem("linkage", f"{what}; {hint}")], source)
     name = given.strip()
     path = folder / name
@@ -132,7 +135,8 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
             [
                 Problem(
                     "linkage",
-                    f"{shown(name)}: no such file in the folder of this one, nor such a name in the gallery; {near}give one",
+                    f"{shown(name)}: no such file in the folder of this one, nor such a name in the "
+                    f"gallery; {near}give one",
                 )
             ],
             source,

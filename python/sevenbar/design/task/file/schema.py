@@ -268,9 +268,7 @@ class TaskForm(TableForm):
 
     linkage: Annotated[
         str | dict[str, Any],
-        key(
-            "a file in the folder of this one, a name of the gallery, or [linkage], a linkage file's own tables"
-        ),
+        key("a file in the folder of this one, a name of the gallery, or tables of a linkage file"),
     ]
     want: Annotated[tuple[_Want, ...], key("what is wanted; one or more")]
     free: Annotated[
