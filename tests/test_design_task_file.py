@@ -166,6 +166,23 @@ def test_a_formula_goes_over_its_ranges_and_points_are_chebyshevs(tmp_path):
     np.testing.assert_allclose(np.degrees(want.output), 60 - 60 * share**2, atol=1e-12)
 
 
+def test_a_formula_without_ranges_gives_the_readings_themselves(tmp_path):
+    # the outer wheel of a car whose track is 0.55 of its wheelbase
+    y = "atan(tan(x)/(1 + 0.55*tan(x)))"
+    body = FREE + f'[[want]]\nkind = "function"\ny = "{y}"\nx = "-30deg:40deg"\n'
+    (want,) = read_task(written(tmp_path, body)).wants
+    assert np.degrees(want.input[[0, -1]]) == pytest.approx((-30, 40))
+    np.testing.assert_allclose(1 / np.tan(want.output) - 1 / np.tan(want.input), 0.55)
+
+
+def test_poses_of_a_frame_on_the_link_are_those_of_the_link_itself(tmp_path):
+    poses = "poses = [{ at = [10, 20, 0], angle = 90 }]"
+    frame = "frame = { at = [10, 20, 0], angle = 90 }"
+    body = FREE + f'[[want]]\nkind = "poses"\nlink = 2\n{frame}\n{poses}\n'
+    (want,) = read_task(written(tmp_path, body)).wants
+    np.testing.assert_allclose(want.poses[0], np.eye(4), atol=1e-14)
+
+
 def test_a_linkage_may_stand_in_the_file_itself(tmp_path):
     inner = gallery_text("planar_4r")
     tables = inner.replace("[[", "[[linkage.").replace("\n[drive", "\n[linkage.drive")
@@ -220,7 +237,16 @@ WRONG = {
     "no weight": ("planar.toml", FREE + PATH + "weight = 0\n", "task.toml: want[1].weight: 0 is not a weight; give a number > 0"),
     "y and pairs": ("planar.toml", FREE + FUNCTION + "y = 'x'\n", "task.toml: want[1]: y and pairs are given; give one of the three"),
     "ranges without y": ("planar.toml", FREE + FUNCTION + "input = '0:9'\n", "task.toml: want[1].input: belongs to y; pairs says it all"),
-    "y without ranges": ("planar.toml", FREE + "[[want]]\nkind = 'function'\ny = 'x'\n", "task.toml: want[1].input: is missing; y needs the range of its readings"),
+    "y with one range": (
+        "planar.toml",
+        FREE + "[[want]]\nkind = 'function'\ny = 'x'\noutput = '0:9'\n",
+        "task.toml: want[1].input: is missing; give both ranges of readings, or neither",
+    ),
+    "readings over a turn": (
+        "planar.toml",
+        FREE + "[[want]]\nkind = 'function'\ny = 'x'\nx = '0:90'\n",
+        "task.toml: want[1].x: goes over 5156.62 deg, for it counts in radians; give a part of a turn",
+    ),
     "y is no formula": ("planar.toml", FREE + "[[want]]\nkind = 'function'\ny = 'xx'\ninput = '0:9'\noutput = '0:9'\n", "task.toml: want[1].y: 'xx': no 'xx' is known"),
     "y has no value": ("planar.toml", FREE + "[[want]]\nkind = 'function'\ny = 'log(x)'\ninput = '0:9'\noutput = '0:9'\n", "task.toml: want[1].y: log(x) has no value at x = 0"),
     "x falls": ("planar.toml", FREE + "[[want]]\nkind = 'function'\ny = 'x'\nx = '1:0'\ninput = '0:9'\noutput = '0:9'\n", "task.toml: want[1].x: 1:0 does not rise"),

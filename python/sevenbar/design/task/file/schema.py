@@ -66,9 +66,12 @@ class FunctionForm(TableForm):
     kind: Annotated[Literal["function"], key("this want")]
     y: Annotated[Text | None, key("a function of x, as in 'x^2'; or pairs, or a table")] = None
     x: Annotated[Numbers, key("of y: the range of x; an angle with a unit counts in radians")] = (0.0, 1.0)
-    input: Annotated[Span | None, key("of y: readings of the input over the range of x", _OF_INPUT)] = None
+    input: Annotated[
+        Span | None,
+        key("of y: readings of the input over the range of x; left out with output, x itself", _OF_INPUT),
+    ] = None
     output: Annotated[
-        Span | None, key("of y: readings of the output from the least y to the greatest", _OF_INPUT)
+        Span | None, key("of y: readings of the output from the least y to the greatest; y itself", _OF_INPUT)
     ] = None
     points: Annotated[
         Points | None,
@@ -120,6 +123,12 @@ class PosesForm(TableForm):
     arm: Annotated[
         Positive | None,
         key("the length at which a radian counts as much as it; left out, the linkage's size", "length"),
+    ] = None
+    frame: Annotated[
+        PoseForm | None,
+        key(
+            "a frame on the link, as its points are written, whose poses are given; left out, the link's own"
+        ),
     ] = None
     poses: Annotated[tuple[PoseForm, ...] | None, key("tables of at, axis, angle, or at, matrix")] = None
     table: Annotated[

@@ -39,7 +39,7 @@ from sevenbar.design.task.task import (
 )
 from sevenbar.errors import RequestError, TableError
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.rigid import inverse, pose
 from sevenbar.text.expression import function_of
 
 T = TypeVar("T")
@@ -101,11 +101,27 @@ def _function(form: FunctionForm, linkage: Linkage, folder: Path) -> FunctionWan
 
 
 def _of_formula(form: FunctionForm, linkage: Linkage, columns: tuple[int, int]) -> tuple[Floats, Floats]:
-    """Readings of input and output that y(x) wants: x and y go over shares 0 to 1 of their ranges."""
+    """Readings of input and output that y(x) wants, over the ranges of both or as x and y are."""
+    y = str(form.y)
+    low, high = form.x
+    if not low < high:
+        raise RequestError(f"x: {low:g}:{high:g} does not rise; give the lower end first")
+    wish = wish_of_function(function_of(y), form.x, (0.0, 1.0), (0.0, 1.0), title=y, formula=y)
+    share = wish.input if form.points is None else chebyshev(0.0, 1.0, form.points)
+    if form.input is None and form.output is None:
+        x = low + (high - low) * share
+        if linkage.turns(columns[0]) and high - low >= math.tau:
+            raise RequestError(
+                f"x: goes over {math.degrees(high - low):g} deg, for it counts in radians; "
+                "give a part of a turn"
+            )
+        return x, function_of(y)(x)
     ranges = []
     for name, ends, column in (("input", form.input, columns[0]), ("output", form.output, columns[1])):
         if ends is None:
-            raise RequestError(f"{name}: is missing; y needs the range of its readings, as in '0:90deg'")
+            raise RequestError(
+                f"{name}: is missing; give both ranges of readings, or neither where x and y are the readings"
+            )
         first, last = reading_span(name, ends, linkage, column)
         if first == last:
             raise RequestError(f"{name}: both ends are one; give a range, as in '0:90deg'")
@@ -114,15 +130,9 @@ def _of_formula(form: FunctionForm, linkage: Linkage, columns: tuple[int, int]) 
                 f"{name}: goes over {math.degrees(abs(last - first)):g} deg; give a part of a turn"
             )
         ranges.append((first, last))
-    y = str(form.y)
-    if not form.x[0] < form.x[1]:
-        raise RequestError(f"x: {form.x[0]:g}:{form.x[1]:g} does not rise; give the lower end first")
-    wish = wish_of_function(function_of(y), form.x, (0.0, 1.0), (0.0, 1.0), title=y, formula=y)
-    at = wish.input if form.points is None else chebyshev(0.0, 1.0, form.points)
     assert wish.function is not None
-    shares = at, wish.function(at)
-    x, readings = (a + (b - a) * share for share, (a, b) in zip(shares, ranges, strict=True))
-    return x, readings
+    (a, b), (c, d) = ranges
+    return a + (b - a) * share, c + (d - c) * wish.function(share)
 
 
 def _path(form: PathForm, linkage: Linkage, folder: Path) -> PathWant:
@@ -156,13 +166,15 @@ def _poses(form: PosesForm, linkage: Linkage, folder: Path) -> PoseWant:
     if form.table is not None:
         poses, inputs = _read("table", lambda path: read_poses(path, linkage), folder / form.table)
     else:
-        poses = np.array([_pose(i, one) for i, one in enumerate(form.poses or ())])
+        poses = np.array([_pose(f"poses[{i + 1}]", one) for i, one in enumerate(form.poses or ())])
+    if form.frame is not None:
+        poses = poses @ inverse(_pose("frame", form.frame))
     arm = linkage_size(linkage) if form.arm is None else form.arm
     timing = _timing(form.timing, inputs, linkage)
     return PoseWant(form.link, poses, arm, timing, form.phase, form.weight)
 
 
-def _pose(index: int, form: PoseForm) -> Floats:
+def _pose(key: str, form: PoseForm) -> Floats:
     """A pose (4, 4)."""
     from scipy.spatial.transform import Rotation
 
@@ -170,7 +182,7 @@ def _pose(index: int, form: PoseForm) -> Floats:
         axis = np.array(form.axis) / math.hypot(*form.axis)
         return pose(Rotation.from_rotvec(form.angle * axis).as_matrix(), form.at)
     if {"axis", "angle"} & form.model_fields_set:
-        raise RequestError(f"poses[{index + 1}]: a matrix, and axis or angle; give one of the two")
+        raise RequestError(f"{key}: a matrix, and axis or angle; give one of the two")
     # to all digits what was written with some
     return pose(Rotation.from_matrix(np.array(form.matrix)).as_matrix(), form.at)
 
