@@ -140,6 +140,7 @@ class Problem:
             self._poses = self._between(seed)
         places = [one.places.reshape(-1, 3) for _, one in self._places()]
         self._middle = np.concatenate(places).mean(axis=0) if places else np.zeros(3)
+        self._taken: tuple[bytes, Values | None] = b"", None
         self._asked: tuple[bytes, Floats | None] | None = None
         self._known: tuple[bytes, Values | None] | None = None
 
@@ -177,6 +178,11 @@ class Problem:
         from_row = np.abs(more[:, None] - inputs[: self._count]).argmin(axis=1)
         return np.concatenate([known, self.loop.at(seed.values).closed(more, known[from_row])])
 
+    def size(self, z: Floats) -> float:
+        """The root of the weighted mean squares at z; infinite where there are none."""
+        here = self.at(z)
+        return math.inf if here is None else float(np.linalg.norm(here.left))
+
     def values(self, z: Floats) -> Floats:
         """The free numbers (k,)."""
         return np.asarray(z[: self._k] * self.scales[: self._k])
@@ -204,6 +210,7 @@ class Problem:
     def take(self, z: Floats) -> None:
         """Later poses are followed from those at z."""
         poses = self.poses(z)
+        self._taken = z.tobytes(), self.at(z)
         if poses is not None:
             self._poses = poses
             if len(poses):
@@ -211,16 +218,21 @@ class Problem:
 
     def seed(self, z: Floats) -> Seed:
         """The start that z is."""
-        self.take(z)
         found = self.at(z)
+        self.take(z)
         placing = STILL if found is None else found.placing
-        return Seed(self.values(z), self.own(z), self._poses[: self._count], self._anchor, math.nan, placing)
+        return Seed(
+            self.values(z), self.own(z), self._poses[: self._count], self._anchor, math.nan, placing
+        )
 
     # ---- what is left there
 
     def at(self, z: Floats) -> Values | None:
         """Residuals and rooms at z; `None` where the linkage does not close on its branch."""
         key = z.tobytes()
+        if key == self._taken[0]:
+            # at the edge of where the linkage closes it may not be found twice
+            return self._taken[1]
         if self._known is None or self._known[0] != key:
             self._known = key, self._at(z)
         return self._known[1]
@@ -306,8 +318,7 @@ class Problem:
         puts = [placing.put(parts[i][0]) for i, _ in own]
         every = np.concatenate(puts)
         weights = [
-            np.full(3 * len(put), one.weight / math.sqrt(one.count))
-            for put, (_, one) in zip(puts, own, strict=True)
+            np.full(3 * len(put), one.weight / math.sqrt(one.count)) for put, (_, one) in zip(puts, own, strict=True)
         ]
         units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
         weight = np.concatenate(weights)[:, None]

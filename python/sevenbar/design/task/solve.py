@@ -19,17 +19,22 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
+from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.problem import Problem, Seed, TaskModel, Values
 from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.kinematics.circuits import Integers
 
 #: Evaluations of a first look, and of a design that is kept.
 LOOK, WHOLE = 40, 400
 
-#: Where least squares end: parts of the error's square, of the unknowns.
-TOLERANCE = 1e-15
+#: How much the first steps are held back, relative to the unknowns' sizes; and where that failed.
+FIRST = (1e-3, 1.0)
 
 #: Weights of a missed room beside the residuals, in rounds; and the room kept since a penalty is never met.
 WEIGHTS, KEPT = (1.0, 10.0, 100.0), 1e-5
+
+#: A room that is missed by less is kept.
+ROUNDING = 1e-9
 
 #: A room so near to zero may be active.
 ACTIVE = 1e-6
@@ -38,13 +43,19 @@ ACTIVE = 1e-6
 LEAST = 1e-4
 
 #: Steps of Newton's method at the end, their most [units], and the step of its differences.
-STEPS, FARTHEST, DIFFERENCE = 8, 0.05, 1e-5
+STEPS, FARTHEST, DIFFERENCE = 8, 0.1, 1e-5
+
+#: Most steps of sequential quadratic programs.
+PROGRAMS = 200
 
 #: Residuals below this leave the second derivatives of the squares to the slopes alone.
 EXACT = 1e-7
 
 #: Below this the conditions of an optimum are met.
 MET = 1e-11
+
+
+Squares = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,10 +74,14 @@ class Solved:
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """What (1) is made of at unknowns: gradient (m,), rooms (c,) and their slopes (c, m), and the unit."""
+    """What (1) is made of at unknowns: gradient (m,), rooms (c,) and their slopes (c, m), and the unit.
+
+    `curved` (m, m) are the second derivatives that slopes alone give, `cost` what is made least.
+    """
 
     gradient: Floats
     curved: Floats | None
+    cost: float
     room: Floats
     room_by: Floats
     unit: float
@@ -74,7 +89,12 @@ class Conditions:
 
 def solved(model: TaskModel, seed: Seed, evaluations: int = WHOLE, *, whole: bool = True) -> Solved | None:
     """The nearest optimum of a seed; `None` where its linkage does not close. `whole`: to the last digit."""
-    found = _least_squares(model, seed, evaluations)
+    found = _least_squares(model, seed, evaluations, FIRST[0])
+    if whole and (found is None or found[0].size(found[1]) > EXACT):
+        # a first step too far may have led into a corner where the linkage hardly closes
+        other = _least_squares(model, seed, evaluations, FIRST[1])
+        if found is None or (other is not None and other[0].size(other[1]) < found[0].size(found[1])):
+            found = other
     if found is None:
         return None
     problem, z = found
@@ -84,6 +104,8 @@ def solved(model: TaskModel, seed: Seed, evaluations: int = WHOLE, *, whole: boo
     if minimax:
         problem = Problem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
+    elif problem.size(z) > EXACT:
+        z = _programmed(problem, z)
     z, missed = settled(problem, z, minimax=minimax)
     return _as_solved(problem, z, missed, minimax=minimax)
 
@@ -97,62 +119,39 @@ def _as_solved(problem: Problem, z: Floats, missed: float, *, minimax: bool) -> 
     return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room)
 
 
-def _least_squares(model: TaskModel, seed: Seed, evaluations: int) -> tuple[Problem, Floats] | None:
-    from scipy.optimize import least_squares
+def _least_squares(
+    model: TaskModel, seed: Seed, evaluations: int, first: float
+) -> tuple[Problem, Floats] | None:
+    """The problem about its least squares, missed rooms as penalties, and the unknowns there."""
+    problem = Problem(model, seed)
+    z: Floats | None = np.clip(problem.start, problem.low, problem.high)
+    here = problem.at(problem.start)
+    if here is None:
+        return None
+    for weight in WEIGHTS if len(here.room) else WEIGHTS[:1]:
 
-    weights: tuple[float, ...] = (0.0,)
-    problem, z = None, None
-    for number, weight in enumerate(WEIGHTS):
-        problem = Problem(model, seed)
-        start = _inside(problem, problem.start)
-        here = problem.at(start)
-        if here is None:
-            return None
-        if number and not len(here.room):
-            break
-        length = len(here.left) + len(here.room)
-
-        def residuals(
-            z: Floats, problem: Problem = problem, length: int = length, weight: float = weight
-        ) -> Floats:
+        def residuals(z: Floats, problem: Problem = problem, weight: float = weight) -> Squares | None:
             here = problem.at(z)
             if here is None:
-                return np.full(length, np.inf)
-            return np.concatenate([here.left, weight * np.minimum(here.room - KEPT, 0.0)])
+                return None
+            missed = here.room < KEPT
+            return (
+                np.concatenate([here.left, weight * np.where(missed, here.room - KEPT, 0.0)]),
+                np.concatenate([here.left_by, weight * missed[:, None] * here.room_by]),
+            )
 
-        def slopes(z: Floats, problem: Problem = problem, weight: float = weight) -> Floats:
-            problem.take(z)
-            here = problem.at(z)
-            assert here is not None
-            missed = weight * (here.room < KEPT)[:, None] * here.room_by
-            return np.concatenate([here.left_by, missed])
-
-        if length == 0:
-            return problem, start
-        # its trust region divides by numbers that may be zero, and mends that itself
-        with np.errstate(all="ignore"):
-            z = least_squares(
-                residuals,
-                start,
-                slopes,
-                bounds=(problem.low, problem.high),
-                ftol=TOLERANCE,
-                xtol=TOLERANCE,
-                gtol=None,
-                max_nfev=evaluations,
-            ).x
-        if problem.at(z) is None:
+        z = nearest_least(
+            residuals,
+            z,
+            problem.low,
+            problem.high,
+            evaluations=evaluations,
+            first=first,
+            taken=problem.take,
+        )
+        if z is None:
             return None
-        seed = problem.seed(z)
-    del weights
-    assert problem is not None and z is not None
     return problem, z
-
-
-def _inside(problem: Problem, z: Floats) -> Floats:
-    """Unknowns that least squares can begin with: inside their bounds."""
-    wide = np.where(np.isfinite(problem.high - problem.low), problem.high - problem.low, 0.0)
-    return np.clip(z, problem.low + 1e-9 * wide, problem.high - 1e-9 * wide)
 
 
 # ---- the greatest residual
@@ -203,6 +202,54 @@ def _lowered(problem: Problem) -> Floats:
     return lowered(heights, np.clip(problem.start, problem.low, problem.high), worth=1e-9)
 
 
+def _programmed(problem: Problem, z: Floats) -> Floats:
+    """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same."""
+    from scipy.optimize import minimize
+
+    here = problem.at(z)
+    assert here is not None
+    unit = float(here.left @ here.left)
+    last = [here]
+
+    def at(z: Floats) -> Values | None:
+        found = problem.at(z)
+        if found is not None:
+            last[0] = found
+        return found
+
+    def cost(z: Floats) -> float:
+        found = at(z)
+        return 1e3 if found is None else float(found.left @ found.left) / unit
+
+    def slopes(z: Floats) -> Floats:
+        problem.take(z)
+        found = at(z) or last[0]
+        return np.asarray(2 * found.left_by.T @ found.left / unit)
+
+    rooms = {"type": "ineq", "fun": lambda z: (at(z) or last[0]).room, "jac": lambda z: (at(z) or last[0]).room_by}
+    with np.errstate(all="ignore"):
+        found = minimize(
+            cost,
+            z,
+            jac=slopes,
+            bounds=list(zip(problem.low, problem.high, strict=True)),
+            constraints=[rooms] if len(here.room) else [],
+            method="SLSQP",
+            options={"maxiter": PROGRAMS, "ftol": 1e-14},
+        )
+    then = problem.at(found.x)
+    if then is None:
+        return z
+    better = (_lack(then), float(then.left @ then.left)) < (_lack(here), unit)
+    return np.asarray(found.x) if better else z
+
+
+def _lack(here: Values) -> float:
+    """What rooms lack, none where it is rounding."""
+    lack = -float(here.room.min(initial=0.0))
+    return lack if lack > ROUNDING else 0.0
+
+
 # ---- the conditions of an optimum
 
 
@@ -218,15 +265,15 @@ def _conditions(problem: Problem, x: Floats, *, minimax: bool) -> Conditions | N
         columns = np.linalg.norm(here.left_by, axis=0)
         unit = max(float(np.linalg.norm(here.left)), LEAST) * max(float(columns.max(initial=0.0)), 1e-300)
         gradient = here.left_by.T @ here.left
-        return Conditions(gradient, here.left_by.T @ here.left_by, room, by, unit)
+        return Conditions(gradient, here.left_by.T @ here.left_by, float(here.left @ here.left), room, by, unit)
     height, slopes = _heights(problem, here)
     gradient = np.append(np.zeros(len(z)), 1.0)
     room = np.concatenate([x[-1] - height, room])
     by = np.block([[-slopes, np.ones((len(height), 1))], [by, np.zeros((len(by), 1))]])
-    return Conditions(gradient, None, room, by, max(float(np.abs(slopes).max()), 1.0))
+    return Conditions(gradient, None, float(x[-1]), room, by, max(float(np.abs(slopes).max()), 1.0))
 
 
-def _multipliers(at: Conditions) -> tuple[Floats, Floats, float]:
+def _multipliers(at: Conditions) -> tuple[Integers, Floats, float]:
     """The active rooms, their multipliers >= 0, and by how much (1) is missed."""
     from scipy.optimize import nnls
 
@@ -256,42 +303,44 @@ def settled(problem: Problem, z: Floats, *, minimax: bool) -> tuple[Floats, floa
     for _ in range(STEPS):
         if missed < MET:
             break
-        step = _newton(problem, x, at, active[y > 0], y[y > 0], minimax=minimax)
-        if step is None:
+        rows = active[y > 0]
+        curved = _curved(problem, x, at, rows, y[y > 0], minimax=minimax)
+        if curved is None:
             break
+        step = _newton(at, curved, rows)
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max(initial=0.0)), 1e-300))
-        then = x + step
-        then_at = _conditions(problem, then, minimax=minimax)
-        if then_at is None:
+        then = _conditions(problem, x + step, minimax=minimax)
+        if then is None:
             break
-        then_active, then_y, then_missed = _multipliers(then_at)
+        then_active, then_y, then_missed = _multipliers(then)
         if not then_missed < missed:
             break
-        x, at, active, y, missed = then, then_at, then_active, then_y, then_missed
+        x, at, active, y, missed = x + step, then, then_active, then_y, then_missed
         problem.take(x[:-1] if minimax else x)
     return (x[:-1] if minimax else x), missed
 
 
-def _newton(
-    problem: Problem, x: Floats, at: Conditions, active: Floats, y: Floats, *, minimax: bool
-) -> Floats | None:
+def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
     """The step of Newton's method with these rooms held at zero."""
-    rows = at.room_by[active]
+    rows, count = at.room_by[active], len(active)
+    matrix = np.block([[curved, -rows.T], [rows, np.zeros((count, count))]])
+    sides = np.concatenate([-at.gradient, -at.room[active]])
+    found: Floats = np.linalg.lstsq(matrix, sides, rcond=1e-13)[0][: len(curved)]
+    return found
+
+
+def _curved(
+    problem: Problem, x: Floats, at: Conditions, active: Integers, y: Floats, *, minimax: bool
+) -> Floats | None:
+    """The second derivatives of f less those of the rooms by their multipliers."""
 
     def pull(point: Floats) -> Floats | None:
         there = _conditions(problem, point, minimax=minimax)
         return None if there is None else there.gradient - there.room_by[active].T @ y
 
-    small = not minimax and at.unit <= EXACT and not len(active)
-    curved = at.curved if small else _differences(pull, x)
-    if curved is None:
-        return None
-    count = len(active)
-    matrix = np.block([[curved, -rows.T], [rows, np.zeros((count, count))]])
-    sides = np.concatenate([-at.gradient, -at.room[active]])
-    with np.errstate(all="ignore"):
-        found = np.linalg.lstsq(matrix, sides, rcond=1e-13)[0]
-    return found[: len(x)] if np.isfinite(found).all() else None
+    exact = not minimax and at.cost <= EXACT**2 and not len(active)
+    found = at.curved if exact else _differences(pull, x)
+    return found if found is not None and np.isfinite(found).all() else None
 
 
 def _differences(pull: Callable[[Floats], Floats | None], x: Floats) -> Floats | None:

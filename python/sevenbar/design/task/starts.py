@@ -45,9 +45,7 @@ def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -
     try:
         from scipy.stats import qmc
     except ImportError:
-        raise MissingExtraError(
-            "a design needs scipy; install it with: pip install 'sevenbar[design]'"
-        ) from None
+        raise MissingExtraError("a design needs scipy; install it with: pip install 'sevenbar[design]'") from None
     low, high = model.task.low, model.task.high
     own = model.loop.start
     yield from (np.clip(values, low, high) for values in given)
@@ -97,7 +95,9 @@ def _with_figures(model: TaskModel, seed: Seed) -> list[Seed]:
         return []
     values = dict(zip(model.figures.names, read[0], strict=True))
     none = np.zeros(1)
-    off = sum((w.weight * figure_left(w, values[w.name], none)[0]) ** 2 for w in model.figure_wants)
+    off = sum(
+        (w.weight * figure_left(w, values[w.name], none)[0]) ** 2 for w in model.figure_wants
+    )
     return [replace(seed, error=seed.error + off)]
 
 
@@ -167,4 +167,6 @@ def apart(model: TaskModel, found: Sequence[Seed], count: int) -> list[Seed]:
 
 def _alike(one: Seed, other: Seed) -> bool:
     """Whether the poses of two seeds are nearly the same."""
-    return all(np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True))
+    return all(
+        np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True)
+    )

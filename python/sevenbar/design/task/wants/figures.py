@@ -38,12 +38,12 @@ class Figures:
 
         `None` where the circuit is gone or one of the measures has no value.
         """
-        found = self._circuit(values, anchor)
+        found = self.circuit(values, anchor)
         if found is None:
             return None
         motion, circuit = found
-        read = [measure.value(motion if measure.per == "linkage" else circuit) for measure in self._measures]
-        if any(not isinstance(value, (int, float)) or not np.isfinite(value) for value in read):
+        read = list(self.read(motion, circuit).values())
+        if not np.isfinite(read).all():
             return None
         by = np.zeros((len(read), len(values)))
         if slopes:
@@ -54,7 +54,7 @@ class Figures:
                 by[i] = own[name] if i not in rest else 0.0
             if rest:
                 by[rest] = self._differences(values, anchor)[rest]
-        return np.array(read, dtype=np.float64), by
+        return np.array(read), by
 
     def _differences(self, values: Floats, anchor: Floats) -> Floats:
         columns = []
@@ -69,7 +69,16 @@ class Figures:
             )
         return np.stack(columns, axis=1)
 
-    def _circuit(self, values: Floats, anchor: Floats) -> tuple[Motion, Circuit] | None:
+    def read(self, motion: Motion, circuit: Circuit) -> dict[str, float]:
+        """The measures of a circuit; NaN where one has no value."""
+        found = {}
+        for measure in self._measures:
+            value = measure.value(motion if measure.per == "linkage" else circuit)
+            found[measure.name] = float(value) if isinstance(value, (int, float)) else np.nan
+        return found
+
+    def circuit(self, values: Floats, anchor: Floats) -> tuple[Motion, Circuit] | None:
+        """The motion at numbers (k,), and its circuit near a row (columns,); `None` where there is none."""
         try:
             motion = self._loop.drawn(values).linkage.motion(SAMPLES)
         except (DescriptionError, RequestError, NotCoveredError):

@@ -10,6 +10,7 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.passes import Pass
 from sevenbar.design.task.task import DwellWant, FunctionWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
+from sevenbar.kinematics.circuits import Circuit
 
 #: So many of the best starts of a free input zero are tried.
 TRIED = 2
@@ -66,3 +67,7 @@ class ReadingsWanted:
             u = np.array([phase] * self._input_free + [zero] * self._output_free)
             found.append(Begun(u, rows, error, placing))
         return sorted(found, key=lambda begun: begun.error)[:TRIED]
+
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
+        """What the output is off (n,) on rows of an analysis [rad, or length]."""
+        return self._apart(circuit.output[rows] - self.readings - (u[-1] if self._output_free else self._zero))

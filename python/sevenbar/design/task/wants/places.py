@@ -18,7 +18,7 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.passes import Pass
 from sevenbar.design.task.task import PathWant, PoseWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.kinematics.circuits import Circuit, Integers
 
 #: Of the rows of a pass one in so many is tried as the one that takes the first pose.
 FIRST_AT = 2
@@ -123,3 +123,9 @@ class PlacesWanted:
     def _firsts(self, curve: Floats) -> list[Placing]:
         """Placings that bring every other row of a curve (rows, p, 3) to the first pose."""
         return [placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT)]
+
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
+        """The distances (n p,) on rows of an analysis [length]."""
+        one = Pass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
+        off = placing.put(self.curve(one)) - self.places
+        return np.linalg.norm(off, axis=2).ravel()

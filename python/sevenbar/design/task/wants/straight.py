@@ -10,6 +10,7 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.passes import Pass
 from sevenbar.design.task.task import StraightWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
+from sevenbar.kinematics.circuits import Circuit
 
 
 class LineWanted:
@@ -67,3 +68,8 @@ class LineWanted:
             u = np.concatenate([middle + along.min() * way, middle + along.max() * way])
             found.append(Begun(u, rows, error, placing))
         return found[:1]
+
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
+        """The distances (n,) from the line on rows of an analysis [length]."""
+        way = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
+        return np.linalg.norm(np.cross(circuit.point(self._name).position[rows] - u[:3], way), axis=1)

@@ -11,7 +11,7 @@ from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.path.match import Placing
 from sevenbar.design.task.loop import Here
 from sevenbar.design.task.passes import Pass
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.kinematics.circuits import Circuit, Integers
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,3 +57,6 @@ class Wanted(Protocol):
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """The residuals (r,) at its stations, and their slopes (r, k + m) by free numbers and unknowns."""
+
+    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
+        """What it is off (n,) on rows of an analysis at its inputs [rad, or length], by its own unknowns."""
