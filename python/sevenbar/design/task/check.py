@@ -64,7 +64,8 @@ class Design:
     `candidate` is that of the first want. `cost` is the root of the weighted mean squares, or the greatest
     weighted residual; `optimality` by how much the conditions of a local optimum are missed, relative;
     `met` how well each want is met that is asked for at poses, `figures` the measures that are asked for;
-    `room` the least room of a must (infinite where there is none); `placing` where the linkage stands.
+    `room` the least room of a must (infinite where there is none); `placing` where the linkage stands;
+    `solution` what was solved for, with the inputs and own unknowns of each want.
     """
 
     candidate: Candidate
@@ -75,6 +76,7 @@ class Design:
     room: float
     placing: Placing
     values: Floats
+    solution: Solved
 
     @property
     def draft(self) -> Draft:
@@ -127,6 +129,7 @@ def checked_design(model: TaskModel, solution: Solved) -> Design | Refusal:
         room,
         solution.seed.placing,
         solution.seed.values,
+        solution,
     )
 
 
