@@ -1,4 +1,4 @@
-"""What a design does along its wants, between their stations too: poses, readings, places, rooms of the musts."""
+"""What a design does along its wants, between stations too: poses, readings, places, rooms of musts."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.check import Design
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.task import (
+    Apart,
     DesignTask,
     DwellWant,
     FigureWant,
     FunctionWant,
     InBox,
-    Apart,
     Must,
     Want,
 )
@@ -87,14 +87,20 @@ class DesignAlong:
         return UsedWay(x, q)
 
     def zeros(self, place: int) -> tuple[float, float]:
-        """The input's and the output's values at the readings 0 [rad, or length] of a function or a dwell."""
+        """The input's and the output's values at the readings 0 of a function or a dwell [rad, or length].
+
+        Angles in (-pi, pi].
+        """
         want = self.task.wants[self.wants[place][0]]
         own = self.design.solution.seed.own[place]
         first, second = want.zeros if isinstance(want, FunctionWant) else (0.0, _level(want))
-        return (
-            float(own[0]) if first is None else first,
-            float(own[-1]) if second is None else second,
+        zeros = float(own[0]) if first is None else first, float(own[-1]) if second is None else second
+        drive = self.loop.linkage.drive
+        turns = self.loop.linkage.turns(drive.joint), self.loop.linkage.turns(drive.output)
+        first, second = (
+            float(short_way(zero)) if turn else zero for zero, turn in zip(zeros, turns, strict=True)
         )
+        return first, second
 
     def outputs(self, place: int) -> Floats:
         """The output's readings (n,) along a function or a dwell, near those wanted."""

@@ -51,7 +51,9 @@ def task_facts(task: DesignTask) -> list[tuple[str, str]]:
     }
     facts.append(("ground", ground[task.placement]))
     facts.append(("limits", task.limits.text()))
-    facts.append(("goal", "the least " + ("squares" if task.goal == "least squares" else "greatest residual")))
+    facts.append(
+        ("goal", "the least " + ("squares" if task.goal == "least squares" else "greatest residual"))
+    )
     return facts
 
 
