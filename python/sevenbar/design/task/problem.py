@@ -42,7 +42,7 @@ from sevenbar.design.task.wants.wanted import Stations, Wanted
 LONGEST_STEP = 1.2
 
 #: Poses of a want, with those between its stations, at which musts are held.
-HELD = 25
+HELD = 73
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
@@ -55,7 +55,8 @@ SMALL = 1e-4
 class Seed:
     """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
 
-    `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares.
+    `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
+    input gains in a round of the circuit, 0 where it does not go round.
     """
 
     values: Floats
@@ -64,6 +65,7 @@ class Seed:
     anchor: Floats
     error: float
     placing: Placing = STILL
+    period: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +122,7 @@ class Problem:
     def __init__(self, model: TaskModel, seed: Seed, *, minimax: bool = False) -> None:
         self.model, self.loop = model, model.loop
         self._poses, self._anchor = seed.poses, seed.anchor
+        self._period = seed.period
         self._base, self._turned = seed.placing, minimax and model.placed
         self._k = k = len(seed.values)
         scales = [model.loop.scales, *(one.stations.scales for one in model.wanted)]
@@ -135,6 +138,9 @@ class Problem:
         self.low[:k], self.high[:k] = (
             bound / model.loop.scales for bound in (model.task.low, model.task.high)
         )
+        #: Which way the inputs of each want go, and by how much they may in all [rad].
+        self._senses = [_sense(one.stations.inputs(own)) for one, own in zip(model.wanted, seed.own, strict=True)]
+        self._periods = [way * seed.period for way in self._senses]
         self._stations = self._all_stations(seed)
         if len(self._poses) < len(self._stations.fixed):
             self._poses = self._between(seed)
@@ -162,7 +168,7 @@ class Problem:
             self._rows.append(slice(count, count + len(steady)))
             count += len(steady)
             if self.model.holds and one.stations.ordered:
-                held += _spread(steady, matrix, one.stations, own)
+                held += _spread(steady, matrix, one.stations, self._periods[len(self._rows) - 1])
         self._count = count
         return Stations(
             np.concatenate([*fixed, *(part for part, _ in held)]),
@@ -222,7 +228,13 @@ class Problem:
         self.take(z)
         placing = STILL if found is None else found.placing
         return Seed(
-            self.values(z), self.own(z), self._poses[: self._count], self._anchor, math.nan, placing
+            self.values(z),
+            self.own(z),
+            self._poses[: self._count],
+            self._anchor,
+            math.nan,
+            placing,
+            self._period,
         )
 
     # ---- what is left there
@@ -363,11 +375,27 @@ class Problem:
             for values, by in self._transmission(z):
                 rooms.append(values)
                 slopes.append(by)
+        for i, one in enumerate(self.model.wanted):
+            if one.stations.free:
+                values, by = self._order(z, i)
+                rooms.append(values)
+                slopes.append(by)
         for i, most in self.model.most.items():
             left, by = wants[i]
             rooms += [most - left, most + left]
             slopes += [-by, by]
         return rooms, slopes
+
+    def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
+        """The ways between free inputs that follow each other, a round at most, in the sense of the seed's."""
+        inputs, by = self.inputs(z)[number], self._stations.by[self._rows[number]]
+        steps, steps_by = np.diff(inputs), np.diff(by, axis=0)
+        period = self._periods[number]
+        if period:
+            steps = np.append(steps, inputs[0] + period - inputs[-1])
+            steps_by = np.concatenate([steps_by, by[:1] - by[-1:]])
+        way, unit = self._senses[number], float(self.loop.units[self.loop.input])
+        return way * steps / unit, way * steps_by / unit
 
     def _joined(self, by: Floats) -> Floats:
         """Slopes (r, k + all unknowns), those by the free numbers and through the inputs, by all unknowns."""
@@ -422,20 +450,23 @@ class Problem:
         return np.array(left), np.concatenate(slopes), np.array(rooms), np.concatenate(rooms_by)
 
 
-def _spread(steady: Floats, by: Floats, stations: Stations, own: Floats) -> list[tuple[Floats, Floats]]:
+def _sense(inputs: Floats) -> float:
+    """Which way inputs go, by most of their steps."""
+    return 1.0 if (np.diff(inputs) >= 0).sum() * 2 >= len(inputs) - 1 else -1.0
+
+
+def _spread(
+    steady: Floats, by: Floats, stations: Stations, period: float
+) -> list[tuple[Floats, Floats]]:
     """Inputs between those of a want, as many between any two: their fixed parts and slopes."""
     n = len(steady)
     if n < 2:
         return []
     each = max(math.ceil(HELD / n), 2)
-    inputs = stations.inputs(own)
     found = []
     for j in range(n if stations.round else n - 1):
         then = (j + 1) % n
-        gain = 0.0
-        if then == 0:
-            way = math.copysign(1.0, inputs[-1] - inputs[0])
-            gain = way * math.tau * math.ceil(abs(inputs[-1] - inputs[0]) / math.tau)
+        gain = 0.0 if then else period
         for share in np.arange(1, each) / each:
             found.append(
                 (

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.synthesis.candidates import Refusal, likeness, tally
 from sevenbar.design.task.check import Design, checked_design
-from sevenbar.design.task.problem import TaskModel
+from sevenbar.design.task.problem import Seed, TaskModel
 from sevenbar.design.task.solve import LOOK, Solved, solved
-from sevenbar.design.task.starts import apart, seeds
+from sevenbar.design.task.starts import apart, seeds, seeds_at
 from sevenbar.design.task.task import DesignTask
 from sevenbar.text.progress import Progress, silent
 
@@ -99,15 +99,15 @@ def designed(
 
 def _search(
     model: TaskModel,
-    begun: Sequence[object],
+    begun: Sequence[Seed],
     count: int,
     course: SearchCourse,
     kept: list[Design],
     refusals: list[Refusal],
 ) -> None:
     looked: list[Solved] = []
-    for one in apart(model, begun, LOOKED_AT * count):  # type: ignore[arg-type]
-        look = solved(model, one, LOOK, whole=False)
+    for one in apart(model, begun, LOOKED_AT * count):
+        look = _looked(model, one)
         if look is not None:
             looked.append(look)
         nearest = min((look.cost for look in looked), default=None)
@@ -127,6 +127,16 @@ def _search(
             kept.append(answer)
             kept.sort(key=lambda design: design.cost)
         course.step(f"best: {kept[0].cost:.3g}" if kept else "", done=int(course.done < course.total))
+
+
+def _looked(model: TaskModel, one: Seed) -> Solved | None:
+    """A first look at a start; free inputs are matched anew once, where they may have left their places."""
+    look = solved(model, one, LOOK, whole=False)
+    if look is None or look.cost < EXACT or not any(want.stations.free for want in model.wanted):
+        return look
+    again = min(seeds_at(model, look.seed.values), key=lambda seed: seed.error, default=None)
+    other = None if again is None else solved(model, again, LOOK, whole=False)
+    return look if other is None or other.cost > look.cost else other
 
 
 def distinct_designs(designs: Sequence[Design]) -> list[Design]:

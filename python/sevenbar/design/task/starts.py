@@ -126,7 +126,7 @@ def _seed(
     rows = np.concatenate([own.rows for own in begun])
     q = one.circuit.q[one.rows[rows]]
     error = sum(want.weight**2 * own.error for want, own in zip(model.wanted, begun, strict=True))
-    seed = Seed(values, tuple(own.u for own in begun), model.loop.poses(values, q), q[0], error, placing)
+    seed = Seed(values, tuple(own.u for own in begun), model.loop.poses(values, q), q[0], error, placing, one.period)
     return _with_figures(model, _scaled(model, seed) if placing.scale != 1.0 else seed)
 
 
@@ -155,7 +155,7 @@ def apart(model: TaskModel, found: Sequence[Seed], count: int) -> list[Seed]:
         if len(kept) >= count:
             break
         near = (
-            bool(np.abs((one.values - other.values) / width).max() < SAME)
+            bool(np.abs((one.values - other.values) / width).max(initial=0.0) < SAME)
             and bool(np.abs(short_way(one.anchor - other.anchor)).max() < SAME_POSE)
             and _alike(one, other)
             for other in kept

@@ -46,7 +46,7 @@ class PlacesWanted:
         self.timing, self.phase = want.timing, want.phase
         own = float(loop.units[loop.input])
         if want.timing is None:
-            self.stations = Stations(np.zeros(n), np.eye(n), np.full(n, own), round=self.closed)
+            self.stations = Stations(np.zeros(n), np.eye(n), np.full(n, own), round=self.closed, free=True)
         else:
             by = np.ones((n, int(want.phase)))
             self.stations = Stations(want.timing, by, np.full(by.shape[1], own), round=self.closed)

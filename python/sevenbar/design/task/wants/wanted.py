@@ -18,7 +18,7 @@ from sevenbar.kinematics.circuits import Circuit, Integers
 class Stations:
     """The inputs `fixed + by u` (n,) of a want with own unknowns u (m,), whose units are `scales` (m,).
 
-    `ordered`: they follow each other; `round`: the last leads to the first again.
+    `ordered`: they follow each other; `round`: the last leads to the first again; `free`: each is an unknown.
     """
 
     fixed: Floats
@@ -26,6 +26,7 @@ class Stations:
     scales: Floats
     ordered: bool = True
     round: bool = False
+    free: bool = False
 
     def inputs(self, u: Floats) -> Floats:
         """The inputs (n,)."""
