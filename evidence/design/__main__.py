@@ -42,7 +42,11 @@ def is_whole(design: Design) -> bool:
     passes = circuit.q[:, circuit.output_column].reshape(-1, BETWEEN)
     at = np.searchsorted(between, inputs).clip(0, BETWEEN - 1)
     outputs = design.candidate.claim.outputs
-    near = np.abs(np.sin((passes[:, at] - outputs) / 2)) if circuit.output_turns else np.abs(passes[:, at] - outputs)
+    near = (
+        np.abs(np.sin((passes[:, at] - outputs) / 2))
+        if circuit.output_turns
+        else np.abs(passes[:, at] - outputs)
+    )
     limit = 0.05 if circuit.output_turns else 0.05 * max(float(np.ptp(outputs)), 1.0)
     return bool((np.isfinite(passes).all(axis=1) & (near < limit).all(axis=1)).any())
 
@@ -64,7 +68,8 @@ def main(families: list[str]) -> int:
             defective += best is not None and not is_whole(best)
             optimality = np.nan if best is None else best.optimality
             print(
-                f"{made.name:50} {made.share:4.0%} {error:9.1e} {optimality:10.1e} {seconds:5.1f}s  {result.refused}",
+                f"{made.name:50} {made.share:4.0%} {error:9.1e} {optimality:10.1e} {seconds:5.1f}s"
+                f"  {result.refused}",
                 flush=True,
             )
         sums[family] = f"{family}: {found} of {number} found within {FOUND:g}, {defective} defective"

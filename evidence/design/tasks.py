@@ -14,7 +14,7 @@ from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant, PathWant,
 from sevenbar.errors import SevenbarError
 from sevenbar.kinematics.circuits import Circuit
 
-#: By how much a start is off: angles of rows by this share of a radian, other numbers by it of the size's part.
+#: By how much a start is off, of each number.
 SHARES = (0.05, 0.2)
 
 #: Parts of its size within which a length may be, from the start; angles [deg], numbers of a direction.
@@ -70,7 +70,7 @@ def varied(draft: Draft, kind: str) -> list[str]:
     }.get(kind)
     if own is None:
         # as drawn: places of joints, but the axes and what lies along them
-        own = tuple(f"{joint.name}." for joint in draft.linkage.joints[1:]) + ("Q.",)
+        own = (*(f"{joint.name}." for joint in draft.linkage.joints[1:]), "Q.")
     return [name for name in names if name.startswith(own)]
 
 
@@ -85,10 +85,8 @@ def off(draft: Draft, names: list[str], share: float, random: np.random.Generato
     values = {}
     for name in names:
         d = draft.dimension(name)
-        if d.kind == "angle":
-            step = np.degrees(share * 0.5)
-        else:
-            step = share * max(abs(d.value), 0.05 * size)
+        angle = d.kind == "angle"
+        step = np.degrees(share * 0.5) if angle else share * max(abs(d.value), 0.05 * size)
         values[name] = d.value + step * random.uniform(-1, 1)
     return draft.with_values(values)
 
@@ -149,7 +147,7 @@ FUNCTIONS = (
     ("RSSP", 7),
 )
 POSES = (
-    ("RSSR", 1, "fixed", True),
+    ("RSSR", 3, "fixed", True),
     ("RSSR", 3, "free", True),
     ("planar 4R", 2, "fixed", True),
     ("planar 4R", 2, "fixed", False),

@@ -4,8 +4,8 @@ A step s from z solves  `min |r + J s|^2 + l |D s|^2`  over the unknowns that no
 lengths that the columns of J have had; l falls and rises with what the step before kept of its promise.
 
 Source: K. Madsen, H. B. Nielsen, O. Tingleff, Methods for non-linear least squares problems, IMM 2004, (3.14)
-to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transtrum, J. Sethna, arXiv 1201.5885
-(2012), for the second order of a step.
+to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transtrum, J. Sethna, arXiv
+1201.5885 (2012), for the second order of a step.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def _bent(
     scale: Floats,
     matrix: Floats,
 ) -> Floats:
-    """A step with its second order, by which it follows a valley that bends; the step itself where that is large."""
+    """A step with its second order, by which it follows a valley that bends; without it where it is large."""
     ahead = residuals(z + SHARE * step)
     if ahead is None:
         return step

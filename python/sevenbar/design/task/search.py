@@ -1,4 +1,4 @@
-"""The search for designs: many starts are looked at, the promising ones solved, each checked by the analysis."""
+"""The search for designs: many starts are looked at, the promising ones solved, each of them checked."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ EXACT = 1e-11
 class DesignsFound:
     """The designs of a search, best first, and why others were refused.
 
-    `starts` is the number of ways to begin that were found; `unfinished` says that the search was stopped, and
-    is empty where it ended.
+    `starts` is the number of ways to begin that were found; `unfinished` says that the search was stopped,
+    and is empty where it ended.
     """
 
     task: DesignTask
@@ -62,9 +62,9 @@ def designed(
     """Up to `count` distinct designs of a task, the best first; none where nothing does what is asked.
 
     The linkage itself, `starts` others within the bounds from a `seed`, and those of free numbers `given`
-    (k,) each are the starts. Each design is opened from its file and found by the ordinary analysis to do what
-    it claims, on one circuit and without a dead centre between. `progress` is called with (done, total, the
-    best so far). Ctrl+C ends the search with what it has; before the first design it raises.
+    (k,) each are the starts. Each design is opened from its file and found by the ordinary analysis to do
+    what it claims, on one circuit and without a dead centre between. `progress` is called with (done, total,
+    the best so far). Ctrl+C ends the search with what it has; before the first design it raises.
 
         >>> import numpy as np
         >>> import sevenbar as sb
@@ -154,6 +154,9 @@ def _named(task: DesignTask, designs: Sequence[Design]) -> list[Design]:
     """The designs with the names `title, design 1`, .. in their order."""
     title = task.draft.linkage.name
     return [
-        replace(one, candidate=replace(one.candidate, draft=one.draft.with_value(("name",), f"{title}, design {i}")))
+        replace(
+            one,
+            candidate=replace(one.candidate, draft=one.draft.with_value(("name",), f"{title}, design {i}")),
+        )
         for i, one in enumerate(designs, 1)
     ]

@@ -59,9 +59,7 @@ class Match:
     error: float
 
 
-def placed(
-    wanted: Floats, found: Floats, *, scaled: bool = False, shares: Floats | None = None
-) -> Placing:
+def placed(wanted: Floats, found: Floats, *, scaled: bool = False, shares: Floats | None = None) -> Placing:
     """The similarity that brings `found` (n, 3) nearest to `wanted` (n, 3); `scaled` where it may scale.
 
     Squares count by their `shares` (n,), alike where none are given.

@@ -54,7 +54,7 @@ class Wanted(Protocol):
         """The number of residuals."""
 
     def begun(self, one: Pass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
-        """How it may begin on a pass, best first; `placing` is `None` where the linkage may stand anywhere."""
+        """How it may begin on a pass, best first; `placing` is `None` where it may stand anywhere."""
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """The residuals (r,) at its stations, and their slopes (r, k + m) by free numbers and unknowns."""
