@@ -13,7 +13,7 @@ import numpy as np
 from evidence.design.tasks import tasks
 from sevenbar.design.task import DesignTask, FunctionWant, PathWant
 from sevenbar.design.task.search import Design, DesignsFound, designed
-from sevenbar.kinematics.circuits import Law
+from sevenbar.kinematics.law import Law
 
 #: A known answer is found where no error is greater [rad, or relative to the path's extent or the arm].
 FOUND = 1e-9

@@ -29,7 +29,8 @@ from sevenbar.design.task.task import Apart, Cone, FigureMust, InBox, JointRange
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
 

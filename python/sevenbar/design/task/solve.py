@@ -18,12 +18,11 @@ from typing import Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.problem import Problem, Seed, TaskModel, Values
 from sevenbar.design.task.wants.places import PlacesWanted
-from sevenbar.kinematics.circuits import Integers
 
 #: Evaluations of a first look, and of a design that is kept.
 LOOK, WHOLE = 40, 1000

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.design.synthesis.path.match import (
     Placing,
     by_length,
@@ -18,7 +18,7 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.passes import Pass
 from sevenbar.design.task.task import PathWant, PoseWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 
 #: Of the rows of a pass one in so many is tried as the one that takes the first pose.
 FIRST_AT = 2

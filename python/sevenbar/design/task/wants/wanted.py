@@ -7,11 +7,11 @@ from typing import Protocol
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.design.synthesis.path.match import Placing
 from sevenbar.design.task.loop import Here
 from sevenbar.design.task.passes import Pass
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 
 
 @dataclass(frozen=True, eq=False)
