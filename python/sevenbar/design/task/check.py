@@ -101,7 +101,7 @@ def checked_design(model: TaskModel, solution: Solved) -> Design | Refusal:
     try:
         linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
         ways = [
-            _ways(model, one, linkage, inputs, u, solution.seed.placing)
+            _ways(one, linkage, inputs, u, solution.seed.placing)
             for one, inputs, u in zip(model.wanted, solution.inputs, solution.seed.own, strict=True)
         ]
         motion = linkage.motion(CHECK_SAMPLES)
@@ -117,7 +117,11 @@ def checked_design(model: TaskModel, solution: Solved) -> Design | Refusal:
     if isinstance(room, Refusal):
         return room
     met = tuple(
-        Met(float(np.abs(w[0].errors).max()), float(np.sqrt((w[0].errors ** 2).mean())), _unit(model.loop, one))
+        Met(
+            float(np.abs(w[0].errors).max()),
+            float(np.sqrt((w[0].errors ** 2).mean())),
+            _unit(model.loop, one),
+        )
         for one, w in zip(model.wanted, ways, strict=True)
     )
     return Design(
@@ -138,9 +142,7 @@ def _unit(loop: TaskLoop, one: Wanted) -> str:
     return "rad" if turns and hasattr(one, "readings") else loop.linkage.length_unit
 
 
-def _ways(
-    model: TaskModel, one: Wanted, linkage: Linkage, inputs: Floats, u: Floats, placing: Placing
-) -> list[_Way]:
+def _ways(one: Wanted, linkage: Linkage, inputs: Floats, u: Floats, placing: Placing) -> list[_Way]:
     """What each pass of the analysis makes of a want, best first; those that do not reach it are left out."""
     count = len(inputs)
     law = Law.of(np.arange(count, dtype=np.float64), inputs, 1.0, 0.0)
@@ -164,7 +166,9 @@ def _candidate(
     found: list[Candidate] = []
     for number, (one, own) in enumerate(zip(model.wanted, ways, strict=True)):
         if not own:
-            return Refusal("dead centre", "no pass reaches the inputs of a want without a dead centre between")
+            return Refusal(
+                "dead centre", "no pass reaches the inputs of a want without a dead centre between"
+            )
         torn = _torn(model, number, solution, own)
         if torn is not None:
             return torn
@@ -184,10 +188,13 @@ def _candidate(
                     "dead centre",
                     "the path is closed, and a dead centre lies between its last point and its first",
                 )
-    other = next((one for one in found if (one.circuit, one.branch) != (found[0].circuit, found[0].branch)), None)
+    other = next(
+        (one for one in found if (one.circuit, one.branch) != (found[0].circuit, found[0].branch)), None
+    )
     if other is not None:
         return Refusal(
-            "circuit", f"wants lie on circuits {found[0].circuit} and {other.circuit}, or on two passes of one"
+            "circuit",
+            f"wants lie on circuits {found[0].circuit} and {other.circuit}, or on two passes of one",
         )
     return found[0]
 
@@ -209,7 +216,9 @@ def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> R
     best = float(np.sqrt((own[0].errors ** 2).mean()))
     if best <= 2 * expected * (1 + TORN) + TORN * unit:
         return None
-    return Refusal("circuit", "no pass goes through all the poses that were solved for: it must be taken apart")
+    return Refusal(
+        "circuit", "no pass goes through all the poses that were solved for: it must be taken apart"
+    )
 
 
 def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion) -> Candidate | Refusal:
@@ -275,12 +284,13 @@ def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: L
             least = min(least, worst)
     for must in model.task.musts:
         if isinstance(must, Most):
-            sampled = [w for w in model.task.wants if type(w).__name__ != "FigureWant"]
-            one = sampled.index(model.task.wants[must.want])
-            unit = float(getattr(model.wanted[one], "unit", 1.0))
-            worst = must.most - float(np.abs(ways[one][0].errors).max()) / unit
+            number = model.sampled.index(must.want)
+            unit = float(getattr(model.wanted[number], "unit", 1.0))
+            worst = must.most - float(np.abs(ways[number][0].errors).max()) / unit
             if worst < -MISSED:
-                return Refusal("error", f"a residual is {must.most - worst:.4g}, at most {must.most:g} is asked")
+                return Refusal(
+                    "error", f"a residual is {must.most - worst:.4g}, at most {must.most:g} is asked"
+                )
             least = min(least, worst)
     return least
 

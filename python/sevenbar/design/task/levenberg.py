@@ -4,7 +4,8 @@ A step s from z solves  `min |r + J s|^2 + l |D s|^2`  over the unknowns that no
 lengths that the columns of J have had; l falls and rises with what the step before kept of its promise.
 
 Source: K. Madsen, H. B. Nielsen, O. Tingleff, Methods for non-linear least squares problems, IMM 2004, (3.14)
-to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D.
+to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transtrum, J. Sethna, arXiv
+1201.5885 (2012), for the second order of a step.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 
@@ -20,6 +22,9 @@ MOST, FARTHEST = 1e16, 0.5
 
 #: The part of its promise that a step must keep.
 KEPT = 1e-4
+
+#: Steps before their second order counts; the share of a step at which that is found, and the most of it.
+STRAIGHT, SHARE, MOST_BENT = 10, 0.1, 0.4
 
 #: A fall of the squares, relative to them, after which it ends; and a step, relative to the unknowns.
 FALL, STEP = 1e-15, 1e-15
@@ -51,7 +56,7 @@ def nearest_least(
     cost = float(left @ left)
     sizes = np.linalg.norm(by, axis=0)
     weight, growth = first, 2.0
-    for _ in range(evaluations):
+    for number in range(evaluations):
         pull = by.T @ left
         free = ~(((z <= low) & (pull > 0)) | ((z >= high) & (pull < 0)))
         if not free.any() or cost < NOTHING:
@@ -62,11 +67,16 @@ def nearest_least(
         sides = np.concatenate([-left, np.zeros(len(scale))])
         step[free] = np.linalg.lstsq(matrix, sides, rcond=None)[0] / scale
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max()), 1e-300))
+        straight = cost - float(((left + by @ step) ** 2).sum())
+        if number >= STRAIGHT:
+            step = _bent(residuals, z, left, by, step, free, scale, matrix)
         then_z = np.clip(z + step, low, high)
         step = then_z - z
         if np.abs(step).max() <= STEP * (1 + float(np.abs(z).max())):
             break
         promised = cost - float(((left + by @ step) ** 2).sum())
+        if number >= STRAIGHT:
+            promised = max(promised, straight)
         then = residuals(then_z) if promised > 0 else None
         gained = -np.inf if then is None else cost - float(then[0] @ then[0])
         if then is None or not gained > KEPT * promised:
@@ -84,3 +94,25 @@ def nearest_least(
             break
         cost -= gained
     return z
+
+
+def _bent(
+    residuals: Callable[[Floats], tuple[Floats, Floats] | None],
+    z: Floats,
+    left: Floats,
+    by: Floats,
+    step: Floats,
+    free: npt.NDArray[np.bool_],
+    scale: Floats,
+    matrix: Floats,
+) -> Floats:
+    """A step with its second order, by which it follows a valley that bends; without it where it is large."""
+    ahead = residuals(z + SHARE * step)
+    if ahead is None:
+        return step
+    second = 2 / SHARE * ((ahead[0] - left) / SHARE - by @ step)
+    sides = np.concatenate([-second, np.zeros(len(scale))])
+    bend = np.zeros(len(z))
+    bend[free] = np.linalg.lstsq(matrix, sides, rcond=None)[0] / scale / 2
+    small = np.linalg.norm(bend[free] * scale) <= MOST_BENT * np.linalg.norm(step[free] * scale)
+    return step + bend if small else step

@@ -1,4 +1,4 @@
-"""The loop of a task at any values of its free numbers: poses, and what is asked of them with exact slopes."""
+"""The loop of a task at any values of its free numbers: poses, and what is there with exact slopes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What must hold at the poses that are used, as rooms: numbers that must not be negative, with exact slopes."""
+"""What must hold at the poses that are used, as rooms: numbers not below zero, with exact slopes."""
 
 from __future__ import annotations
 
@@ -144,7 +144,9 @@ def nearest_shares(a: Floats, b: Floats, c: Floats, d: Floats) -> tuple[Floats, 
         tried = [np.clip(free, 0.0, 1.0), np.zeros(len(a)), np.ones(len(a))]
         pairs = [(s, np.clip(np.nan_to_num((vw + s * uv) / vv), 0.0, 1.0)) for s in tried]
         # and from the ends of the other
-        pairs += [(np.clip(np.nan_to_num((t * uv - uw) / uu), 0.0, 1.0), np.full(len(a), t)) for t in (0.0, 1.0)]
+        pairs += [
+            (np.clip(np.nan_to_num((t * uv - uw) / uu), 0.0, 1.0), np.full(len(a), t)) for t in (0.0, 1.0)
+        ]
     far = [np.linalg.norm(w + s[:, None] * u - t[:, None] * v, axis=1) for s, t in pairs]
     best = np.argmin(far, axis=0)
     every = np.arange(len(a))

@@ -1,10 +1,10 @@
 """A task at its unknowns: residuals and rooms with exact slopes, about poses that are followed.
 
-The unknowns z are the free numbers, then the own ones of each want (free inputs, phases, zeros), each relative
-to its unit. Where the linkage may stand anywhere, each evaluation is placed anew. What is left is then square
-to every small rigid motion B of the places, so with the part of the slopes along B taken off the gradient of
-the sum of squares stays exact (variable projection). For the greatest residual, where that does not hold, the
-placing is six unknowns more.
+The unknowns z are the free numbers, then the own ones of each want (free inputs, phases, zeros), each
+relative to its unit. Where the linkage may stand anywhere, each evaluation is placed anew. What is left is
+then square to every small rigid motion B of the places, so with the part of the slopes along B taken off the
+gradient of the sum of squares stays exact (variable projection). For the greatest residual, where that does
+not hold, the placing is six unknowns more.
 
 Source: docs/theory_design.md, (29).
 """
@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,13 +25,13 @@ from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.task import (
     DesignTask,
-    DwellWant,
     FigureMust,
     FigureWant,
-    FunctionWant,
     Most,
     PathWant,
     PoseWant,
+    SampledWant,
+    StraightWant,
 )
 from sevenbar.design.task.wants.figures import Figures, figure_left
 from sevenbar.design.task.wants.joints import ReadingsWanted
@@ -42,7 +43,7 @@ from sevenbar.design.task.wants.wanted import Stations, Wanted
 LONGEST_STEP = 1.2
 
 #: Poses of a want, with those between its stations, at which musts are held.
-HELD = 25
+HELD = 73
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
@@ -55,7 +56,8 @@ SMALL = 1e-4
 class Seed:
     """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
 
-    `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares.
+    `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
+    input gains in a round of the circuit, 0 where it does not go round.
     """
 
     values: Floats
@@ -64,6 +66,7 @@ class Seed:
     anchor: Floats
     error: float
     placing: Placing = STILL
+    period: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +90,10 @@ class TaskModel:
             self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
         ]
         self.figure_wants = [want for want in task.wants if isinstance(want, FigureWant)]
+        #: The places among the task's wants of those that are asked for at poses.
+        self.sampled = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
         self.figure_musts = [must for must in task.musts if isinstance(must, FigureMust)]
-        names = [one.name for one in (*self.figure_wants, *self.figure_musts)]
+        names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
         self.figures = Figures(loop, list(dict.fromkeys(names)))
         self.rooms = pose_rooms(loop, task.musts)
         self.placed = task.placement != "fixed"
@@ -97,16 +102,15 @@ class TaskModel:
         self.transmits = closed_form and task.limits.transmission_lowest > 0
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
         #: Which of the wants have been asked to stay within a greatest residual.
-        sampled = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
-        self.most = {sampled.index(m.want): m.most for m in task.musts if isinstance(m, Most)}
+        self.most = {self.sampled.index(m.want): m.most for m in task.musts if isinstance(m, Most)}
 
     @staticmethod
-    def _wanted(loop: TaskLoop, want: object) -> Wanted:
+    def _wanted(loop: TaskLoop, want: SampledWant) -> Wanted:
         if isinstance(want, (PathWant, PoseWant)):
             return PlacesWanted(loop, want)
-        if isinstance(want, (FunctionWant, DwellWant)):
-            return ReadingsWanted(loop, want)
-        return LineWanted(loop, want)  # type: ignore[arg-type]
+        if isinstance(want, StraightWant):
+            return LineWanted(loop, want)
+        return ReadingsWanted(loop, want)
 
     @property
     def holds(self) -> bool:
@@ -120,6 +124,7 @@ class Problem:
     def __init__(self, model: TaskModel, seed: Seed, *, minimax: bool = False) -> None:
         self.model, self.loop = model, model.loop
         self._poses, self._anchor = seed.poses, seed.anchor
+        self._period = seed.period
         self._base, self._turned = seed.placing, minimax and model.placed
         self._k = k = len(seed.values)
         scales = [model.loop.scales, *(one.stations.scales for one in model.wanted)]
@@ -130,12 +135,17 @@ class Problem:
         self.scales = np.concatenate(scales)
         self.start = np.concatenate(starts) / self.scales
         ends = np.cumsum([k, *(len(own) for own in seed.own)])
-        self._own = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        self._own = [slice(a, b) for a, b in pairwise(ends)]
         self.low, self.high = (np.full(len(self.start), way * math.inf) for way in (-1, 1))
         self.low[:k], self.high[:k] = (
             bound / model.loop.scales for bound in (model.task.low, model.task.high)
         )
-        self._stations = self._all_stations(seed)
+        #: Which way the inputs of each want go, and by how much they may in all [rad].
+        self._senses = [
+            _sense(one.stations.inputs(own)) for one, own in zip(model.wanted, seed.own, strict=True)
+        ]
+        self._periods = [way * seed.period for way in self._senses]
+        self._stations = self._all_stations()
         if len(self._poses) < len(self._stations.fixed):
             self._poses = self._between(seed)
         places = [one.places.reshape(-1, 3) for _, one in self._places()]
@@ -146,14 +156,14 @@ class Problem:
 
     # ---- the inputs at which the linkage is looked at
 
-    def _all_stations(self, seed: Seed) -> Stations:
+    def _all_stations(self) -> Stations:
         """Those of the wants, then those between them where something must hold there."""
         width = len(self.start)
         fixed, by = [np.empty(0)], [np.empty((0, width))]
         held: list[tuple[Floats, Floats]] = []
         self._rows: list[slice] = []
         count = 0
-        for one, own, place in zip(self.model.wanted, seed.own, self._own, strict=True):
+        for one, place in zip(self.model.wanted, self._own, strict=True):
             steady = one.stations.fixed
             matrix = np.zeros((len(steady), width))
             matrix[:, place] = one.stations.by * one.stations.scales
@@ -162,7 +172,7 @@ class Problem:
             self._rows.append(slice(count, count + len(steady)))
             count += len(steady)
             if self.model.holds and one.stations.ordered:
-                held += _spread(steady, matrix, one.stations, own)
+                held += _spread(steady, matrix, one.stations, self._periods[len(self._rows) - 1])
         self._count = count
         return Stations(
             np.concatenate([*fixed, *(part for part, _ in held)]),
@@ -222,7 +232,13 @@ class Problem:
         self.take(z)
         placing = STILL if found is None else found.placing
         return Seed(
-            self.values(z), self.own(z), self._poses[: self._count], self._anchor, math.nan, placing
+            self.values(z),
+            self.own(z),
+            self._poses[: self._count],
+            self._anchor,
+            math.nan,
+            placing,
+            self._period,
         )
 
     # ---- what is left there
@@ -250,8 +266,8 @@ class Problem:
             wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
             parts.append((left, wide * self.scales))
         placing = self._placing(z, [left for left, _ in parts])
-        left, left_by = self._placed(z, parts, placing)
-        rooms, rooms_by = self._rooms(z, here, [(a, b) for a, b in zip(left, left_by, strict=True)])
+        lefts, slopes = self._placed(z, parts, placing)
+        rooms, rooms_by = self._rooms(z, here, list(zip(lefts, slopes, strict=True)))
         figures = self._figures(values)
         if figures is None:
             return None
@@ -259,8 +275,8 @@ class Problem:
         room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
         found = Values(
-            np.concatenate([*(w * r for w, r in zip(weights, left, strict=True)), figures[0]]),
-            np.concatenate([*(w * r for w, r in zip(weights, left_by, strict=True)), self._wide(figures[1])]),
+            np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]]),
+            np.concatenate([*(w * r for w, r in zip(weights, slopes, strict=True)), self._wide(figures[1])]),
             room,
             room_by,
             placing,
@@ -318,7 +334,8 @@ class Problem:
         puts = [placing.put(parts[i][0]) for i, _ in own]
         every = np.concatenate(puts)
         weights = [
-            np.full(3 * len(put), one.weight / math.sqrt(one.count)) for put, (_, one) in zip(puts, own, strict=True)
+            np.full(3 * len(put), one.weight / math.sqrt(one.count))
+            for put, (_, one) in zip(puts, own, strict=True)
         ]
         units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
         weight = np.concatenate(weights)[:, None]
@@ -345,7 +362,7 @@ class Problem:
         by = np.zeros((len(put), 3, 6))
         by[:, :, :3] = np.cross(left_jacobian(turn).T[None], own[:, None], axis=2).swapaxes(1, 2)
         by[:, :, 3:] = np.eye(3)
-        return by * self.scales[-6:]
+        return np.asarray(by * self.scales[-6:])
 
     # ---- what must hold
 
@@ -363,11 +380,27 @@ class Problem:
             for values, by in self._transmission(z):
                 rooms.append(values)
                 slopes.append(by)
+        for i, one in enumerate(self.model.wanted):
+            if one.stations.free:
+                values, by = self._order(z, i)
+                rooms.append(values)
+                slopes.append(by)
         for i, most in self.model.most.items():
             left, by = wants[i]
             rooms += [most - left, most + left]
             slopes += [-by, by]
         return rooms, slopes
+
+    def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
+        """The ways between free inputs that follow each other, a round at most, in the seed's sense."""
+        inputs, by = self.inputs(z)[number], self._stations.by[self._rows[number]]
+        steps, steps_by = np.diff(inputs), np.diff(by, axis=0)
+        period = self._periods[number]
+        if period:
+            steps = np.append(steps, inputs[0] + period - inputs[-1])
+            steps_by = np.concatenate([steps_by, by[:1] - by[-1:]])
+        way, unit = self._senses[number], float(self.loop.units[self.loop.input])
+        return way * steps / unit, way * steps_by / unit
 
     def _joined(self, by: Floats) -> Floats:
         """Slopes (r, k + all unknowns), those by the free numbers and through the inputs, by all unknowns."""
@@ -422,20 +455,21 @@ class Problem:
         return np.array(left), np.concatenate(slopes), np.array(rooms), np.concatenate(rooms_by)
 
 
-def _spread(steady: Floats, by: Floats, stations: Stations, own: Floats) -> list[tuple[Floats, Floats]]:
+def _sense(inputs: Floats) -> float:
+    """Which way inputs go, by most of their steps."""
+    return 1.0 if (np.diff(inputs) >= 0).sum() * 2 >= len(inputs) - 1 else -1.0
+
+
+def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> list[tuple[Floats, Floats]]:
     """Inputs between those of a want, as many between any two: their fixed parts and slopes."""
     n = len(steady)
     if n < 2:
         return []
     each = max(math.ceil(HELD / n), 2)
-    inputs = stations.inputs(own)
     found = []
     for j in range(n if stations.round else n - 1):
         then = (j + 1) % n
-        gain = 0.0
-        if then == 0:
-            way = math.copysign(1.0, inputs[-1] - inputs[0])
-            gain = way * math.tau * math.ceil(abs(inputs[-1] - inputs[0]) / math.tau)
+        gain = 0.0 if then else period
         for share in np.arange(1, each) / each:
             found.append(
                 (

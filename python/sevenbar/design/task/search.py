@@ -1,4 +1,4 @@
-"""The search for designs: many starts are looked at, the promising ones solved, each checked by the analysis."""
+"""The search for designs: many starts are looked at, the promising ones solved, each of them checked."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy.typing as npt
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.synthesis.candidates import Refusal, likeness, tally
 from sevenbar.design.task.check import Design, checked_design
-from sevenbar.design.task.problem import TaskModel
+from sevenbar.design.task.problem import Seed, TaskModel
 from sevenbar.design.task.solve import LOOK, Solved, solved
-from sevenbar.design.task.starts import apart, seeds
+from sevenbar.design.task.starts import apart, seeds, seeds_at
 from sevenbar.design.task.task import DesignTask
 from sevenbar.text.progress import Progress, silent
 
@@ -34,8 +34,8 @@ EXACT = 1e-11
 class DesignsFound:
     """The designs of a search, best first, and why others were refused.
 
-    `starts` is the number of ways to begin that were found; `unfinished` says that the search was stopped, and
-    is empty where it ended.
+    `starts` is the number of ways to begin that were found; `unfinished` says that the search was stopped,
+    and is empty where it ended.
     """
 
     task: DesignTask
@@ -62,9 +62,9 @@ def designed(
     """Up to `count` distinct designs of a task, the best first; none where nothing does what is asked.
 
     The linkage itself, `starts` others within the bounds from a `seed`, and those of free numbers `given`
-    (k,) each are the starts. Each design is opened from its file and found by the ordinary analysis to do what
-    it claims, on one circuit and without a dead centre between. `progress` is called with (done, total, the
-    best so far). Ctrl+C ends the search with what it has; before the first design it raises.
+    (k,) each are the starts. Each design is opened from its file and found by the ordinary analysis to do
+    what it claims, on one circuit and without a dead centre between. `progress` is called with (done, total,
+    the best so far). Ctrl+C ends the search with what it has; before the first design it raises.
 
         >>> import numpy as np
         >>> import sevenbar as sb
@@ -99,15 +99,15 @@ def designed(
 
 def _search(
     model: TaskModel,
-    begun: Sequence[object],
+    begun: Sequence[Seed],
     count: int,
     course: SearchCourse,
     kept: list[Design],
     refusals: list[Refusal],
 ) -> None:
     looked: list[Solved] = []
-    for one in apart(model, begun, LOOKED_AT * count):  # type: ignore[arg-type]
-        look = solved(model, one, LOOK, whole=False)
+    for one in apart(model, begun, LOOKED_AT * count):
+        look = _looked(model, one)
         if look is not None:
             looked.append(look)
         nearest = min((look.cost for look in looked), default=None)
@@ -129,6 +129,16 @@ def _search(
         course.step(f"best: {kept[0].cost:.3g}" if kept else "", done=int(course.done < course.total))
 
 
+def _looked(model: TaskModel, one: Seed) -> Solved | None:
+    """A first look at a start; free inputs are matched anew once, where they may have left their places."""
+    look = solved(model, one, LOOK, whole=False)
+    if look is None or look.cost < EXACT or not any(want.stations.free for want in model.wanted):
+        return look
+    again = min(seeds_at(model, look.seed.values), key=lambda seed: seed.error, default=None)
+    other = None if again is None else solved(model, again, LOOK, whole=False)
+    return look if other is None or other.cost > look.cost else other
+
+
 def distinct_designs(designs: Sequence[Design]) -> list[Design]:
     """The designs that differ, the first of those that are alike."""
     kept: list[Design] = []
@@ -144,6 +154,9 @@ def _named(task: DesignTask, designs: Sequence[Design]) -> list[Design]:
     """The designs with the names `title, design 1`, .. in their order."""
     title = task.draft.linkage.name
     return [
-        replace(one, candidate=replace(one.candidate, draft=one.draft.with_value(("name",), f"{title}, design {i}")))
+        replace(
+            one,
+            candidate=replace(one.candidate, draft=one.draft.with_value(("name",), f"{title}, design {i}")),
+        )
         for i, one in enumerate(designs, 1)
     ]

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from sevenbar.design.task.problem import Problem, Seed, TaskModel, Values
 from sevenbar.design.task.wants.places import PlacesWanted
 
 #: Evaluations of a first look, and of a design that is kept.
-LOOK, WHOLE = 40, 400
+LOOK, WHOLE = 40, 1000
 
 #: How much the first steps are held back, relative to the unknowns' sizes; and where that failed.
 FIRST = (1e-3, 1.0)
@@ -123,7 +124,7 @@ def _least_squares(
 ) -> tuple[Problem, Floats] | None:
     """The problem about its least squares, missed rooms as penalties, and the unknowns there."""
     problem = Problem(model, seed)
-    z: Floats | None = np.clip(problem.start, problem.low, problem.high)
+    z = np.clip(problem.start, problem.low, problem.high)
     here = problem.at(problem.start)
     if here is None:
         return None
@@ -139,7 +140,7 @@ def _least_squares(
                 np.concatenate([here.left_by, weight * missed[:, None] * here.room_by]),
             )
 
-        z = nearest_least(
+        nearest = nearest_least(
             residuals,
             z,
             problem.low,
@@ -148,8 +149,9 @@ def _least_squares(
             first=first,
             taken=problem.take,
         )
-        if z is None:
+        if nearest is None:
             return None
+        z = nearest
     return problem, z
 
 
@@ -225,7 +227,11 @@ def _programmed(problem: Problem, z: Floats) -> Floats:
         found = at(z) or last[0]
         return np.asarray(2 * found.left_by.T @ found.left / unit)
 
-    rooms = {"type": "ineq", "fun": lambda z: (at(z) or last[0]).room, "jac": lambda z: (at(z) or last[0]).room_by}
+    rooms: Any = {
+        "type": "ineq",
+        "fun": lambda z: (at(z) or last[0]).room,
+        "jac": lambda z: (at(z) or last[0]).room_by,
+    }
     with np.errstate(all="ignore"):
         found = minimize(
             cost,
@@ -264,7 +270,9 @@ def _conditions(problem: Problem, x: Floats, *, minimax: bool) -> Conditions | N
         columns = np.linalg.norm(here.left_by, axis=0)
         unit = max(float(np.linalg.norm(here.left)), LEAST) * max(float(columns.max(initial=0.0)), 1e-300)
         gradient = here.left_by.T @ here.left
-        return Conditions(gradient, here.left_by.T @ here.left_by, float(here.left @ here.left), room, by, unit)
+        return Conditions(
+            gradient, here.left_by.T @ here.left_by, float(here.left @ here.left), room, by, unit
+        )
     height, slopes = _heights(problem, here)
     gradient = np.append(np.zeros(len(z)), 1.0)
     room = np.concatenate([x[-1] - height, room])

@@ -45,7 +45,9 @@ def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -
     try:
         from scipy.stats import qmc
     except ImportError:
-        raise MissingExtraError("a design needs scipy; install it with: pip install 'sevenbar[design]'") from None
+        raise MissingExtraError(
+            "a design needs scipy; install it with: pip install 'sevenbar[design]'"
+        ) from None
     low, high = model.task.low, model.task.high
     own = model.loop.start
     yield from (np.clip(values, low, high) for values in given)
@@ -95,9 +97,7 @@ def _with_figures(model: TaskModel, seed: Seed) -> list[Seed]:
         return []
     values = dict(zip(model.figures.names, read[0], strict=True))
     none = np.zeros(1)
-    off = sum(
-        (w.weight * figure_left(w, values[w.name], none)[0]) ** 2 for w in model.figure_wants
-    )
+    off = sum((w.weight * figure_left(w, values[w.name], none)[0]) ** 2 for w in model.figure_wants)
     return [replace(seed, error=seed.error + off)]
 
 
@@ -126,7 +126,9 @@ def _seed(
     rows = np.concatenate([own.rows for own in begun])
     q = one.circuit.q[one.rows[rows]]
     error = sum(want.weight**2 * own.error for want, own in zip(model.wanted, begun, strict=True))
-    seed = Seed(values, tuple(own.u for own in begun), model.loop.poses(values, q), q[0], error, placing)
+    seed = Seed(
+        values, tuple(own.u for own in begun), model.loop.poses(values, q), q[0], error, placing, one.period
+    )
     return _with_figures(model, _scaled(model, seed) if placing.scale != 1.0 else seed)
 
 
@@ -155,7 +157,7 @@ def apart(model: TaskModel, found: Sequence[Seed], count: int) -> list[Seed]:
         if len(kept) >= count:
             break
         near = (
-            bool(np.abs((one.values - other.values) / width).max() < SAME)
+            bool(np.abs((one.values - other.values) / width).max(initial=0.0) < SAME)
             and bool(np.abs(short_way(one.anchor - other.anchor)).max() < SAME_POSE)
             and _alike(one, other)
             for other in kept
@@ -167,6 +169,4 @@ def apart(model: TaskModel, found: Sequence[Seed], count: int) -> list[Seed]:
 
 def _alike(one: Seed, other: Seed) -> bool:
     """Whether the poses of two seeds are nearly the same."""
-    return all(
-        np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True)
-    )
+    return all(np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True))

@@ -133,7 +133,9 @@ class StraightWant:
     weight: float = 1.0
 
 
-Want = FunctionWant | PathWant | PoseWant | FigureWant | DwellWant | StraightWant
+#: Wants at poses, and all.
+SampledWant = FunctionWant | PathWant | PoseWant | DwellWant | StraightWant
+Want = SampledWant | FigureWant
 
 
 @dataclass(frozen=True)
@@ -149,9 +151,9 @@ class JointRange:
 class Cone:
     """The angle of a ball or a U joint from its seat stays below `angle` [rad] at all poses that are used.
 
-    The angle is that between two directions: `seat` (3,), of the link before the joint, and `stud` (3,), of the
-    link after it, each as points of that link are written. One that is `None` goes along the rod, from the
-    joint to the link's other joint.
+    The angle is that between two directions: `seat` (3,), of the link before the joint, and `stud` (3,), of
+    the link after it, each as points of that link are written. One that is `None` goes along the rod, from
+    the joint to the link's other joint.
     """
 
     joint: str

@@ -1,4 +1,4 @@
-"""Measures of a circuit as wants and musts: their values at any numbers, with exact slopes where those exist."""
+"""Measures of a circuit as wants and musts: values at any numbers, exact slopes where those exist."""
 
 from __future__ import annotations
 

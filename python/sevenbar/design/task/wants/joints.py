@@ -17,7 +17,7 @@ TRIED = 2
 
 
 class ReadingsWanted:
-    """The output's readings (n,) at n stations, from zeros that may be unknowns: the input's, the output's."""
+    """The output's readings (n,) at n stations, from zeros of input and output that may be unknowns."""
 
     def __init__(self, loop: TaskLoop, want: FunctionWant | DwellWant) -> None:
         self.weight = want.weight
@@ -48,7 +48,13 @@ class ReadingsWanted:
             by[:, -1] -= 1.0
         return self._apart(here.q[:, self._column] - self.readings - zero) / self.unit, by / self.unit
 
-    def begun(self, one: Pass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+    def begun(
+        self,
+        one: Pass,
+        placing: Placing | None,
+        *,
+        scaled: bool,  # noqa: ARG002
+    ) -> list[Begun]:
         """From the best starts of the inputs."""
         found: list[Begun] = []
         fixed = self.stations.fixed
@@ -68,6 +74,14 @@ class ReadingsWanted:
             found.append(Begun(u, rows, error, placing))
         return sorted(found, key=lambda begun: begun.error)[:TRIED]
 
-    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
+    def errors(
+        self,
+        circuit: Circuit,
+        rows: slice,
+        u: Floats,
+        placing: Placing,  # noqa: ARG002
+    ) -> Floats:
         """What the output is off (n,) on rows of an analysis [rad, or length]."""
-        return self._apart(circuit.output[rows] - self.readings - (u[-1] if self._output_free else self._zero))
+        return self._apart(
+            circuit.output[rows] - self.readings - (u[-1] if self._output_free else self._zero)
+        )

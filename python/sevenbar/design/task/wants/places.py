@@ -30,6 +30,7 @@ class PlacesWanted:
     def __init__(self, loop: TaskLoop, want: PathWant | PoseWant) -> None:
         self._loop = loop
         self.weight = want.weight
+        self._name: str | None = None
         if isinstance(want, PathWant):
             point = next(p for p in loop.linkage.points if p.name == want.point)
             self.link, self._name = point.link, want.point
@@ -38,7 +39,7 @@ class PlacesWanted:
             self.unit, self.closed = float(np.ptp(want.places, axis=0).max()), want.closed
         else:
             ends = [(0.0, 0.0, 0.0), *(tuple(map(float, end)) for end in want.arm * np.eye(3))]
-            self.link, self._ends, self._name = want.link, ends, None
+            self.link, self._ends = want.link, ends
             self.numbers = [loop.place(want.link, end) for end in ends]  # type: ignore[arg-type]
             self.places = np.einsum("nij,pj->npi", want.poses[:, :3, :3], ends) + want.poses[:, None, :3, 3]
             self.unit, self.closed = want.arm, False
@@ -46,13 +47,13 @@ class PlacesWanted:
         self.timing, self.phase = want.timing, want.phase
         own = float(loop.units[loop.input])
         if want.timing is None:
-            self.stations = Stations(np.zeros(n), np.eye(n), np.full(n, own), round=self.closed)
+            self.stations = Stations(np.zeros(n), np.eye(n), np.full(n, own), round=self.closed, free=True)
         else:
             by = np.ones((n, int(want.phase)))
             self.stations = Stations(want.timing, by, np.full(by.shape[1], own), round=self.closed)
         self.count = self.places.size
 
-    def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
+    def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:  # noqa: ARG002
         """Where the points are (r / 3, 3) at its stations, and their slopes (r / 3, 3, k + m)."""
         found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
         return found.reshape(-1, 3), by.reshape(-1, 3, by.shape[-1])
@@ -124,8 +125,14 @@ class PlacesWanted:
         """Placings that bring every other row of a curve (rows, p, 3) to the first pose."""
         return [placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT)]
 
-    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
+    def errors(
+        self,
+        circuit: Circuit,
+        rows: slice,
+        u: Floats,  # noqa: ARG002
+        placing: Placing,
+    ) -> Floats:
         """The distances (n p,) on rows of an analysis [length]."""
         one = Pass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
         off = placing.put(self.curve(one)) - self.places
-        return np.linalg.norm(off, axis=2).ravel()
+        return np.asarray(np.linalg.norm(off, axis=2).ravel())

@@ -14,7 +14,7 @@ from sevenbar.kinematics.circuits import Circuit
 
 
 class LineWanted:
-    """Distances of a point p from the line through two unknown places a and b, in three parts:
+    """Distances of a point p from the line through two unknown places a and b, in three parts.
 
     r = p - a - t (b - a),    t = (p - a) . (b - a) / |b - a|^2
 
@@ -52,7 +52,13 @@ class LineWanted:
             slopes = np.concatenate([slopes, (short * gone @ (by[-1] - by[0]) / size)[None]])
         return left / self.unit, slopes / self.unit
 
-    def begun(self, one: Pass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+    def begun(
+        self,
+        one: Pass,
+        placing: Placing | None,
+        *,
+        scaled: bool,  # noqa: ARG002
+    ) -> list[Begun]:
         """On a pass that has the range of inputs, with the best line of its rows."""
         curve = one.named(self._name)
         found = []
@@ -69,7 +75,14 @@ class LineWanted:
             found.append(Begun(u, rows, error, placing))
         return found[:1]
 
-    def errors(self, circuit: Circuit, rows: slice, u: Floats, placing: Placing) -> Floats:
+    def errors(
+        self,
+        circuit: Circuit,
+        rows: slice,
+        u: Floats,
+        placing: Placing,  # noqa: ARG002
+    ) -> Floats:
         """The distances (n,) from the line on rows of an analysis [length]."""
         way = (u[3:] - u[:3]) / np.linalg.norm(u[3:] - u[:3])
-        return np.linalg.norm(np.cross(circuit.point(self._name).position[rows] - u[:3], way), axis=1)
+        off = np.cross(circuit.point(self._name).position[rows] - u[:3], way)
+        return np.asarray(np.linalg.norm(off, axis=1))

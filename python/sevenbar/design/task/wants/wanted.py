@@ -18,7 +18,7 @@ from sevenbar.kinematics.circuits import Circuit
 class Stations:
     """The inputs `fixed + by u` (n,) of a want with own unknowns u (m,), whose units are `scales` (m,).
 
-    `ordered`: they follow each other; `round`: the last leads to the first again.
+    `ordered`: they follow each other; `round`: the last leads to the first again; `free`: each is an unknown.
     """
 
     fixed: Floats
@@ -26,6 +26,7 @@ class Stations:
     scales: Floats
     ordered: bool = True
     round: bool = False
+    free: bool = False
 
     def inputs(self, u: Floats) -> Floats:
         """The inputs (n,)."""
@@ -53,7 +54,7 @@ class Wanted(Protocol):
         """The number of residuals."""
 
     def begun(self, one: Pass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
-        """How it may begin on a pass, best first; `placing` is `None` where the linkage may stand anywhere."""
+        """How it may begin on a pass, best first; `placing` is `None` where it may stand anywhere."""
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """The residuals (r,) at its stations, and their slopes (r, k + m) by free numbers and unknowns."""
