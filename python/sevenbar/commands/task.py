@@ -47,7 +47,7 @@ def task(
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Designs of any loop for what a task file asks: functions, paths, poses, measures, musts (extra 'design')."""
+    """Designs of any loop for what a task file asks (extra 'design')."""
     from sevenbar.design.synthesis.path.generation import check_counts
     from sevenbar.design.task.file.reader import task_file
     from sevenbar.design.task.report import TaskDesigns, task_report
