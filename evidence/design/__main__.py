@@ -11,11 +11,12 @@ import time
 import numpy as np
 
 from evidence.design.tasks import tasks
-from sevenbar.design.task import DesignTask, FunctionWant, PathWant
-from sevenbar.design.task.search import Design, DesignsFound, designed
+from sevenbar.design.task import DesignTask, FunctionWant, PathWant, PoseWant
+from sevenbar.design.task.check import Design
+from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.kinematics.law import Law
 
-#: A known answer is found where no error is greater [rad, or relative to the path's extent or the arm].
+#: A known answer is found where no error is greater [rad, or relative to size, extent of the path, arm].
 FOUND = 1e-9
 
 #: Starts beside the linkage itself.
@@ -29,8 +30,13 @@ def unit_of(task: DesignTask) -> float:
     """What errors of the want are relative to."""
     want = task.wants[0]
     if isinstance(want, FunctionWant):
-        return 1.0
-    return float(np.ptp(want.places, axis=0).max()) if isinstance(want, PathWant) else want.arm
+        linkage = task.draft.linkage
+        slides = linkage.unit_of(linkage.drive.output) != "rad"
+        return max(abs(d.value) for d in task.draft.dimensions if d.kind == "length") if slides else 1.0
+    if isinstance(want, PathWant):
+        return float(np.ptp(want.places, axis=0).max())
+    assert isinstance(want, PoseWant)
+    return want.arm
 
 
 def is_whole(design: Design) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import sevenbar as sb
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant, PathWant, PoseWant
 from sevenbar.errors import SevenbarError
@@ -103,7 +103,7 @@ def bounds(draft: Draft, names: list[str]) -> tuple[FreeNumber, ...]:
     return tuple(found)
 
 
-def stretch(circuit: Circuit, count: int, random: np.random.Generator, most: float) -> Floats | None:
+def stretch(circuit: Circuit, count: int, random: np.random.Generator, most: float) -> Integers | None:
     """Rows (count,) of a circuit along one pass, over `most` of it at the most."""
     rows = np.flatnonzero((circuit.branch == circuit.branch[0]) & (circuit.status == "ok"))
     if len(rows) < 2 * count:
@@ -112,13 +112,13 @@ def stretch(circuit: Circuit, count: int, random: np.random.Generator, most: flo
     if width < count:
         return None
     begin = random.integers(0, len(rows) - width + 1)
-    return rows[begin + np.unique(np.linspace(0, width - 1, count).astype(int))]
+    return np.asarray(rows[begin + np.unique(np.linspace(0, width - 1, count).astype(int))])
 
 
 def turned(random: np.random.Generator) -> Floats:
     """A rotation (3, 3) at random."""
     q, _ = np.linalg.qr(random.standard_normal((3, 3)))
-    return q * np.linalg.det(q)
+    return np.asarray(q * np.linalg.det(q))
 
 
 #: What is varied of kinds of tasks: the linkage, how many points, how the linkage may stand, timing.

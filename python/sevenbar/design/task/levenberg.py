@@ -29,6 +29,9 @@ STRAIGHT, SHARE, MOST_BENT = 10, 0.1, 0.4
 #: A fall of the squares, relative to them, after which it ends; and a step, relative to the unknowns.
 FALL, STEP = 1e-15, 1e-15
 
+#: An unknown whose column is shorter, relative to the longest, does nothing but for rounding.
+LEAST = 1e-8
+
 #: Squares that are rounding of residuals of unit size.
 NOTHING = 1e-31
 
@@ -61,7 +64,7 @@ def nearest_least(
         free = ~(((z <= low) & (pull > 0)) | ((z >= high) & (pull < 0)))
         if not free.any() or cost < NOTHING:
             break
-        scale = np.where(sizes > 0, sizes, 1.0)[free]
+        scale = np.maximum(sizes, LEAST * max(float(sizes.max()), LEAST))[free]
         step = np.zeros(len(z))
         matrix = np.concatenate([by[:, free] / scale, np.sqrt(weight) * np.eye(len(scale))])
         sides = np.concatenate([-left, np.zeros(len(scale))])

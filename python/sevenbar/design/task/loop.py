@@ -9,9 +9,10 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
-from sevenbar.kinematics.word import Carried, Product
+from sevenbar.kinematics.word import Carried
 
 
 @dataclass(frozen=True, eq=False)
