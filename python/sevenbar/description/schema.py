@@ -226,7 +226,7 @@ class LinkageForm(TableForm):
 FORMS = ("rssr", "link", "joint")
 
 
-class _TomlSchema(GenerateJsonSchema):
+class TomlSchema(GenerateJsonSchema):
     """JSON schema of a TOML file, in which a key that is not given is left out: there is no null."""
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
@@ -246,7 +246,7 @@ def json_schema() -> dict[str, Any]:
         >>> json_schema()["properties"]["length_unit"]["enum"]
         ['um', 'mm', 'cm', 'm', 'in', 'ft']
     """
-    schema = LinkageForm.model_json_schema(schema_generator=_TomlSchema)
+    schema = LinkageForm.model_json_schema(schema_generator=TomlSchema)
     one_form = [{"required": [form]} for form in FORMS]
     return {"$schema": GenerateJsonSchema.schema_dialect, **schema, "oneOf": one_form}
 
