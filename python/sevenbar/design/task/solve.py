@@ -45,9 +45,9 @@ LEAST = 1e-4
 #: Steps of Newton's method at the end, their most [units], and the step of its differences.
 STEPS, FARTHEST, DIFFERENCE = 8, 0.1, 1e-5
 
-#: Steps of Newton's method within a reach, its most unknowns, longest reach, shortest; the part of the greatest
-#: curvature that is rounding; halvings of a step's multiplier.
-DESCENTS, MOST_UNKNOWNS, MOST_REACH, SHORTEST, FLAT, HALVINGS = 40, 60, 0.5, 1e-9, 1e-13, 60
+#: Steps of Newton's method within a reach, its most unknowns, longest reach, shortest; the part of the
+#: greatest curvature that is rounding; halvings of a step's multiplier.
+DESCENTS, MOST_UNKNOWNS, MOST_REACH, SHORTEST, FLAT, HALVINGS = 12, 60, 0.5, 1e-9, 1e-13, 60
 
 #: Most steps of sequential quadratic programs.
 PROGRAMS = 200
@@ -264,18 +264,25 @@ def _descended(problem: Problem, z: Floats) -> Floats:
     for _ in range(DESCENTS):
         if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or _multipliers(at)[2] < MET:
             break
-        free = ~(((z <= problem.low) & (at.gradient > 0)) | ((z >= problem.high) & (at.gradient < 0)))
+        low, high = z <= problem.low + ROUNDING, z >= problem.high - ROUNDING
+        free = ~((low & (at.gradient > 0)) | (high & (at.gradient < 0)))
         curved = _curved(problem, z, at, np.empty(0, dtype=np.int64), np.empty(0), minimax=False)
         if curved is None or not free.any():
             break
         while reach >= SHORTEST:
             step = np.zeros(len(z))
-            step[free] = _within(at.gradient[free], curved[np.ix_(free, free)], reach)
+            while free.any():
+                step = np.zeros(len(z))
+                step[free] = _within(at.gradient[free], curved[np.ix_(free, free)], reach)
+                stopped = free & ((low & (step < 0)) | (high & (step > 0)))
+                if not stopped.any():
+                    break
+                free &= ~stopped
             then_z = np.clip(z + step, problem.low, problem.high)
             then = _conditions(problem, then_z, minimax=False)
             kept = then is not None and not (then.room < np.minimum(at.room, 0.0) - ROUNDING).any()
             if then is not None and kept and then.cost < at.cost:
-                z, at, reach = then_z, then, min(2 * reach, MOST_REACH)
+                z, at, reach = then_z, then, min(4 * reach, MOST_REACH)
                 problem.take(z)
                 break
             reach = min(reach, float(np.abs(step).max())) / 4
