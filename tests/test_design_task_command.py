@@ -14,7 +14,7 @@ from sevenbar.design.task import DesignTask, FigureWant, FreeNumber, FunctionWan
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.file.reader import task_file
-from sevenbar.design.task.pareto import pareto
+from sevenbar.design.task.front import pareto
 from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import designed
 from sevenbar.errors import RequestError

@@ -57,8 +57,8 @@ def task(
     check_counts(designs, starts, seed)
     read = task_file(file, agree=agreed(agree))
     if pareto is not None:
-        from sevenbar.design.task.pareto import pareto as front_of
-        from sevenbar.design.task.pareto_report import FrontFound, front_report
+        from sevenbar.design.task.front import pareto as front_of
+        from sevenbar.design.task.front_report import FrontFound, front_report
 
         pair = words([pareto])
         if len(pair) != 2:

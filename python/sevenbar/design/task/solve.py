@@ -45,6 +45,10 @@ LEAST = 1e-4
 #: Steps of Newton's method at the end, their most [units], and the step of its differences.
 STEPS, FARTHEST, DIFFERENCE = 8, 0.1, 1e-5
 
+#: Steps of Newton's method within a reach, its most unknowns, longest reach, shortest; the part of the
+#: greatest curvature that is rounding; halvings of a step's multiplier.
+DESCENTS, MOST_UNKNOWNS, MOST_REACH, SHORTEST, FLAT, HALVINGS = 12, 60, 0.5, 1e-9, 1e-13, 60
+
 #: Most steps of sequential quadratic programs.
 PROGRAMS = 200
 
@@ -105,7 +109,7 @@ def solved(model: TaskModel, seed: Seed, evaluations: int = WHOLE, *, whole: boo
         problem = Problem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
     elif problem.size(z) > EXACT:
-        z = _programmed(problem, z)
+        z = _descended(problem, _programmed(problem, z))
     z, missed = settled(problem, z, minimax=minimax)
     return _as_solved(problem, z, missed, minimax=minimax)
 
@@ -247,6 +251,58 @@ def _programmed(problem: Problem, z: Floats) -> Floats:
         return z
     better = (_lack(then), float(then.left @ then.left)) < (_lack(here), unit)
     return np.asarray(found.x) if better else z
+
+
+def _descended(problem: Problem, z: Floats) -> Floats:
+    """The unknowns after Newton's method within a reach, by which narrow valleys are gone down to their end.
+
+    Steps solve `min g s + s H s / 2, |s| <= reach` over the unknowns that no bound stops; H by differences of
+    the exact gradient. It ends at a room: there the programs know better.
+    """
+    reach = FARTHEST
+    at = _conditions(problem, z, minimax=False)
+    for _ in range(DESCENTS):
+        if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or _multipliers(at)[2] < MET:
+            break
+        low, high = z <= problem.low + ROUNDING, z >= problem.high - ROUNDING
+        free = ~((low & (at.gradient > 0)) | (high & (at.gradient < 0)))
+        curved = _curved(problem, z, at, np.empty(0, dtype=np.int64), np.empty(0), minimax=False)
+        if curved is None or not free.any():
+            break
+        while reach >= SHORTEST:
+            step = np.zeros(len(z))
+            while free.any():
+                step = np.zeros(len(z))
+                step[free] = _within(at.gradient[free], curved[np.ix_(free, free)], reach)
+                stopped = free & ((low & (step < 0)) | (high & (step > 0)))
+                if not stopped.any():
+                    break
+                free &= ~stopped
+            then_z = np.clip(z + step, problem.low, problem.high)
+            then = _conditions(problem, then_z, minimax=False)
+            kept = then is not None and not (then.room < np.minimum(at.room, 0.0) - ROUNDING).any()
+            if then is not None and kept and then.cost < at.cost:
+                z, at, reach = then_z, then, min(4 * reach, MOST_REACH)
+                problem.take(z)
+                break
+            reach = min(reach, float(np.abs(step).max())) / 4
+    return z
+
+
+def _within(gradient: Floats, curved: Floats, reach: float) -> Floats:
+    """The step (m,) of least `g s + s H s / 2` no longer than the reach."""
+    bends, ways = np.linalg.eigh(curved)
+    pull = ways.T @ gradient
+    floor = FLAT * max(float(np.abs(bends).max()), 1e-300)
+    low = max(0.0, -float(bends[0])) + floor
+    if np.linalg.norm(pull / (bends + low)) <= reach:
+        return np.asarray(-ways @ (pull / (bends + low)))
+    high = low + float(np.linalg.norm(gradient)) / reach
+    for _ in range(HALVINGS):
+        middle = math.sqrt(low * high)
+        longer = np.linalg.norm(pull / (bends + middle)) > reach
+        low, high = (middle, high) if longer else (low, middle)
+    return np.asarray(-ways @ (pull / (bends + high)))
 
 
 def _lack(here: Values) -> float:

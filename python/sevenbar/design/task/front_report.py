@@ -12,7 +12,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.task.pareto import ParetoFront
+from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
 from sevenbar.design.task.task import DesignTask, FigureWant
 from sevenbar.design.task.words import task_facts, want_words
