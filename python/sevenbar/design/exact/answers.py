@@ -1,0 +1,106 @@
+"""All answers to a task whose number theory counts: how many there are, and what each of them does."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+from sevenbar.description.draft import Draft
+from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.printing import Printed, lines, text_of
+
+
+@dataclass(frozen=True, eq=False)
+class ExactAnswer:
+    """One linkage that meets a task: its draft, what is claimed of it, and what its circuits say.
+
+    `claim.errors` are the closure errors at the wanted poses by substitution [length]. `verdict` is a
+    `Candidate` where all poses lie on one pass of one circuit in their order, and else a `Refusal` that names
+    the defect ("circuit", "dead centre", "order"); `None` where a loop has two freedoms, and no circuits.
+    """
+
+    draft: Draft
+    claim: Claim
+    verdict: Candidate | Refusal | None
+
+    @property
+    def linkage(self) -> Linkage:
+        """The linkage."""
+        return self.draft.linkage
+
+    @property
+    def fault(self) -> str | None:
+        """The kind of defect; `None` without one."""
+        return self.verdict.fault if isinstance(self.verdict, Refusal) else None
+
+    @property
+    def error(self) -> float:
+        """The greatest closure error at the wanted poses, relative to the size of the linkage."""
+        return self.claim.figures["closure_error"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ExactAnswers(Printed):
+    """All answers to a task: their number by theory, over the complex numbers, and the real ones.
+
+    `counted` names what theory counts ("dyads", "linkages"); `theory` is their number over the complex
+    numbers and `found` how many were found, with multiplicity (`None` where the answers are a family, of
+    which `answers` are members). `real` of these are real numbers, all different. `answers` are the
+    linkages that they make: one for each way to drive each.
+    """
+
+    task: str
+    counted: str
+    theory: int | None
+    found: int | None
+    real: int
+    answers: tuple[ExactAnswer, ...]
+    #: How the number was found, and what was left out.
+    how: str
+    #: How many real ones have a part at infinity: a slider in place of a crank.
+    sliders: int = 0
+
+    @property
+    def assemblable(self) -> tuple[ExactAnswer, ...]:
+        """The answers whose circuits hold all wanted poses, whatever lies between them."""
+        return tuple(a for a in self.answers if a.fault != "assembly")
+
+    @property
+    def defect_free(self) -> tuple[ExactAnswer, ...]:
+        """The answers that take all wanted poses in order on one pass of one circuit."""
+        return tuple(a for a in self.answers if isinstance(a.verdict, Candidate))
+
+    @property
+    def complete(self) -> bool:
+        """Whether as many were found as theory counts."""
+        return self.found is not None and self.found == self.theory
+
+    @property
+    def faults(self) -> dict[str, int]:
+        """How many answers have each kind of defect."""
+        return dict(Counter(a.fault for a in self.answers if a.fault is not None))
+
+
+def judged(draft: Draft, claim: Claim, poses: object = None, *, freedoms: int = 1) -> ExactAnswer:
+    """An answer with what its circuits say; `poses` as `checked` takes them."""
+    verdict = checked(draft, claim, poses=poses) if freedoms == 1 else None  # type: ignore[arg-type]
+    return ExactAnswer(draft, claim, verdict)
+
+
+@text_of.register(ExactAnswers)
+def _(found: ExactAnswers) -> str:
+    faults = ", ".join(f"{count} by {fault}" for fault, count in found.faults.items())
+    number = "a family" if found.theory is None else f"{found.found} of {found.theory} {found.counted}"
+    return lines(
+        f"Answers to {found.task}",
+        [
+            ("over the complex numbers", number),
+            ("real", f"{found.real}"),
+            ("linkages", f"{len(found.answers)}"),
+            ("assemblable", f"{len(found.assemblable)}"),
+            ("free of defects", f"{len(found.defect_free)}"),
+            ("defects", faults or "none"),
+            ("how", found.how),
+        ],
+    )
