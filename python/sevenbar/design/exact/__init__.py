@@ -1,6 +1,15 @@
 """All linkages for tasks whose number of answers theory counts: pairs of angles, poses of a link."""
 
 from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
+from sevenbar.design.exact.cylinders import cc_dyads, rccc_poses
 from sevenbar.design.exact.planar import planar_poses
+from sevenbar.design.exact.spherical import spherical_orientations
 
-__all__ = ["ExactAnswer", "ExactAnswers", "planar_poses"]
+__all__ = [
+    "ExactAnswer",
+    "ExactAnswers",
+    "cc_dyads",
+    "planar_poses",
+    "rccc_poses",
+    "spherical_orientations",
+]

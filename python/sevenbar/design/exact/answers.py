@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
+from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked
+from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed, lines, text_of
+
+
+#: Inputs of a full turn at which poses are sought: a long crank moves by a hundredth of a turn, and less.
+CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES, 256 * CHECK_SAMPLES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +87,12 @@ class ExactAnswers(Printed):
         return dict(Counter(a.fault for a in self.answers if a.fault is not None))
 
 
-def judged(draft: Draft, claim: Claim, poses: object = None, *, freedoms: int = 1) -> ExactAnswer:
-    """An answer with what its circuits say; `poses` as `checked` takes them."""
-    verdict = checked(draft, claim, poses=poses) if freedoms == 1 else None  # type: ignore[arg-type]
+def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnswer:
+    """An answer with what its circuits say; `poses` (n, columns) as `checked` takes them."""
+    for samples in CHECKED_AT:
+        verdict = checked(draft, claim, poses=poses, samples=samples)
+        if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
+            break
     return ExactAnswer(draft, claim, verdict)
 
 

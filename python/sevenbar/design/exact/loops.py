@@ -111,9 +111,9 @@ def loop(driver: Dyad, follower: Dyad, task: Displacements, name: str, length_un
     }
     figures = {"closure_error": float(off.max()) / size}
     claim = Claim(columns[0][:, 0], columns[3][:, 0], off, length_unit, figures)
-    whole = np.column_stack(columns)
-    # one input leads four joints of seven freedoms in space, or of four in a plane or on a sphere
-    return judged(Draft("", raw, name), claim, whole, freedoms=2 if whole.shape[1] == 8 else 1)
+    whole, draft = np.column_stack(columns), Draft("", raw, name)
+    # with eight freedoms one input leaves another: there are no circuits
+    return ExactAnswer(draft, claim, None) if whole.shape[1] == 8 else judged(draft, claim, whole)
 
 
 def all_loops(
