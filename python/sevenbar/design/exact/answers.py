@@ -11,7 +11,6 @@ from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate, Claim
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed, lines, text_of
 
-
 #: Inputs of a full turn at which poses are sought: a long crank moves by a hundredth of a turn, and less.
 CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES, 256 * CHECK_SAMPLES)
 
@@ -99,6 +98,7 @@ def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnsw
 @text_of.register(ExactAnswers)
 def _(found: ExactAnswers) -> str:
     faults = ", ".join(f"{count} by {fault}" for fault, count in found.faults.items())
+    unjudged = sum(a.verdict is None for a in found.answers)
     number = "a family" if found.theory is None else f"{found.found} of {found.theory} {found.counted}"
     return lines(
         f"Answers to {found.task}",
@@ -109,6 +109,7 @@ def _(found: ExactAnswers) -> str:
             ("assemblable", f"{len(found.assemblable)}"),
             ("free of defects", f"{len(found.defect_free)}"),
             ("defects", faults or "none"),
+            *([("without a verdict", f"{unjudged}: two freedoms")] if unjudged else []),
             ("how", found.how),
         ],
     )

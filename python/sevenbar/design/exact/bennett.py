@@ -1,7 +1,8 @@
-"""The Bennett linkage whose coupler takes three given poses: two dyads RR, by factors of a motion polynomial.
+"""The Bennett linkage whose coupler takes three given poses, by two factorings of a motion polynomial.
 
-As dual quaternions the poses span a plane of seven-dimensional projective space, which meets Study's quadric in
-a conic: the coupler motion of the linkage. With P_1 = 1 and s_ij the products of Study's quadric it is
+As dual quaternions the poses span a plane of seven-dimensional projective space, which meets Study's
+quadric in a conic: the coupler motion of the linkage. With P_1 = 1 and s_ij the products of Study's quadric
+it is
 
     C(t) = t^2 + t (s_23 / s_13 + P_2 - s_12 / s_13 P_3) + s_23 / s_13 P_2                                (1)
 
@@ -14,7 +15,7 @@ with the zero h_2, and
 are two turns: h_1 about a fixed axis, h_2 about one of the body. M_2 gives the other dyad. The 6 factors of
 degree two over the complex numbers give 6 dyads, of which these two are always real, and no others are.
 
-Source: docs/theory_design.md, (38) to (40); K. Brunnthaler, H.-P. Schröcker, M. Husty, "A new method for the
+Source: docs/theory_design.md, (36) and (37); K. Brunnthaler, H.-P. Schröcker, M. Husty, "A new method for the
 synthesis of Bennett mechanisms", Proc. CK 2005; G. Hegedüs, J. Schicho, H.-P. Schröcker, "Factorization of
 rational curves in the Study quadric", Mech. Mach. Theory 69 (2013), 142.
 """
@@ -29,6 +30,7 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.answers import ExactAnswers
+from sevenbar.design.exact.bilinear import Complexes
 from sevenbar.design.exact.given import Displacements, poses_given
 from sevenbar.design.exact.lines import line_dyad
 from sevenbar.design.exact.loops import Dyad, all_loops
@@ -67,60 +69,60 @@ def bennett_poses(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnsw
     dyads = []
     for z in zeros[zeros.imag > 0]:
         moving = factor(c1, c0, -2 * z.real, abs(z) ** 2)
-        dyads.append(_dyad(-c1 - moving, moving, task))
+        dyads.append(_dyad((-c1 - moving).real, moving.real, task))
     answers = all_loops(dyads, task, "Bennett linkage", length_unit)
     how = "quadratic factors of a norm of degree four without real zeros, two of them real"
     return ExactAnswers("3 poses in space", "dyads", DYADS, count, len(dyads), answers, how)
 
 
-def times(a: npt.NDArray[np.generic], b: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+def times(a: Complexes, b: Complexes) -> Complexes:
     """The product (8,) of dual quaternions, (w, x, y, z) and the dual part after them."""
     return np.concatenate([_product(a[:4], b[:4]), _product(a[:4], b[4:]) + _product(a[4:], b[:4])])
 
 
-def _product(a: npt.NDArray[np.generic], b: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+def _product(a: Complexes, b: Complexes) -> Complexes:
     vector = a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])
     return np.append(a[0] * b[0] - a[1:] @ b[1:], vector)
 
 
-def _conjugate(a: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
-    return a * np.array([1, -1, -1, -1, 1, -1, -1, -1])
+def _conjugate(a: Complexes) -> Complexes:
+    return np.asarray(a * np.array([1, -1, -1, -1, 1, -1, -1, -1]))
 
 
-def _inverse(a: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
+def _inverse(a: Complexes) -> Complexes:
     norm = times(a, _conjugate(a))
     # of a dual number: 1 / (n + e m) = 1 / n - e m / n^2
-    back = np.zeros(8, norm.dtype)
+    back = np.zeros(8, complex)
     back[0], back[4] = 1 / norm[0], -norm[4] / norm[0] ** 2
     return times(_conjugate(a), back)
 
 
-def _conic(task: Displacements) -> tuple[Floats, Floats]:
+def _conic(task: Displacements) -> tuple[Complexes, Complexes]:
     """C_1 and C_0 (8,) of (1)."""
-    p = np.zeros((3, 8))
+    p = np.zeros((3, 8), complex)
     p[0, 0] = 1.0
     for i, (turn, shift) in enumerate(zip(task.turns, task.shifts, strict=True), 1):
         p[i, :4] = quaternion(turn)
-        p[i, 4:] = _product(np.append(0.0, shift / 2), p[i, :4])
-    study = p[:, :4] @ p[:, 4:].T
+        p[i, 4:] = _product(np.append(0j, shift / 2), p[i, :4])
+    study = (p[:, :4] @ p[:, 4:].T).real
     study = study + study.T
     for i, j in ((0, 1), (0, 2), (1, 2)):
         if abs(study[i, j]) < NO_SCREW:
             raise RequestError(
-                f"poses[{j}]: is a turn about one line, or a shift, of poses[{i}]; a Bennett linkage needs screws "
-                "that turn and slide: change one of them"
+                f"poses[{j}]: is a turn about one line, or a shift, of poses[{i}]; a Bennett linkage needs "
+                "screws that turn and slide: change one of them"
             )
     ratio, share = study[1, 2] / study[0, 2], study[0, 1] / study[0, 2]
-    return ratio * p[0] + p[1] - share * p[2], ratio * p[1]
+    return np.asarray(ratio * p[0] + p[1] - share * p[2]), np.asarray(ratio * p[1])
 
 
-def norm_of(c1: Floats, c0: Floats) -> Floats:
+def norm_of(c1: Complexes, c0: Complexes) -> Floats:
     """The coefficients (5,) of `C C*`, the highest first; its dual part vanishes."""
     a, b = c1[:4], c0[:4]
-    return np.array([1.0, 2 * a[0], a @ a + 2 * b[0], 2 * (a @ b), b @ b])
+    return np.array([1.0, 2 * a[0], a @ a + 2 * b[0], 2 * (a @ b), b @ b]).real
 
 
-def _zeros(c1: Floats, c0: Floats) -> npt.NDArray[np.complex128]:
+def _zeros(c1: Complexes, c0: Complexes) -> Complexes:
     """The four zeros of the norm, two and two conjugate."""
     zeros = np.roots(norm_of(c1, c0)).astype(complex)
     scale = float(np.abs(zeros).max())
@@ -130,17 +132,13 @@ def _zeros(c1: Floats, c0: Floats) -> npt.NDArray[np.complex128]:
     return zeros
 
 
-def factor(
-    c1: npt.NDArray[np.generic], c0: npt.NDArray[np.generic], m1: complex, m0: complex
-) -> npt.NDArray[np.generic]:
+def factor(c1: Complexes, c0: Complexes, m1: complex, m0: complex) -> Complexes:
     """h_2 (8,) of (2) by the factor `t^2 + m1 t + m0` of the norm."""
-    one = np.append(1.0, np.zeros(7))
+    one = np.eye(8, dtype=complex)[0]
     return -times(_inverse(c1 - m1 * one), c0 - m0 * one)
 
 
-def _is_dyad(
-    c1: npt.NDArray[np.generic], c0: npt.NDArray[np.generic], moving: npt.NDArray[np.generic]
-) -> bool:
+def _is_dyad(c1: Complexes, c0: Complexes, moving: Complexes) -> bool:
     """Whether `(t + C_1 + h_2) (t - h_2)` is the conic, and both factors are turns about lines."""
     fixed = -c1 - moving
     size = 1 + max(float(np.abs(fixed).max()), float(np.abs(moving).max())) ** 2

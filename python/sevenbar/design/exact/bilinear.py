@@ -1,4 +1,4 @@
-"""Pairs of points that several bilinear forms make zero: the equations of Burmester's theory, solved completely.
+"""Pairs of points that several bilinear forms make zero: the equations of Burmester's theory.
 
     a^T T_k b = 0,    k = 1 .. n,    a and b points of the complex projective plane                      (1)
 
@@ -10,7 +10,7 @@ The four cubics times the three coordinates span all quartics that vanish at the
 monomials of degree 4 at the points span the rest, in which multiplication by one linear form divided by
 another is a matrix (6, 6), whose eigenvectors are the points. Points at infinity are as good as others.
 
-Source: docs/theory_design.md, (30) to (32).
+Source: docs/theory_design.md, (30).
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class PointPairs:
 def cubic_of(forms: Floats) -> Floats:
     """The coefficients (10,) of `det N(b)` of three forms (3, 3, 3), by the monomials of `b`."""
     cube = np.einsum("abc,ai,bj,ck->ijk", _SIGNS, forms[0], forms[1], forms[2])
-    return np.bincount(_PRODUCTS, cube.ravel(), minlength=10)
+    return np.asarray(np.bincount(_PRODUCTS, cube.ravel(), minlength=10), dtype=np.float64)
 
 
 def solutions(forms: Floats) -> PointPairs | None:
@@ -99,12 +99,12 @@ def solutions(forms: Floats) -> PointPairs | None:
     return _sorted_out(np.array([p[0] for p in polished]), np.array([p[1] for p in polished]), forms)
 
 
-def partner(forms: Floats, b: npt.NDArray[np.generic]) -> Complexes:
+def partner(forms: Floats, b: Floats | Complexes) -> Complexes:
     """The point a (3,) of a point b (3,): what the rows `(T_k b)^T` have least of."""
     return np.asarray(np.linalg.svd(forms @ b)[2][-1].conj(), dtype=np.complex128)
 
 
-def residual(forms: Floats, a: npt.NDArray[np.generic], b: npt.NDArray[np.generic]) -> float:
+def residual(forms: Floats, a: Complexes, b: Complexes) -> float:
     """The greatest `|a^T T_k b|` relative to the forms and the points."""
     sizes = np.linalg.norm(forms, axis=(1, 2)) * np.linalg.norm(a) * np.linalg.norm(b)
     return float((np.abs(np.einsum("i,kij,j->k", a, forms, b)) / np.where(sizes > 0, sizes, 1.0)).max())

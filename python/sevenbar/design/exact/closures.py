@@ -1,19 +1,20 @@
 """The closure of an RSSR with any angle between its axes, as nine coefficients of the dials' readings.
 
-Crank about z, ball at (r cos alpha, r sin alpha, h); the common normal of the axes is x, their distance p, the
-rocker's axis u = (0, -sin tau, cos tau) through (p, 0, 0), its ball at k along u and s across it, at beta
-from x. Over 2 r s the closure |A - B|^2 = L^2 is
+Crank about z, ball at (r cos alpha, r sin alpha, h); the common normal of the axes is x, their distance p,
+the rocker's axis u = (0, -sin tau, cos tau) through (p, 0, 0), its ball at k along u and s across it, at
+beta from x. Over 2 r s the closure |A - B|^2 = L^2 is
 
     ca cb + c sa sb - K - P cb + S ca - Q sa + H sb = 0,    c = cos tau                                   (1)
     P = p / r,  S = p / s,  Q = k sin(tau) / s,  H = h sin(tau) / r
     K = (r^2 + h^2 + p^2 + s^2 + k^2 - L^2 - 2 h k c) / (2 r s)
 
 With readings a = alpha - u, b = beta - v any (1, ca, sa) C (1, cb, sb)^T = 0 with nine coefficients is such a
-closure: its block of products M is made diagonal by turning the two zeros, `R(u) M R(v)^T ~ diag(1, c)`, which
-is the singular value decomposition, c the ratio of the singular values with the sign of det M. All else
-follows, up to the mirror image (tau, h, k negative), which has the same function.
+closure: its block of products M is made diagonal by turning the two zeros, `R(u) M R(v)^T ~ diag(1, c)`,
+which is the singular value decomposition, c the ratio of the singular values with the sign of det M. All else
+follows, up to the mirror image (tau, h, k negative), which has the same function. L^2 > 0 wherever the
+closure holds at one real pair, as it is |A - B|^2 there.
 
-Source: docs/theory_design.md, (41) to (43).
+Source: docs/theory_design.md, (38) to (40).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats, short_way
 
-#: 1 - |cos tau| below which axes are parallel if the rest of (1) fits it.
+#: 1 - |cos tau| below which axes are parallel: a twist of 0.003 deg, of which typed pairs say nothing.
 PARALLEL = 1e-9
 
 #: Coefficients, relative to the products', that count as zero: (1) of typed angles leaves 1e-13.
@@ -63,15 +64,15 @@ class SkewRssr:
         """The rocker's ball at an angle [rad]."""
         up = np.array([0.0, math.cos(self.twist), math.sin(self.twist)])
         across = np.array([math.cos(beta), 0.0, 0.0]) + math.sin(beta) * up
-        return self.foot_b() + self.s * across
+        return np.asarray(self.foot_b() + self.s * across)
 
     def axis_b(self) -> Floats:
         """The direction of the rocker's axis."""
-        return np.array([0.0, -math.sin(self.twist), math.cos(self.twist)])
+        return np.array([0.0, 0.0 - math.sin(self.twist), math.cos(self.twist)])
 
     def foot_b(self) -> Floats:
         """The middle of the circle of the rocker's ball."""
-        return np.array([self.p, 0.0, 0.0]) + self.k * self.axis_b()
+        return np.asarray(np.array([self.p, 0.0, 0.0]) + self.k * self.axis_b())
 
 
 def products(inputs: Floats, outputs: Floats) -> Floats:
@@ -79,7 +80,7 @@ def products(inputs: Floats, outputs: Floats) -> Floats:
     one = np.ones_like(inputs)
     first = np.stack([one, np.cos(inputs), np.sin(inputs)], axis=1)
     second = np.stack([one, np.cos(outputs), np.sin(outputs)], axis=1)
-    return np.einsum("ni,nj->nij", first, second).reshape(len(inputs), 9)
+    return np.asarray(np.einsum("ni,nj->nij", first, second).reshape(len(inputs), 9))
 
 
 def rssr_of(coefficients: Floats) -> SkewRssr | None:
@@ -101,11 +102,8 @@ def rssr_of(coefficients: Floats) -> SkewRssr | None:
     scaled = coefficients / sizes[0]
     by_b, by_a = turn_b @ scaled[0, 1:], turn_a @ scaled[1:, 0]
     u, v = math.atan2(turn_a[1, 0], turn_a[0, 0]), math.atan2(turn_b[1, 0], turn_b[0, 0])
-    # rows of a rotation R(u): (cos, -sin; sin, cos), which takes readings to angles
     if 1 - abs(c) < PARALLEL:
-        found = _parallel(-scaled[0, 0], by_b, by_a, u, v, math.copysign(1.0, c))
-        if found is not None or 1 - abs(c) < NOTHING**2:
-            return found
+        return _parallel(-scaled[0, 0], by_b, by_a, u, v, math.copysign(1.0, c))
     return designed(c, -scaled[0, 0], -by_b[0], by_a[0], -by_a[1], by_b[1], u, v)
 
 
@@ -144,9 +142,7 @@ def _sized(
     return SkewRssr(r, 1.0, p, h, k, math.sqrt(square), math.acos(c), (u, v))
 
 
-def _parallel(
-    K: float, by_b: Floats, by_a: Floats, u: float, v: float, c: float
-) -> SkewRssr | None:
+def _parallel(K: float, by_b: Floats, by_a: Floats, u: float, v: float, c: float) -> SkewRssr | None:
     """The linkage of parallel axes, whose zeros turn together until the common normal is x."""
     size = math.hypot(*by_a), math.hypot(*by_b)
     if min(size) < NOTHING:

@@ -1,17 +1,18 @@
 """Spatial linkages RCCC and CCCC whose coupler takes given poses: dyads of cylindrical joints.
 
-A dyad is two lines, eight numbers. The angle and the distance of the lines stay (CC), so does the place on the
-fixed line (RC), so does that on the moving line (RR): 2, 3, 4 equations for each pose after the first, and
+A dyad is two lines, eight numbers. The angle and the distance of the lines stay (CC), so does the place on
+the fixed line (RC), so does that on the moving line (RR): 2, 3, 4 equations for each pose after the first,
 
-    CC    5 poses: 6 dyads, as many as the directions have, by (34); the places follow from 4 linear equations
+    CC    5 poses: 6 dyads, as many as spherical ones of the directions; the places are linear equations
     RC    3 poses: one dyad for each direction of the moving line, two numbers free; none for 4 poses
     RR    3 poses: 2 real dyads, which make a Bennett linkage (`bennett`)
 
 So five general poses give CCCC linkages, which have two freedoms, and none with an R joint. Chen and Roth
 counted so which binary links meet how many poses.
 
-Source: P. Chen and B. Roth, "Design equations for the finitely and infinitesimally separated position synthesis
-of binary links and combined link chains", J. Eng. Ind. 91 (1969), 209; docs/theory_design.md, (35) to (37).
+Source: P. Chen and B. Roth, "Design equations for the finitely and infinitesimally separated position
+synthesis of binary links and combined link chains", J. Eng. Ind. 91 (1969), 209; docs/theory_design.md, (33)
+to (35).
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.design.exact.answers import ExactAnswers
+from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import directions
-from sevenbar.design.exact.given import poses_given
+from sevenbar.design.exact.given import Displacements, poses_given
 from sevenbar.design.exact.lines import line_dyad, places
 from sevenbar.design.exact.loops import Dyad, all_loops, loop
 from sevenbar.design.exact.spherical import NOTHING, refuse_one_axis
@@ -48,10 +49,10 @@ def cc_dyads(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnswers:
         >>> found.complete, found.real, found.answers[0].linkage.kind
         (True, 2, 'CCCC')
 
-    Source: docs/theory_design.md, (35).
+    Source: docs/theory_design.md, (33) to (35).
     """
     task = poses_given(poses, 5, 5)
-    refuse_one_axis(task.turns, "poses")
+    _refuse_special(task)
     found = solutions(task.turns - np.eye(3))
     if found is None:
         raise RequestError(
@@ -83,9 +84,9 @@ def rccc_poses(
     equal or their rotations have one axis.
     """
     task = poses_given(poses, 3, 3)
-    refuse_one_axis(task.turns, "poses")
+    _refuse_special(task)
     forms = task.turns - np.eye(3)
-    answers = []
+    answers: list[ExactAnswer] = []
     for draw in directions(samples, 8, seed):
         dyads: list[Dyad] = []
         for kind, b, free in (("RC", draw[:3], None), ("CC", draw[3:6], 3 * draw[6:])):
@@ -99,3 +100,16 @@ def rccc_poses(
             answers.append(loop(dyads[0], dyads[1], task, title, length_unit))
     how = f"one dyad RC for each direction of its moving line, drawn with seed {seed}"
     return ExactAnswers("3 poses in space", "linkages", None, None, len(answers), tuple(answers), how)
+
+
+def _refuse_special(task: Displacements) -> None:
+    """`RequestError` for poses whose rotations have one axis, or that leave a point where it is."""
+    refuse_one_axis(task.turns, "poses")
+    sides, right = np.concatenate(np.eye(3) - task.turns), np.concatenate(task.shifts)
+    centre = np.linalg.lstsq(sides, right, rcond=None)[0]
+    if np.abs(sides @ centre - right).max() < NOTHING:
+        x, y, z = centre * task.reach + task.origin
+        raise RequestError(
+            f"poses: all are turns about one point, ({x:.6g}, {y:.6g}, {z:.6g}), which spherical linkages "
+            "take: give their rotations to spherical_orientations"
+        )

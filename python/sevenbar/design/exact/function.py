@@ -1,7 +1,7 @@
 """RSSR linkages through given pairs of angles, with any angle between the axes: three to eight pairs.
 
-The nine coefficients of a closure (`closures`) are a null vector of the pairs' products, and every null vector
-is one closure. So, counting closures over the complex numbers,
+The nine coefficients of a closure (`closures`) are a null vector of the pairs' products, and every null
+vector is one closure. So, counting closures over the complex numbers,
 
     zeros   axes    pairs
     free    any     8       1    one null vector
@@ -9,10 +9,11 @@ is one closure. So, counting closures over the complex numbers,
     given   any     6       1    seven coefficients, as the block of products is diagonal
     given   given   5       1    six coefficients
 
-and fewer pairs leave a family, whose members are drawn. A closure has the cosine c or 1 / c of the angle of the
-axes, so one linkage at most, up to its mirror image; none where L^2 <= 0.
+and fewer pairs leave a family, whose members are drawn. A closure has the cosine c or 1 / c of the angle of
+the axes, so one linkage, up to its mirror image. A real closure of free zeros is always one; of given zeros
+it is none where |c| > 1, or the crank would lie on the other side of its zero.
 
-Source: docs/theory_design.md, (41) to (43).
+Source: docs/theory_design.md, (38) to (40).
 """
 
 from __future__ import annotations
@@ -39,6 +40,9 @@ FREE, ZEROS_GIVEN, ALL_GIVEN = 9, 7, 6
 #: Singular value of the pairs' products, relative to the greatest, below which pairs depend on each other.
 RANK = 1e-12
 
+#: Coefficients of a quadratic along null vectors of length 1 that count as zero: pairs in special position.
+NO_QUADRATIC = 1e-10
+
 #: |cos| from which axes count as parallel: two planes of motion, whose linkages are planar four-bars.
 PARALLEL = 1 - 1e-9
 
@@ -63,10 +67,10 @@ def function_pairs(
 ) -> ExactAnswers:
     """RSSR linkages whose dials read three to eight pairs (n,) [rad], with any angle between the axes.
 
-    `twist` [rad], between 0 and pi, is the angle of the axes where it is given: then 7 pairs at most, and with
-    pi / 2 the linkages have the form `[rssr]`; all others are drawn, in the pose of the first pair. `zeros`
-    [rad] are the angles at which the dials read zero: counted from the common normal of the axes, or as
-    `[rssr]` counts them; two pairs less, then. Fewer pairs than a linkage has numbers leave a family: of
+    `twist` [rad], between 0 and pi, is the angle of the axes where it is given: then 7 pairs at most, and
+    with pi / 2 the linkages have the form `[rssr]`; all others are drawn, in the pose of the first pair.
+    `zeros` [rad] are the angles at which the dials read zero: counted from the common normal of the axes, or
+    as `[rssr]` counts them; two pairs less, then. Fewer pairs than a linkage has numbers leave a family: of
     `samples` draws by `seed` those that are linkages. The `longest` length is the scale.
 
         >>> import sevenbar as sb
@@ -89,8 +93,8 @@ def function_pairs(
     if a.size > most:
         given = " and ".join(w for w, v in (("twist", twist), ("zeros", zeros)) if v is not None)
         raise RequestError(
-            f"points: {a.size} pairs are more than an RSSR{f' with {given} given' if given else ''} has numbers; "
-            f"give {most} at most"
+            f"points: {a.size} pairs are more than an RSSR{f' with {given} given' if given else ''} has "
+            f"numbers; give {most} at most"
         )
     if np.ptp(b) < STILL:
         raise RequestError("outputs: all are the same; give pairs whose output moves")
@@ -109,8 +113,8 @@ def _cosine(twist: float) -> float:
     cosine = math.cos(angle)
     if abs(angle) >= math.pi or abs(cosine) >= PARALLEL:
         raise RequestError(
-            f"twist: {math.degrees(angle):g} deg makes the axes parallel, or is no angle between them; give one "
-            "between 0 and 180 deg"
+            f"twist: {math.degrees(angle):g} deg makes the axes parallel, or is no angle between them; give "
+            "one between 0 and 180 deg"
         )
     return 0.0 if abs(cosine) < SQUARE else cosine
 
@@ -131,15 +135,15 @@ def _closures(
 ) -> tuple[list[Floats], int | None, int | None, str]:
     """Closures (3, 3) of the pairs; how many by theory and how many were found, `None` for a family; how."""
     base = _null_space(a, b, cosine, zeros)
-    size = len(base)
-    pencil = cosine is not None and zeros is None
-    if size == 1 + pencil:
-        if not pencil:
-            return [base[0]], 1, 1, "one null vector of the pairs' products"
+    size, pencil = len(base), cosine is not None and zeros is None
+    if size == 1 and not pencil:
+        return [base[0]], 1, 1, "one null vector of the pairs' products"
+    if size == 2 and pencil:
         quadratic = _of_pencil(base[0], base[1], cosine or 0.0)
-        found = [x * base[0] + y * base[1] for x, y in _real_roots(quadratic)]
-        known = 2 if np.abs(quadratic).max() > RANK else 0
-        return found, 2, known, "the angle of the axes is a quadratic along the pencil of null vectors"
+        if np.abs(quadratic).max() > NO_QUADRATIC:
+            found = [x * base[0] + y * base[1] for x, y in _real_roots(quadratic)]
+            return found, 2, 2, "the angle of the axes is a quadratic along the pencil of null vectors"
+        pencil = False  # all of it has the angle wanted
     how = f"members of a family of {size} coefficients, drawn with seed {seed}"
     draws = directions(samples, size * (1 + pencil), seed)
     if not pencil:
@@ -152,9 +156,7 @@ def _closures(
     return found, None, None, how
 
 
-def _null_space(
-    a: Floats, b: Floats, cosine: float | None, zeros: tuple[float, float] | None
-) -> Floats:
+def _null_space(a: Floats, b: Floats, cosine: float | None, zeros: tuple[float, float] | None) -> Floats:
     """A basis (k, 3, 3) of the closures of the pairs, orthonormal."""
     if zeros is None:
         rows, back = products(a, b), np.eye(FREE)
@@ -192,9 +194,7 @@ def _real_roots(quadratic: Floats) -> list[tuple[float, float]]:
     return [(math.cos(angle / 2), math.sin(angle / 2)) for angle in {middle - half, middle + half}]
 
 
-def _linkage(
-    space: Floats, cosine: float | None, zeros: tuple[float, float] | None
-) -> SkewRssr | None:
+def _linkage(space: Floats, cosine: float | None, zeros: tuple[float, float] | None) -> SkewRssr | None:
     """The RSSR of a closure; its zeros are those given."""
     if zeros is None:
         return rssr_of(space)
@@ -229,9 +229,7 @@ def _answer(
     return judged(draft, Claim(inputs, outputs, errors, length_unit, figures))
 
 
-def _drawn(
-    rssr: SkewRssr, pose: tuple[float, float], scale: float, name: str, length_unit: str
-) -> Draft:
+def _drawn(rssr: SkewRssr, pose: tuple[float, float], scale: float, name: str, length_unit: str) -> Draft:
     up, places = np.array([0.0, 0.0, 1.0]), [np.array([0.0, 0.0, rssr.h]), rssr.ball_a(pose[0])]
     places += [rssr.ball_b(pose[1]), rssr.foot_b()]
     at = [[float(x) + 0.0 for x in scale * place] for place in places]

@@ -1,4 +1,4 @@
-"""Poses and orientations as callers give them: rigid, different, and as displacements from the first of them."""
+"""Poses and orientations as callers give them: rigid, different, and as displacements from the first."""
 
 from __future__ import annotations
 
@@ -71,7 +71,9 @@ def poses_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
         )
     last = np.abs(given[:, 3] - [0.0, 0.0, 0.0, 1.0]).max(axis=1)
     if (last > RIGID).any():
-        raise RequestError(f"poses[{int(last.argmax())}]: the last row is not 0, 0, 0, 1; give a rigid motion")
+        raise RequestError(
+            f"poses[{int(last.argmax())}]: the last row is not 0, 0, 0, 1; give a rigid motion"
+        )
     turns = _rotations("poses", given[:, :3, :3])
     return displacements(pose(turns, given[:, :3, 3]), least, most, what="poses")
 

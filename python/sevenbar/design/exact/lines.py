@@ -1,15 +1,16 @@
 """Dyads of two skew lines, once their directions are known: their places follow from linear equations.
 
-Let a be the fixed direction, l_j that of the body's line at pose j, c = a . l_j, p and q_j = R_j q + d_j places
-on the two lines. Their distance and the places of its feet, along the fixed and along the moving line, are
+Let a be the fixed direction, l_j that of the body's line at pose j, c = a . l_j, p and q_j = R_j q + d_j
+places on the two lines. Their distance and the places of its feet, along the fixed and along the moving
+line, are
 
     (q_j - p) . (a x l_j),    (q_j - p) . (a - c l_j),    (q_j - p) . (l_j - c a)                         (1)
 
-up to factors that do not change with j, as c does not. A C joint lets its foot slide, an R joint holds it. So
-each further pose is one equation for a dyad CC, two for RC (R at the ground), three for RR, linear in p and q,
-which have two coordinates each, across their lines.
+up to factors that do not change with j, as c does not. A C joint lets its foot slide, an R joint holds it.
+So each further pose is one equation for a dyad CC, two for RC (R at the ground), three for RR, linear in p
+and q, which have two coordinates each, across their lines.
 
-Source: docs/theory_design.md, (35) and (36).
+Source: docs/theory_design.md, (33) and (34).
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ def link_motions(a: Floats, b: Floats, moved: Floats) -> Floats:
 def places(
     a: Floats, b: Floats, kind: str, task: Displacements, free: Floats | None = None
 ) -> tuple[Floats, Floats] | None:
-    """p and q (3,) [relative to the task's reach] of a dyad of directions a and b; `None` without one.
+    """The places p and q (3,) [relative to the reach] of a dyad of directions a and b; `None` without one.
 
     `free` (k,) chooses among the dyads of an open system, as steps along its null vectors. Without it
     infinitely many dyads are `None`, too.

@@ -20,7 +20,6 @@ from sevenbar.design.exact.given import Displacements
 from sevenbar.design.synthesis.candidates import Claim
 from sevenbar.kinematics.rigid import axial, inverse
 
-
 #: Two lines are one where directions [-] and places, relative to their distance from the others, agree so.
 SAME_LINE = 1e-9
 
@@ -104,9 +103,7 @@ def loop(driver: Dyad, follower: Dyad, task: Displacements, name: str, length_un
         "name": name,
         "length_unit": length_unit,
         "angle_unit": "deg",
-        "joint": [
-            joint.written(own, task.origin) for joint, own in zip(joints, JOINT_NAMES, strict=True)
-        ],
+        "joint": [joint.written(own, task.origin) for joint, own in zip(joints, JOINT_NAMES, strict=True)],
         "point": [{"name": "body", "link": 2, "at": _plain(task.origin)}],
     }
     figures = {"closure_error": float(off.max()) / size}

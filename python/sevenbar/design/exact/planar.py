@@ -5,11 +5,11 @@ displacement x -> R x + d from the first pose and homogeneous (g, 1), (m, 1),
 
     (g, 1)^T T (m, 1) = 0,    T = [ 1 - R, -d ; d^T R, d.d / 2 ]                                          (1)
 
-for each further pose. Of the 6 points of four such forms two are always m = (1, +-i, 0), g alike: the circular
-points. So five poses have 4 dyads. With m at infinity the crank is a slider on the body, with g at infinity
-one on the ground.
+for each further pose. Of the 6 points of four such forms two are always m = (1, +-i, 0), g alike: the
+circular points. So five poses have 4 dyads. With m at infinity the crank is a slider on the body, with g at
+infinity one on the ground.
 
-Source: docs/theory_design.md, (33).
+Source: docs/theory_design.md, (31).
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def planar_poses(
         >>> found.complete, found.real, len(found.answers)
         (True, 2, 2)
 
-    Source: L. Burmester, "Lehrbuch der Kinematik" (1888); docs/theory_design.md, (33).
+    Source: L. Burmester, "Lehrbuch der Kinematik" (1888); docs/theory_design.md, (31).
     """
     task = planar_given(poses, 3, 5)
     _refuse_special(task)
@@ -72,7 +72,7 @@ def planar_poses(
         found = solutions(forms)
         if found is None:
             raise RequestError(
-                "poses: infinitely many dyads take these five poses; give four of them, or change one"
+                "poses: infinitely many dyads or sliders take these five; give four of them, or change one"
             )
         circular = np.array([_is_circular(b) for b in found.b])
         kept = np.flatnonzero(found.real & ~circular)
@@ -163,14 +163,13 @@ def _refuse_special(task: Displacements) -> None:
     angles = np.abs(np.arctan2(axial(task.turns)[:, 2], turns[:, 0, 0]))
     if (angles < NOTHING).all():
         raise RequestError(
-            "poses: all have the same angle; the body only shifts, which a parallelogram or a slide does: "
-            "turn one of the poses"
+            "poses: all have the same angle, and a parallelogram or a slide takes them; turn one of them"
         )
     sides, right = np.concatenate(np.eye(2) - turns), np.concatenate(shifts)
     pole = np.linalg.lstsq(sides, right, rcond=None)[0]
     if np.abs(sides @ pole - right).max() < NOTHING:
         x, y = pole * task.reach + task.origin[:2]
         raise RequestError(
-            f"poses: all are turns about one point, ({x:.6g}, {y:.6g}); a hinge there takes them: "
+            f"poses: all are turns about one point, ({x:.6g}, {y:.6g}), and a hinge there takes them; "
             "shift one of the poses"
         )

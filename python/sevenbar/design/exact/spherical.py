@@ -1,13 +1,13 @@
 """Spherical four-bars whose coupler takes three, four or five given orientations.
 
-A dyad is a fixed axis a and an axis of the body, b in the first orientation, whose angle does not change. With
-the rotation R from the first orientation
+A dyad is a fixed axis a and an axis of the body, b in the first orientation, whose angle does not change.
+With the rotation R from the first orientation
 
     a^T (R - 1) b = 0                                                                                     (1)
 
 for each further one: four bilinear forms have 6 common points, and all of them are dyads.
 
-Source: docs/theory_design.md, (34).
+Source: docs/theory_design.md, (32).
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def spherical_orientations(
         >>> found.complete, found.real
         (True, 2)
 
-    Source: C. H. Chiang, "Kinematics of spherical mechanisms" (1988); docs/theory_design.md, (34).
+    Source: C. H. Chiang, "Kinematics of spherical mechanisms" (1988); docs/theory_design.md, (32).
     """
     task = orientations_given(orientations, 3, 5)
     refuse_one_axis(task.turns, "orientations")
@@ -88,7 +88,7 @@ def spherical_orientations(
 
 
 def refuse_one_axis(turns: Floats, what: str) -> None:
-    """`RequestError` for rotations (n, 3, 3) about one axis: a hinge takes them, and infinitely many dyads do."""
+    """`RequestError` for rotations (n, 3, 3) about one axis: a hinge and infinitely many dyads take them."""
     # a direction that no rotation moves
     _, sizes, base = np.linalg.svd(np.concatenate(turns - np.eye(3)))
     if sizes[0] < NOTHING:
@@ -121,6 +121,7 @@ def _given_axes(moving: npt.ArrayLike) -> Floats:
     sound = axes.ndim == 2 and axes.shape[1:] == (3,) and len(axes) > 1 and np.isfinite(axes).all()
     if not (sound and np.linalg.norm(axes, axis=1).all()):
         raise RequestError(
-            f"moving: {shown(moving)} are no axes; give two or more directions x, y, z in the first orientation"
+            f"moving: {shown(moving)} are no axes; give two or more directions x, y, z, as they are in the "
+            "first orientation"
         )
     return axes
