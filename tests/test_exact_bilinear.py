@@ -94,7 +94,7 @@ def test_newton_in_40_digits_keeps_six_different_solutions(seed):
             others = [k for k in range(3) if k != i], [k for k in range(3) if k != j]
             start = [complex(a[k] / a[i]) for k in others[0]] + [complex(b[k] / b[j]) for k in others[1]]
 
-            def equations(*u, i=i, j=j, others=others):
+            def equations(*u, others=others):
                 p, q = [mpmath.mpf(1)] * 3, [mpmath.mpf(1)] * 3
                 p[others[0][0]], p[others[0][1]], q[others[1][0]], q[others[1][1]] = u
                 pairs = list(itertools.product(range(3), range(3)))

@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 
+import numpy as np
+
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed, lines, text_of
 
-#: Inputs of a full turn at which poses are sought: a long crank moves by a hundredth of a turn, and less.
-CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES, 256 * CHECK_SAMPLES)
+#: Inputs of a full turn at which poses are sought. A long crank moves by a hundredth of a turn, and less.
+CHECKED_AT, LITTLE_CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES), 256 * CHECK_SAMPLES
+
+#: Range of the claimed inputs [rad] that is little.
+LITTLE = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +93,8 @@ class ExactAnswers(Printed):
 
 def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnswer:
     """An answer with what its circuits say; `poses` (n, columns) as `checked` takes them."""
-    for samples in CHECKED_AT:
+    little = float(np.ptp(claim.inputs)) < LITTLE
+    for samples in (*CHECKED_AT, *([LITTLE_CHECKED_AT] if little else [])):
         verdict = checked(draft, claim, poses=poses, samples=samples)
         if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
             break

@@ -56,7 +56,7 @@ def spherical_orientations(
         >>> found.complete, found.real
         (True, 2)
 
-    Source: C. H. Chiang, "Kinematics of spherical mechanisms" (1988); docs/theory_design.md, (32).
+    Source: J. M. McCarthy and G. S. Soh, "Geometric design of linkages" (2011); docs/theory_design.md, (32).
     """
     task = orientations_given(orientations, 3, 5)
     refuse_one_axis(task.turns, "orientations")
