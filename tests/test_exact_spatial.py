@@ -61,10 +61,14 @@ def test_a_known_dyad_cc_is_found_again():
         found = cc_dyads(np.array(moved))
         assert found.complete
         assert found.real >= 2
-        off = []
-        for answer in found.answers:
-            at, axes = lines_of(answer)
-            off.append(max(same_line(p, unit(a), at[0], axes[0]), same_line(q, unit(b), at[1], axes[1])))
+        assert len(found.dyads) == found.real
+        off = [
+            max(
+                same_line(p, unit(a), dyad.ground.at, dyad.ground.axis),
+                same_line(q, unit(b), dyad.body.at, dyad.body.axis),
+            )
+            for dyad in found.dyads
+        ]
         assert min(off) < 1e-7
 
 

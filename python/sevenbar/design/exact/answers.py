@@ -9,6 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.design.exact.dyads import Dyad
 from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed, lines, text_of
@@ -67,8 +68,8 @@ class ExactAnswers(Printed):
     answers: tuple[ExactAnswer, ...]
     #: How the number was found, and what was left out.
     how: str
-    #: How many real ones have a part at infinity: a slider in place of a crank.
-    sliders: int = 0
+    #: The real dyads themselves, in ground coordinates.
+    dyads: tuple[Dyad, ...] = ()
 
     @property
     def assemblable(self) -> tuple[ExactAnswer, ...]:
@@ -84,6 +85,11 @@ class ExactAnswers(Printed):
     def complete(self) -> bool:
         """Whether as many were found as theory counts."""
         return self.found is not None and self.found == self.theory
+
+    @property
+    def sliders(self) -> int:
+        """How many real dyads have a slider in place of a crank: a point at infinity."""
+        return sum("P" in dyad.kind for dyad in self.dyads)
 
     @property
     def faults(self) -> dict[str, int]:

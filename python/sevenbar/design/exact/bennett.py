@@ -31,9 +31,10 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import Complexes
+from sevenbar.design.exact.dyads import Dyad
 from sevenbar.design.exact.given import Displacements, poses_given
 from sevenbar.design.exact.lines import line_dyad
-from sevenbar.design.exact.loops import Dyad, all_loops
+from sevenbar.design.exact.loops import all_loops, drawn
 from sevenbar.design.exact.spherical import refuse_one_axis
 from sevenbar.errors import RequestError, ends_here
 from sevenbar.kinematics.rigid import quaternion
@@ -72,7 +73,9 @@ def bennett_poses(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnsw
         dyads.append(_dyad((-c1 - moving).real, moving.real, task))
     answers = all_loops(dyads, task, "Bennett linkage", length_unit)
     how = "quadratic factors of a norm of degree four without real zeros, two of them real"
-    return ExactAnswers("3 poses in space", "dyads", DYADS, count, len(dyads), answers, how)
+    return ExactAnswers(
+        "3 poses in space", "dyads", DYADS, count, len(dyads), answers, how, drawn(dyads, task)
+    )
 
 
 def times(a: Complexes, b: Complexes) -> Complexes:

@@ -23,9 +23,10 @@ import numpy.typing as npt
 from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import directions
+from sevenbar.design.exact.dyads import Dyad
 from sevenbar.design.exact.given import Displacements, poses_given
 from sevenbar.design.exact.lines import line_dyad, places
-from sevenbar.design.exact.loops import Dyad, all_loops, loop
+from sevenbar.design.exact.loops import all_loops, drawn, loop
 from sevenbar.design.exact.spherical import NOTHING, refuse_one_axis
 from sevenbar.errors import RequestError, ends_here
 from sevenbar.kinematics.rigid import unit
@@ -70,7 +71,9 @@ def cc_dyads(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnswers:
     answers = all_loops(dyads, task, "Linkage CCCC", length_unit)
     how = f"{POINTS} pairs of directions as of spherical dyads, the places of each from 4 linear equations"
     known = int(found.multiplicity.sum())
-    return ExactAnswers("5 poses in space", "dyads", DYADS, known, len(dyads), answers, how)
+    return ExactAnswers(
+        "5 poses in space", "dyads", DYADS, known, len(dyads), answers, how, drawn(dyads, task)
+    )
 
 
 @ends_here

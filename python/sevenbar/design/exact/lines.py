@@ -18,8 +18,8 @@ from __future__ import annotations
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.exact.dyads import Dyad, Line, turns_about
 from sevenbar.design.exact.given import Displacements
-from sevenbar.design.exact.loops import Dyad, Line, turns_about
 from sevenbar.kinematics.rigid import cross, pose
 
 #: Singular value, relative to the greatest, below which equations for the places depend on each other.

@@ -23,8 +23,9 @@ from sevenbar.arrays import Floats
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, Complexes, solutions
 from sevenbar.design.exact.draws import anywhere, directions, on_curve
+from sevenbar.design.exact.dyads import Dyad, Line, turns_about
 from sevenbar.design.exact.given import Displacements, planar_given
-from sevenbar.design.exact.loops import Dyad, Line, all_loops, loops_of_pairs, turns_about
+from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.rigid import axial, pose
 
@@ -82,9 +83,8 @@ def planar_poses(
             f"{int(found.multiplicity[circular].sum())} of them"
         )
         answers = all_loops(dyads, task, "Planar four-bar", length_unit)
-        sliders = sum("P" in dyad.kind for dyad in dyads)
         known = int(found.multiplicity[~circular].sum())
-        return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, sliders)
+        return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, drawn(dyads, task))
     if count == 4:
         pairs = on_curve(forms, samples, seed)
         how = f"moving pivots on their curve, a cubic, drawn with seed {seed}"
@@ -93,8 +93,7 @@ def planar_poses(
         how = "each moving pivot has one fixed pivot" + (f"; seed {seed}" if moving is None else "")
     dyads = _dyads(pairs, task)
     answers = loops_of_pairs(dyads, task, "Planar four-bar", length_unit)
-    sliders = sum("P" in dyad.kind for dyad in dyads)
-    return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how, sliders)
+    return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how, drawn(dyads, task))
 
 
 def _form(turn: Floats, shift: Floats) -> Floats:

@@ -19,9 +19,10 @@ from sevenbar.arrays import Floats
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import anywhere, directions, on_curve
+from sevenbar.design.exact.dyads import Dyad, Line
 from sevenbar.design.exact.given import Displacements, orientations_given
 from sevenbar.design.exact.lines import link_motions
-from sevenbar.design.exact.loops import Dyad, Line, all_loops, loops_of_pairs
+from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.rigid import pose, unit
 
@@ -75,7 +76,7 @@ def spherical_orientations(
         answers = all_loops(dyads, task, "Spherical four-bar", length_unit)
         how = f"{POINTS} common points of four cubics by eigenvalues"
         known = int(found.multiplicity.sum())
-        return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how)
+        return ExactAnswers(title, "dyads", DYADS, known, len(kept), answers, how, drawn(dyads, task))
     if count == 4:
         pairs = on_curve(forms, samples, seed)
         how = f"moving axes on their cone, a cubic, drawn with seed {seed}"
@@ -84,7 +85,7 @@ def spherical_orientations(
         how = "each moving axis has one fixed axis" + (f"; seed {seed}" if moving is None else "")
     dyads = _dyads(pairs, task, radius)
     answers = loops_of_pairs(dyads, task, "Spherical four-bar", length_unit)
-    return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how)
+    return ExactAnswers(title, "dyads", None, None, len(dyads), answers, how, drawn(dyads, task))
 
 
 def refuse_one_axis(turns: Floats, what: str) -> None:
