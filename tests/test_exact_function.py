@@ -148,7 +148,7 @@ def test_fewer_pairs_have_a_family_whose_members_all_take_them(count, given):
 
 
 def test_square_axes_with_zeros_given_have_those_zeros():
-    linkage = sb.rssr(M=700, N=600, L1=250, L3=550, D=120)
+    linkage = sb.rssr(M=700, N=700, L1=250, L3=550, D=50)
     circuit = linkage.motion(90).circuits[0]
     (answer,) = function_pairs(circuit.input[:25:5], circuit.output[:25:5], twist=RIGHT, zeros=(0, 0)).answers
     ours, theirs = answer.linkage.dimensions, linkage.dimensions

@@ -84,7 +84,7 @@ def test_defects_are_told_apart():
 def test_coordinates_far_away_and_tiny_ones_change_nothing():
     poses = np.array([(0, 0, 0), (5, 3, 0.3), (9, 8, 0.5), (15, 9, 0.9), (22, 8, 1.4)])
     near = planar_poses(poses)
-    far = planar_poses([*poses, 100000.0, -100000.0, 0.0])
+    far = planar_poses(poses + np.array([1e5, -1e5, 0.0]))
     tiny = planar_poses(poses * [1e-6, 1e-6, 1.0])
     for one, moved, small in zip(near.answers, far.answers, tiny.answers, strict=True):
         assert lines_of(moved)[0] - [1e5, -1e5, 0] == pytest.approx(lines_of(one)[0], rel=1e-6, abs=1e-6)
