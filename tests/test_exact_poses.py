@@ -1,6 +1,10 @@
 """Four-bars through poses of a plane and orientations: their number, known linkages again, special tasks."""
 
+import contextlib
+import io
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -203,3 +207,12 @@ def test_right_angles_of_a_cube_have_answers():
     found = spherical_orientations(turns)
     assert (found.complete, found.real) == (True, 2)
     assert max(a.error for a in found.answers) < 1e-13
+
+
+def test_the_example_of_the_page_prints_what_its_comments_say():
+    page = (Path(__file__).parent.parent / "docs" / "synthesis.md").read_text(encoding="utf-8")
+    _, code = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, {})
+    assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)

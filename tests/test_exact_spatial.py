@@ -12,6 +12,7 @@ from sevenbar.design.exact.bennett import factor, norm_of, times
 from sevenbar.design.exact.given import poses_given
 from sevenbar.design.exact.lines import places
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.poses import frames_of
 from sevenbar.kinematics.rigid import about, inverse, pose, unit
 
 
@@ -42,8 +43,12 @@ def test_a_hundred_tasks_of_five_poses_have_six_dyads_cc():
 
 
 def test_linkages_cccc_have_two_freedoms_and_no_verdict():
-    found = cc_dyads(random_poses(5, 0))
+    poses = random_poses(5, 0)
+    found = cc_dyads(poses)
     answer = found.answers[0]
+    # at the values of all joints, link 2 has the wanted poses
+    there = frames_of(answer.linkage, answer.poses)[:, 1]
+    assert there @ inverse(there[0]) == pytest.approx(poses @ inverse(poses[0]), abs=1e-9)
     assert answer.verdict is None
     assert answer.fault is None
     assert answer.linkage.motion().motion_type == "two-inputs"

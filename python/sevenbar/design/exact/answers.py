@@ -33,6 +33,8 @@ class ExactAnswer:
     draft: Draft
     claim: Claim
     verdict: Candidate | Refusal | None
+    #: All joints' values at the wanted poses (n, columns); `None` where only input and output are wanted.
+    poses: Floats | None = None
 
     @property
     def linkage(self) -> Linkage:
@@ -104,7 +106,7 @@ def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnsw
         verdict = checked(draft, claim, poses=poses, samples=samples)
         if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
             break
-    return ExactAnswer(draft, claim, verdict)
+    return ExactAnswer(draft, claim, verdict, poses)
 
 
 @text_of.register(ExactAnswers)

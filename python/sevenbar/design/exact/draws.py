@@ -6,6 +6,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.bilinear import on_cubic, partner
+from sevenbar.design.synthesis.function.generation import need_scipy
 from sevenbar.errors import RequestError
 
 #: A pair of points (a, b), both (3,), that bilinear forms make zero.
@@ -14,6 +15,7 @@ Pair = tuple[Floats, Floats]
 
 def directions(samples: int, size: int, seed: int) -> Floats:
     """Directions (samples, size) all round, from a Sobol sequence: those of normal deviates."""
+    need_scipy()
     from scipy.special import ndtri
     from scipy.stats import qmc
 

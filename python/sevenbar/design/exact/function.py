@@ -30,7 +30,7 @@ from sevenbar.design.exact.closures import SkewRssr, designed, products, rssr_of
 from sevenbar.design.exact.draws import directions
 from sevenbar.design.synthesis.candidates import Claim
 from sevenbar.design.synthesis.closure import draft_of
-from sevenbar.design.synthesis.function.precision import reflected
+from sevenbar.design.synthesis.function.precision import null_angles, reflected
 from sevenbar.design.synthesis.function.wish import wish_of_pairs
 from sevenbar.errors import RequestError, ends_here
 
@@ -186,12 +186,8 @@ def _of_pencil(first: Floats, second: Floats, c: float) -> Floats:
 def _real_roots(quadratic: Floats) -> list[tuple[float, float]]:
     """The real (x, y) of length 1 with q0 x^2 + q1 x y + q2 y^2 = 0: none, one or two."""
     first, mixed, last = quadratic
-    mean, cosine, sine = (first + last) / 2, (first - last) / 2, mixed / 2
-    amplitude = math.hypot(cosine, sine)
-    if amplitude == 0.0 or abs(mean) > amplitude:
-        return []
-    middle, half = math.atan2(sine, cosine), math.acos(-mean / amplitude)
-    return [(math.cos(angle / 2), math.sin(angle / 2)) for angle in {middle - half, middle + half}]
+    angles = null_angles(np.array([[first, mixed / 2], [mixed / 2, last]]))
+    return [(math.cos(angle), math.sin(angle)) for angle in np.unique(angles)]
 
 
 def _linkage(space: Floats, cosine: float | None, zeros: tuple[float, float] | None) -> SkewRssr | None:

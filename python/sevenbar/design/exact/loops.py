@@ -54,7 +54,7 @@ def loop(driver: Dyad, follower: Dyad, task: Displacements, name: str, length_un
     claim = Claim(columns[0][:, 0], columns[3][:, 0], off, length_unit, figures)
     whole, draft = np.column_stack(columns), Draft("", raw, name)
     # with eight freedoms one input leaves another: there are no circuits
-    return ExactAnswer(draft, claim, None) if whole.shape[1] == 8 else judged(draft, claim, whole)
+    return ExactAnswer(draft, claim, None, whole) if whole.shape[1] == 8 else judged(draft, claim, whole)
 
 
 def all_loops(
