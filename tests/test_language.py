@@ -30,10 +30,6 @@ LEFT = {"K", "max", "min", "mm", "rpm", "rad", "deg", "s", "l", "p", "q", "e", "
 #: Units of forces, and the command that reports them.
 LEFT |= {"N", "m", "sevenbar", "forces"}
 
-needs_font = pytest.mark.skipif(
-    fonts._installed() is None, reason="no font with Chinese characters is installed"
-)
-
 
 def sentences():
     """Each sentence that a `say` of the package has, with its file."""
@@ -148,6 +144,7 @@ def test_no_english_is_left_in_reports_of_what_does_not_simply_move(name):
     assert [word for word in english(motion, text) if word not in ("agree",)] == []
 
 
+@pytest.mark.usefixtures("chinese_font")
 def test_programs_read_english_whatever_is_spoken(tmp_path):
     motion = sb.load("rssr").motion(24)
     before = sb.report.as_json(motion), repr(motion)
@@ -189,7 +186,7 @@ def texts_of(figure):
     return " ".join(text.get_text() for text in figure.findobj(match=lambda one: hasattr(one, "get_text")))
 
 
-@needs_font
+@pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize("kind", ["curves", "configuration", "transmission", "joints", "axodes"])
 def test_a_figure_has_no_english_and_every_character(kind):
     motion = sb.load("planar_4r").motion(24)
@@ -201,7 +198,7 @@ def test_a_figure_has_no_english_and_every_character(kind):
     assert re.search("[\u4e00-\u9fff]", texts)
 
 
-@needs_font
+@pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize("kind", ["torque", "reactions", "bearings", "shaking", "energies"])
 def test_a_figure_of_forces_has_no_english(kind):
     motion = sb.load("rssr_press").motion(24)

@@ -41,6 +41,7 @@ from sevenbar.reporting.force_words import (
     spin_facts,
 )
 from sevenbar.reporting.page import Facts, drive_text, number_table
+from sevenbar.reporting.shown import rows_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -128,9 +129,7 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     facts += open_facts(forces)
     facts.append(("found", found_text(found.sizing, law=found.motion.law is not None)))
     facts.append(("checks", check_text(forces)))
-    words, counts = np.unique(forces.status, return_counts=True)
-    rows = ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
-    facts.append(("rows", f"{len(forces.status)}: {rows}"))
+    facts.append(("rows", f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
 
 

@@ -13,6 +13,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from sevenbar.arrays import counted
 from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
@@ -120,10 +121,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
             | dict(zip(("worst_case", "deviation"), linear.measure(one.name), strict=True))
             for one in found.measures
         ],
-        "rows": {
-            str(word): int(count)
-            for word, count in zip(*np.unique(linear.status, return_counts=True), strict=True)
-        },
+        "rows": counted(linear.status),
         "notes": list(linear.left_out()),
     }
     if exact is not None:
