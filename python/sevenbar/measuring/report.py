@@ -128,7 +128,7 @@ def calibration_text(calibration: Calibration) -> RenderableType:
     if held := calibration.held.text:
         facts.add("held", held)
     for parameter in calibration.parameters:
-        if parameter.status == "untold":
+        if parameter.status == "unidentified":
             facts.add("not identifiable", unidentified_sentence(parameter, calibration))
     opening = [p.name for p in calibration.parameters if p.status == "opens the loop"]
     if opening:
@@ -401,7 +401,7 @@ def _parameter_table(calibration: Calibration) -> Table:
             change = f"{value - nominal:+.{digits}f}"
             cells = [f"{value:.{digits}f}", plus_minus, change, say("follows") if follows else ""]
         else:
-            note = {"fixed": "held", "untold": "not identifiable"}.get(p.status, p.status)
+            note = {"fixed": "held", "unidentified": "not identifiable"}.get(p.status, p.status)
             cells = [f"{value:.6g}", "-", "-", say(note)]
         rows.append((label, f"{nominal:.6g}", *cells))
     return number_table(heads, rows, words=[5])

@@ -92,7 +92,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         "linkage": found.linkage.name,
         "drive": {"input": found.input_name, "output": found.output_name, "speed": found.speed},
         "circuit": found.circuit.index,
-        "told": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
+        "reported": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
         "distribution": linear.distribution,
         **linear.held.as_dict,
         "dimensions": [
