@@ -36,7 +36,7 @@ class BallAngle:
     """The angle between the seat and the stud of a ball or universal joint, from the values of its columns.
 
     `seat` (3,) in the frame before the joint, `stud` (3,) in that after it; `own` are the joint's columns
-    among all. `turns` are its turns in loop order: the fixed rotation (3, 3) before each, and the axis 0, 1, 2.
+    among all. `turns` are its turns in loop order: the fixed rotation (3, 3) before each, and its axis.
     """
 
     joint: str
@@ -111,9 +111,9 @@ def ball_angle(
     """The angle of a joint S or U between a `seat` on the link before it and a `stud` on the link after.
 
     Directions (3,) are written as points of the link are, of any length but 0; left out, that of the rod to
-    the link's other joint. Poses are rows of an analysis; with `numbers` those of its word, where a ball before
-    an idle link has two turns (`Numbers.poses`). Raises `RequestError` for a joint of another kind, and for
-    a rod without length.
+    the link's other joint. Poses are rows of an analysis; with `numbers` those of its word, in which
+    a ball before an idle link has two turns (`Numbers.poses`). Raises `RequestError` for a joint of another
+    kind, and for a rod without length.
 
         >>> import numpy as np
         >>> import sevenbar as sb

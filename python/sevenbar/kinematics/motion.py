@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
@@ -21,6 +21,7 @@ from sevenbar.kinematics.circuits import (
     Words,
 )
 from sevenbar.kinematics.columns import joint_column, point_column
+from sevenbar.kinematics.extents import JointRange
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.text.printing import Drawable, Printed
@@ -320,6 +321,16 @@ class Motion(Drawable):
     def mobility(self) -> Mobility:
         """How freely the linkage moves."""
         return self.linkage.mobility(agree=self.agree)
+
+    @property
+    def joint_ranges(self) -> tuple[Mapping[str, JointRange], ...]:
+        """The joint ranges of each circuit; see `Circuit.joint_ranges`.
+
+        >>> import sevenbar as sb
+        >>> [ranges["crank"].endless for ranges in sb.load("rssr").motion().joint_ranges]
+        [True, True]
+        """
+        return tuple(circuit.joint_ranges for circuit in self.circuits)
 
     @cached_property
     def near_motion(self) -> NearMotion | None:
