@@ -7,7 +7,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.ball_angle import ball_angle, bends
+from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.sensitivity import Numbers, ball_rotations
 
 LOOPS = ["rssr", "rscr", "rsur", "five_bar", "swash_plate", "rssp"]
@@ -26,7 +26,7 @@ def test_the_angle_is_that_between_lines_of_traced_points_and_its_slopes_are_tho
     linkage = sb.load(name)
     circuit = linkage.motion(24).circuits[0]
     for place, joint in enumerate(linkage.joints):
-        if not bends(joint):
+        if not joint.row.bends:
             continue
         seat, stud = rng.normal(size=(2, 3))
         bend = ball_angle(linkage, joint.name, seat, stud)
@@ -44,7 +44,9 @@ def test_the_angle_is_that_between_lines_of_traced_points_and_its_slopes_are_tho
 def test_poses_of_the_word_have_the_same_angle_where_the_rod_is_the_stud(name):
     linkage = sb.load(name)
     q, numbers = linkage.motion(24).circuits[0].q, Numbers(linkage)
-    for joint in filter(bends, linkage.joints):
+    for joint in linkage.joints:
+        if not joint.row.bends:
+            continue
         of_rows = ball_angle(linkage, joint.name).at(q)
         of_word = ball_angle(linkage, joint.name, numbers=numbers).at(numbers.poses(q))
         np.testing.assert_allclose(of_word, of_rows, rtol=0, atol=1e-13)

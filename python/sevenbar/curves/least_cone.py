@@ -31,7 +31,7 @@ EXCHANGES = 30
 ALIKE = 2e-15
 
 #: A place touches the cone where its cosine is the cone's up to this.
-TOUCHES = 1e-9
+TOUCHES = 1e-11
 
 #: A vector product shorter than this has a direction of rounding.
 FLAT = 1e-14
@@ -93,8 +93,14 @@ def least_cone(curve: Along) -> LeastCone:
             few = few[own < own.min() + TOUCHES]
         few = np.union1d(few, outside)
         axis = least_axis(curve.at(few))
-    own = angles(curve.at(few), axis)
-    return LeastCone(axis, float(own.max()), few[np.cos(own) < np.cos(own.max()) + TOUCHES])
+    # where the curve itself is farthest, not where the last exchange found it
+    height = dotted(curve, axis)
+    places = np.concatenate([few, height.stationary(0)])
+    heights = height.at(places)[:, 0]
+    touching = np.unique(places[heights < heights.min() + TOUCHES])
+    still = touching[np.isin(touching, height.stationary(0))]
+    places = still if len(still) >= 2 else touching
+    return LeastCone(axis, float(angles(curve.at(touching), axis).max()), places)
 
 
 def dotted(curve: Along, axis: Floats) -> Along:

@@ -12,7 +12,7 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.least_cone import angles, dotted, least_cone
 from sevenbar.kinematics.circuit_extents import chosen, rod_pairs
 from sevenbar.kinematics.circuits import Circuit, Integers
-from sevenbar.kinematics.extents import Allowed, Flags, AllowedSpan
+from sevenbar.kinematics.extents import Allowed, AllowedSpan, Flags
 from sevenbar.kinematics.joint_course import JointCourse, joint_course
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.poses import frames_along, joint_frames

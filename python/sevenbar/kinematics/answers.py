@@ -145,7 +145,8 @@ class LinkageAnswers:
         """How far one is bent between directions that are given."""
         from sevenbar.kinematics.circuit_extents import cone_of
 
-        return cone_of(self.linkage, circuit, joint, Cone(**given))
+        named = any(value is not None for value in given.values())
+        return cone_of(self.linkage, circuit, joint, Cone(**given) if named else None)
 
     def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
         """The least distances of links that share no joint."""

@@ -137,20 +137,14 @@ def ball_angle(
 
 def joint_at(linkage: Loop, name: str) -> int:
     """The place of a joint S or U of a name; `RequestError` where there is none."""
-    bent = [joint.name for joint in linkage.joints if bends(joint)]
+    bent = [joint.name for joint in linkage.joints if joint.row.bends]
     for place, joint in enumerate(linkage.joints):
-        if name == joint.name and bends(joint):
+        if name == joint.name and joint.row.bends:
             return place
         if name in (joint.name, *joint.columns):
             listed = f"give one of {', '.join(bent)}" if bent else "this linkage has none"
             raise RequestError(f"joint: {shown(name)} is not a joint S or U, which a cone is of; {listed}")
     raise RequestError(f"joint: {no_joint(name, [joint.name for joint in linkage.joints])}")
-
-
-def bends(joint: Joint) -> bool:
-    """Whether it turns about more than one axis through one place, so that its bend is an angle of a cone."""
-    freedoms = joint.row.freedoms
-    return len(freedoms) > 1 and set(freedoms) == {"turn"}
 
 
 def sides(linkage: Loop, place: int) -> tuple[Floats, Floats]:

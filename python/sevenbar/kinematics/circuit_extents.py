@@ -15,16 +15,13 @@ import numpy.typing as npt
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.least_cone import least_cone
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.ball_angle import BallAngle, ball_angle, bends, joint_at, rod, sides
+from sevenbar.kinematics.ball_angle import BallAngle, ball_angle, joint_at, rod, sides
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.extents import BallCone, Clearance, JointRange
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_course import JointCourse, joint_course
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.stops import Cone, Three
-
-#: A column that comes back by less of a turn, or of the size, does not go on and on.
-GOES_ON = 1e-6
 
 #: Sine of the angle between a given direction of an idle link and its rod that is more than rounding.
 OFF_THE_ROD = 1e-9
@@ -44,17 +41,17 @@ def joint_ranges(linkage: Solvable, circuit: Circuit) -> dict[str, JointRange]:
 
 def range_of(course: JointCourse, column: int) -> JointRange:
     """The range of one column."""
-    name = course.linkage.columns[column]
-    if abs(course.path.gain[column]) > GOES_ON * course.numbers.scales[column]:
-        return JointRange(name, None, None)
+    name, turns = course.linkage.columns[column], bool(course.numbers.turns[column])
+    if course.goes_on(column):
+        return JointRange(name, turns, None, None)
     (_, low), (_, high) = course.extremes(course.path.poses.part(column))
-    return JointRange(name, low, high)
+    return JointRange(name, turns, low, high)
 
 
 def coned(linkage: Solvable) -> list[str]:
     """The joints whose bend means something: all S and U, but next to links that spin together."""
-    spins = linkage.held[2] if any(bends(joint) for joint in linkage.joints) else 0
-    return [] if spins else [joint.name for joint in linkage.joints if bends(joint)]
+    spins = linkage.held[2] if any(joint.row.bends for joint in linkage.joints) else 0
+    return [] if spins else [joint.name for joint in linkage.joints if joint.row.bends]
 
 
 def ball_cones(linkage: Solvable, circuit: Circuit) -> dict[str, BallCone]:

@@ -7,8 +7,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuit_path import ENOUGH_ROWS, CircuitPath, path_of
+from sevenbar.kinematics.circuit_path import ENOUGH_ROWS, CircuitPath, NotFollowedError, path_of
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.sensitivity import Numbers
@@ -43,7 +42,7 @@ def _covering(linkage: Solvable, circuit: Circuit) -> Circuit:
         return motion.circuits[circuit.index]
     known = circuit.q[np.isfinite(circuit.q).all(axis=1)]
     if not len(known):
-        raise RequestError("circuit: none of its rows has a pose")
+        raise NotFollowedError("circuit: none of its rows has a pose")
     best, nearest = None, math.inf
     turns = np.array([kind == "turn" for kind in linkage.column_kinds])
     for each in motion.circuits:

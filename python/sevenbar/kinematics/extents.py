@@ -21,10 +21,11 @@ Flags = npt.NDArray[np.bool_]
 class JointRange:
     """The lowest and highest value of a column [rad, or length], each with the input at which it occurs.
 
-    Both are `None` for a joint that turns (or runs, as a nut does) on and on: `endless`.
+    `turns`: it is an angle. Both are `None` for a joint that turns, or runs as a nut does, on and on.
     """
 
     column: str
+    turns: bool
     low: Peak | None
     high: Peak | None
 
@@ -158,7 +159,8 @@ class WithExtents:
     ) -> BallCone:
         """How far one joint is bent between a `seat` on the link before it and a `stud` on the link after.
 
-        Directions are written as points of their links are. Left out, the stud is the rod of the link after,
+        Directions are written as points of their links are; with none given they are those of the linkage's
+        stops. Left out there, too, the stud is the rod of the link after,
         and the seat the direction from which the greatest angle is least; of a ball after an idle link the
         other way round. Raises `RequestError` for a joint that has no cone, and a direction that an idle spin
         moves.

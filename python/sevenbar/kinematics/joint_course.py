@@ -13,9 +13,8 @@ from sevenbar.curves.along import Along
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.least_cone import angles, dotted
 from sevenbar.curves.stationary import coefficients
-from sevenbar.errors import RequestError
 from sevenbar.kinematics.ball_angle import BallAngle
-from sevenbar.kinematics.circuit_path import CircuitPath
+from sevenbar.kinematics.circuit_path import CircuitPath, NotFollowedError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.covered_path import covered_path
 from sevenbar.kinematics.motion import Solvable
@@ -26,6 +25,9 @@ from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 
 #: Poses that miss the ground by more [relative to the size] are lost ones.
 CLOSED = 1e-8
+
+#: A column that comes back by less of a turn, or of the size, does not go on and on.
+GOES_ON = 1e-6
 
 #: Angles, or shares of a size, that differ by less are one: of these the first place counts.
 ALIKE = 1e-12
@@ -77,7 +79,7 @@ class JointCourse:
         off = np.abs(closing - linkage.ground)
         off[:, :3, 3] /= self.size
         if not off.max() < CLOSED:
-            raise RequestError("circuit: the turns of its balls cannot be followed all along it")
+            raise NotFollowedError("circuit: the turns of its balls cannot be followed all along it")
         return np.stack([before[:, :, :3, 3], after[:, :, :3, 3]], axis=2)
 
     def rods(self, first: int, second: int) -> RodPair:
@@ -93,6 +95,17 @@ class JointCourse:
         if of_stud:
             return self.curve(bend.studs(self.rows))
         return self.curve(np.einsum("nji,j->ni", bend.rotation(self.rows), bend.seat))
+
+    def goes_on(self, column: int) -> bool:
+        """Whether a column has turned whole turns, or run on, when the circuit closes."""
+        return bool(abs(self.path.gain[column]) > GOES_ON * self.numbers.scales[column])
+
+    def pose(self, s: float) -> tuple[Floats, int]:
+        """The pose of the word (1, columns) at a place, and the column that drives its piece."""
+        edges = self.path.poses.edges
+        pieces = np.clip(np.searchsorted(edges, [s], "right") - 1, 0, len(self.path.drivers) - 1)
+        place = np.array([s])
+        return closed_on(self.path, self.numbers, pieces, place, self.loop), int(self.path.drivers[pieces[0]])
 
     def input_at(self, s: float) -> float:
         """The input [rad, or length] at a place, on the lap that the circuit's rows begin."""
