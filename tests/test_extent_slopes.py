@@ -101,8 +101,8 @@ def test_a_measure_of_a_joint_that_has_none_is_refused(name, message):
 
 def test_a_sweep_over_a_dimension_has_them():
     measures = ["ball_angle:ball_b", "usable", "range:rocker"]
-    found = sb.sweep.run(sb.load("rssr"), {"L1": [200.0, 250.0]}, measures=measures).to_frame()
-    at_250 = found[(found["L1_mm"] == 250.0) & (found["circuit"] == 0)]
-    assert at_250["ball_angle:ball_b_deg"].item() == pytest.approx(27.025381110622295, abs=1e-9)
-    assert at_250["range:rocker_deg"].item() == pytest.approx(75.147, abs=1e-3)
-    assert (found["usable"] == 1.0).all()
+    rows = sb.sweep.run(sb.load("rssr"), {"L1": [200.0, 250.0]}, measures=measures).table().to_pylist()
+    at_250 = next(row for row in rows if row["L1_mm"] == 250.0 and row["circuit"] == 0)
+    assert at_250["ball_angle:ball_b_deg"] == pytest.approx(27.025381110622295, abs=1e-9)
+    assert at_250["range:rocker_deg"] == pytest.approx(75.147, abs=1e-3)
+    assert {row["usable"] for row in rows} == {1.0}

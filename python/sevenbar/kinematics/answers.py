@@ -148,6 +148,12 @@ class LinkageAnswers:
         named = any(value is not None for value in given.values())
         return cone_of(self.linkage, circuit, joint, Cone(**given) if named else None)
 
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """The bend of each ball and universal joint on the rows, by name."""
+        from sevenbar.kinematics.circuit_extents import bends
+
+        return bends(self.linkage, circuit)
+
     def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
         """The least distances of links that share no joint."""
         from sevenbar.kinematics.circuit_extents import clearances

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak
 from sevenbar.curves.least_cone import least_cone
 from sevenbar.errors import RequestError, shown
@@ -57,6 +58,14 @@ def coned(linkage: Solvable) -> list[str]:
 def ball_cones(linkage: Solvable, circuit: Circuit) -> dict[str, BallCone]:
     """How far each ball and universal joint is bent, by name; see `Circuit.ball_cones`."""
     return {name: cone_of(linkage, circuit, name) for name in coned(linkage)}
+
+
+def bends(linkage: Solvable, circuit: Circuit) -> dict[str, Floats]:
+    """The bend [rad] of each ball and universal joint on the rows (n,) of a circuit; see `Circuit.bends`."""
+    return {
+        name: ball_angle(linkage, name, cone.seat, cone.stud).at(circuit.q)
+        for name, cone in circuit.ball_cones.items()
+    }
 
 
 def cone_of(linkage: Solvable, circuit: Circuit, joint: str, given: Cone | None = None) -> BallCone:

@@ -216,6 +216,10 @@ class Answers(Protocol):
         """How far one is bent between directions that are given."""
         ...
 
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """The bend of each on its rows."""
+        ...
+
     def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
         """The least distances of links that share no joint."""
         ...

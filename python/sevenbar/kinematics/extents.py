@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Peak
 from sevenbar.errors import ends_here
 from sevenbar.kinematics.stops import Three
@@ -147,6 +148,15 @@ class WithExtents:
         Source: docs/theory_measures.md, (12) and (13).
         """
         found: Mapping[str, BallCone] = self._answers.ball_cones(self)
+        return found
+
+    @property
+    def bends(self) -> Mapping[str, Floats]:
+        """The bend [rad] of each ball and universal joint on each row (n,), by its name.
+
+        The angle between seat and stud of `ball_cones`; NaN on rows in which a ball's turns are undefined.
+        """
+        found: Mapping[str, Floats] = self._answers.bends(self)
         return found
 
     @ends_here

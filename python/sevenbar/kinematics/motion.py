@@ -454,6 +454,11 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
     if circuit.transmission_angle is not None:
         transmission = circuit.transmission_angle
         columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
+    if not linkage.stops.is_empty:
+        for name, bend in circuit.bends.items():
+            columns[f"{name}_bend_{angle}"] = bend if si else np.degrees(bend)
+    if linkage.stops.stops:
+        columns["within_stops"] = circuit.allowed.within.astype(np.int64)
     head, factor = _advantage_column(circuit, length, scale)
     columns[head] = circuit.mechanical_advantage * factor
     columns[f"residual_{length}"] = circuit.residual * scale
