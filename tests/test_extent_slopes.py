@@ -89,7 +89,7 @@ def test_a_clearance_counts_radii_and_the_part_within_them():
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("range:ball_a", "measure: joint 'ball_a' is a ball, which has no range; ask for ball_angle:ball_a"),
+        ("range:ball_a", "measure: joint 'ball_a' is a ball, which has no range; give ball_angle:ball_a"),
         ("range:crnk", "measure: no joint 'crnk'; did you mean 'crank'"),
         ("ball_angle:crank", "measure: 'crank' is not a joint S or U"),
     ],

@@ -19,7 +19,7 @@ def joint_extent(circuit: Circuit, joint: str) -> float | None:
     if found is None:
         if joint in {name.rpartition(".")[0] or name for name in circuit.columns}:
             raise RequestError(
-                f"measure: joint {shown(joint)} is a ball, which has no range; ask for ball_angle:{joint}"
+                f"measure: joint {shown(joint)} is a ball, which has no range; give ball_angle:{joint}"
             )
         raise RequestError(f"measure: {no_joint(joint, list(ranges))}")
     extent = found.extent

@@ -205,7 +205,7 @@ JOINT_MEASURES: dict[str, tuple[Quantity, Callable[[Bearing], float], str]] = {
 }
 
 
-#: All that are asked of a joint by its name.
+#: All that are of a joint, by its name.
 OF_JOINTS = (*JOINT_MEASURES, *JOINT_EXTENTS)
 
 
