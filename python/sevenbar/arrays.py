@@ -16,6 +16,15 @@ from sevenbar.errors import RequestError, shown
 #: An array of real numbers; each docstring says of what shape and unit.
 Floats = npt.NDArray[np.float64]
 
+#: An array of whole numbers: indices, counts.
+Integers = npt.NDArray[np.int64]
+
+#: An array of truth values.
+Booleans = npt.NDArray[np.bool_]
+
+#: An array of words, such as the status of each row.
+Words = npt.NDArray[np.str_]
+
 
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""

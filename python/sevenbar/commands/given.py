@@ -17,7 +17,7 @@ from sevenbar.text.units import amount, examples_of, sizes_of
 if TYPE_CHECKING:
     from sevenbar.description.draft import Draft
     from sevenbar.design.synthesis.limits import Limits
-    from sevenbar.kinematics.circuits import Law
+    from sevenbar.kinematics.law import Law
     from sevenbar.reporting.figures import FigureLook
 
 

@@ -32,7 +32,8 @@ from sevenbar.drawing.names import handy_unit, quantity_label
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_size, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import walk
 from sevenbar.text.words import say

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.least_cone import angles, dotted, least_cone
 from sevenbar.kinematics.circuit_extents import chosen, rod_pairs
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.extents import Allowed, AllowedSpan, Flags
 from sevenbar.kinematics.joint_course import JointCourse, joint_course
 from sevenbar.kinematics.motion import Solvable

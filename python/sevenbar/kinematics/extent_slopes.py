@@ -24,12 +24,13 @@ from sevenbar.errors import RequestError
 from sevenbar.kinematics.ball_angle import joint_at, sides
 from sevenbar.kinematics.circuit_extents import chosen, rod_pairs
 from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.gradients import MeasureSlopes
 from sevenbar.kinematics.joint_course import JointCourse, joint_course
 from sevenbar.kinematics.rods import nearest_shares
 from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.kinematics.stops import Cone
-from sevenbar.kinematics.word import Carried, Product
+from sevenbar.kinematics.word import Carried
 
 #: Sine of a bend below which it has a kink.
 TIP = 1e-9

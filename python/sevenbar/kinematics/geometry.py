@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
 from sevenbar.kinematics.joints import Freedom, JointKind, Step, X, Z, kind_row
@@ -192,10 +192,21 @@ class Loop(Drawable):
         """What each column is: an angle [rad] or a length."""
         return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
 
+    @cached_property
+    def turning(self) -> Booleans:
+        """Whether each column is an angle, not a length, (columns,)."""
+        turning = np.array([kind == "turn" for kind in self.column_kinds])
+        turning.setflags(write=False)
+        return turning
+
+    def turns(self, column: int | str) -> bool:
+        """Whether a column, by its number or name, is an angle, not a length."""
+        place = self.columns.index(column) if isinstance(column, str) else column
+        return bool(self.turning[place])
+
     def unit_of(self, column: int | str) -> str:
         """The unit of a column's values, by its number or name: "rad", or the length unit."""
-        place = self.columns.index(column) if isinstance(column, str) else column
-        return "rad" if self.column_kinds[place] == "turn" else self.length_unit
+        return "rad" if self.turns(column) else self.length_unit
 
     @property
     def added_points(self) -> tuple[Point, ...]:
@@ -238,18 +249,19 @@ class Loop(Drawable):
         name = last[-1].first if last else self.drivable(column)[-1]
         return self.columns.index(name)
 
+    def driven_alike(self, column: int) -> bool:
+        """Whether a column turns or slides as the drive's does, so that the drive's speed can be its own."""
+        return self.turns(self.drive.joint) == self.turns(column)
+
     def speed_of(self, column: int) -> float:
         """The speed [rad/s, or length/s] at which a column drives where none is given: the drive's, or 1."""
-        drives = self.columns.index(self.drive.joint)
-        return self.drive.speed if self.column_kinds[drives] == self.column_kinds[column] else 1.0
+        return self.drive.speed if self.driven_alike(column) else 1.0
 
     def speed_written(self, column: int) -> str:
         """That speed as the description has it, "3000 rpm"; empty where it is a number, or none."""
-        drives = self.columns.index(self.drive.joint)
         drive = self.description.get("drive", {})
         written = drive.get("speed", "") if isinstance(drive, Mapping) else ""
-        same = self.column_kinds[drives] == self.column_kinds[column]
-        return written if isinstance(written, str) and same else ""
+        return written if isinstance(written, str) and self.driven_alike(column) else ""
 
 
 def following_coupler(

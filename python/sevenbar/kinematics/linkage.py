@@ -15,12 +15,13 @@ from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.kinematics.answers import LinkageAnswers
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.four_bar import four_bar_of
 from sevenbar.kinematics.general import AGREE, GeneralLoop
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.loaded import loaded
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable

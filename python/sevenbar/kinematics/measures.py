@@ -9,7 +9,8 @@ from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.sizing import Bearing, Sizing
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.extent_measures import greatest_bend, joint_extent, least_gap, usable_share
 from sevenbar.kinematics.extent_slopes import extent_slopes, stopped_measures
 from sevenbar.kinematics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
@@ -61,7 +62,7 @@ class Measure:
 
     def unit(self, linkage: Loop, output: str) -> str:
         """The unit of its numbers, "" where there is none; `output` is the column of the output."""
-        slides = linkage.column_kinds[linkage.columns.index(output)] == "slide"
+        slides = not linkage.turns(output)
         length = linkage.length_unit
         rate = length if slides else "rad"
         return {

@@ -6,10 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.stationary import nodes
 from sevenbar.kinematics.circuit_path import TERMS, CircuitPath
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 
 

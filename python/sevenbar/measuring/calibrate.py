@@ -32,11 +32,10 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent

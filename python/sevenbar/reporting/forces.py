@@ -120,7 +120,7 @@ def drive_fact(found: CircuitForces) -> str:
 def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     """All that a report says of forces above the table of joints."""
     forces, linkage = found.forces, found.motion.linkage
-    sliding = [c for c, kind in zip(linkage.columns, linkage.column_kinds, strict=True) if kind == "slide"]
+    sliding = [column for column in linkage.columns if not linkage.turns(column)]
     facts = [("circuit", drive_fact(found)), *acting_facts(forces, sliding)]
     facts += drive_facts(forces, found.sizing)
     facts += shaking_facts(forces, found.shaking)

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Circuit, Extremes, Sensitivity, Trace, Words
+from sevenbar.kinematics.circuit_values import Extremes, Sensitivity, Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
 from sevenbar.kinematics.screw_axes import ScrewAxes
+from sevenbar.reporting.circuit_quantities import way_round
 from sevenbar.reporting.facts import (
     COMPLETE,
     closure_error,
@@ -23,7 +25,7 @@ from sevenbar.reporting.facts import (
 )
 from sevenbar.reporting.page import drive_text
 from sevenbar.reporting.shown import Shown
-from sevenbar.reporting.summary import circuit_facts, way_round
+from sevenbar.reporting.summary import circuit_facts
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 if TYPE_CHECKING:

@@ -46,7 +46,7 @@ def axode_columns(
     ['circuit', 'branch', 'sample', 'theta_1_deg', 'link2_status', 'link2_point_x_mm']
     """
     linkage = motion.linkage
-    slides = linkage.column_kinds[linkage.columns.index(motion.input)] == "slide"
+    slides = not linkage.turns(motion.input)
     head = joint_column(motion.input, slides=slides, order=0, length=linkage.length_unit, angle="deg")
     parts = []
     for circuit in motion:

@@ -109,7 +109,7 @@ def acting(
     if loading.is_empty:
         return None
     metre = LENGTHS[linkage.length_unit]
-    turning = linkage.column_kinds[linkage.columns.index(linkage.drive.joint)] == "turn"
+    turning = linkage.turns(linkage.drive.joint)
 
     def placed(link: int, at: Three) -> Placed:
         frame = linkage.point_frames[link - 1]
@@ -143,7 +143,7 @@ def acting(
 
     def in_joint(own: Spring) -> JointSpring:
         assert own.joint is not None
-        slides = linkage.column_kinds[linkage.columns.index(own.joint)] == "slide"
+        slides = not linkage.turns(own.joint)
         unit = metre if slides else 1.0
         return JointSpring(*columns[own.joint], own.stiffness / unit, own.length * unit, own.damping / unit)
 

@@ -32,7 +32,6 @@ def language(code: str | None) -> Iterator[None]:
 
         >>> import sevenbar as sb
         >>> with sb.language("zh"):
-        ...     figure = sb.plot.transmission(sb.load("rssr").motion())
         ...     title = sb.report.markdown(sb.load("rssr").motion()).splitlines()[4]
         >>> title
         '- 驱动: crank，10 rad/s；输出 rocker'

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Booleans, Floats, finite_array
 from sevenbar.curves.stationary import highest_between
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Trace
+from sevenbar.kinematics.circuit_values import Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven as driven_circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 
@@ -165,7 +166,7 @@ def cycle_of(
 
 def driven(
     motion: Motion, circuit: Circuit, branch: int, inputs: Floats, *, speed: float | None = None
-) -> tuple[Circuit, npt.NDArray[np.bool_]]:
+) -> tuple[Circuit, Booleans]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
     again = driven_circuit(
         motion.linkage, circuit, inputs, speed=motion.speed if speed is None else speed, agree=motion.agree
@@ -180,7 +181,7 @@ def shown_inputs(cycle: Cycle, inputs: Floats) -> Floats:
 
 def input_text(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
-    slides = motion.linkage.column_kinds[motion.linkage.columns.index(motion.input)] == "slide"
+    slides = not motion.linkage.turns(motion.input)
     return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
 
 
@@ -192,7 +193,7 @@ def _refuse_link(motion: Motion, link: object) -> None:
         raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
 
 
-def link_rates(circuit: Circuit, rows: npt.NDArray[np.bool_], link: int) -> LinkRates:
+def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:
     """The rates of a link at rows of a circuit, from four points that are the circuit's size apart."""
     places = [np.zeros(3), *(circuit.size * np.eye(3))]
     traces = [circuit.point(link, (float(x), float(y), float(z))) for x, y, z in places]

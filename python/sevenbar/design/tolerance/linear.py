@@ -17,12 +17,11 @@ from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers, Words
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Integers, Words
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.linkage import Linkage
 

@@ -16,7 +16,7 @@ from sevenbar.drawing.output_curves import inputs_between, place_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.drawing.ticks import FLAT
 from sevenbar.kinematics.circuit_path import NotFollowedError
-from sevenbar.kinematics.circuits import Extremes
+from sevenbar.kinematics.circuit_values import Extremes
 from sevenbar.kinematics.extents import Flags
 from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.state.view import View
