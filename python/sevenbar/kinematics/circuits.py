@@ -20,6 +20,7 @@ from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
+from sevenbar.kinematics.extents import Allowed, BallCone, Clearance, JointRange, WithExtents
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.instant_centres import InstantCentres, instant_centres
 from sevenbar.kinematics.link_motion import LinkMotion, link_motion
@@ -56,6 +57,30 @@ class Answers(Protocol):
         """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
         ...
 
+    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
+        """The range of every column but a ball's."""
+        ...
+
+    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
+        """How far balls and universal joints are bent."""
+        ...
+
+    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
+        """How far one is bent between directions that are given."""
+        ...
+
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """The bend of each on its rows."""
+        ...
+
+    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
+        """The least distances of links that share no joint."""
+        ...
+
+    def allowed(self, circuit: Circuit) -> Allowed:
+        """What part of it is within the stops."""
+        ...
+
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) in the plane of a planar loop (..., 2)."""
         ...
@@ -83,7 +108,7 @@ def _given(**acting: object) -> dict[str, object]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Circuit(Printed):
+class Circuit(Printed, WithExtents):
     """One connected motion, row by row along it.
 
     `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,

@@ -26,6 +26,7 @@ from sevenbar.kinematics.loaded import loaded
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
+from sevenbar.kinematics.stopped import Cones, Radii, Ranges, stopped
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000
@@ -60,6 +61,28 @@ class Linkage(Solvable):
             1.2
         """
         return loaded(self, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+
+    @ends_here
+    def stopped(
+        self,
+        *,
+        ranges: Ranges | None = None,
+        cones: Cones | None = None,
+        radii: Radii | None = None,
+    ) -> Linkage:
+        """The linkage with other stops: ranges of joints by name, cones of S and U, radii of links.
+
+        A range is (low, high) [rad, length, or texts as "30 deg"], a turn at most; a cone an angle [rad, or
+        text] or a `Cone` with directions; a radius [length] is that of the link as a rod, the ground the last
+        one. What is left out stays as it is. They change no motion: `Circuit.allowed` is what they leave of
+        it. Raises `RequestError` for what does not exist or does not fit.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.load("rssr").stopped(ranges={"rocker": ("-30 deg", "10 deg")}, radii={1: 20})
+            >>> linkage.description["stop"]
+            [{'joint': 'rocker', 'range': [-30.0, 10.0]}]
+        """
+        return stopped(self, ranges=ranges, cones=cones, radii=radii)
 
     @property
     def lengths(self) -> tuple[float, float, float]:

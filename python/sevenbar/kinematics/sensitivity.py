@@ -125,13 +125,14 @@ class Numbers:
         p: Floats | None = None,
         only: Sequence[int] | None = None,
         marks: int | None = None,
+        extra: Sequence[Carried] = (),
     ) -> NumberedLoop:
         """The loop driven by a column at numbers p, the description's own by default.
 
         Derivatives are by all numbers, or `only` by some, (k,) then being these. With `marks`, a column, two
-        more points come last that lie on its axis, the size apart.
+        more points come last that lie on its axis, the size apart; then those `extra`.
         """
-        return NumberedLoop(self, input, self.nominal if p is None else p, only, marks)
+        return NumberedLoop(self, input, self.nominal if p is None else p, only, marks, extra)
 
     def poses(self, q: Floats, p: Floats | None = None) -> Floats:
         """Rows of an analysis (n, columns) as poses of the word.
@@ -192,6 +193,7 @@ class NumberedLoop:
         p: Floats,
         only: Sequence[int] | None = None,
         marks: int | None = None,
+        extra: Sequence[Carried] = (),
     ) -> None:
         self.numbers, self.input, self.p = numbers, input, p
         word, values = numbers.word, numbers.values(p)
@@ -213,6 +215,7 @@ class NumberedLoop:
         if marks is not None:
             count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
             points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
+        points += [self._point(point, values, own) for point in extra]
         self._own = fixed, advances = self._design(values)
         #: What the core knows of it.
         self.core = _core.Numbers(
