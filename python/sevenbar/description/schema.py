@@ -23,6 +23,7 @@ from sevenbar.description.load_contradictions import load_contradictions
 from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
 from sevenbar.description.load_tables import folder_of
 from sevenbar.description.mistakes import FileForms, path_of
+from sevenbar.description.stop_schema import RodForm, StopForm, stop_contradictions
 from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import (
     Angle,
@@ -200,6 +201,8 @@ class LinkageForm(TableForm):
     body: Annotated[tuple[BodyForm, ...], key("masses on links")] = ()
     load: Annotated[tuple[LoadForm, ...], key("forces and torques on links")] = ()
     spring: Annotated[tuple[SpringForm, ...], key("springs and dampers")] = ()
+    stop: Annotated[tuple[StopForm, ...], key("how far joints may go")] = ()
+    rod: Annotated[tuple[RodForm, ...], key("how thick links are")] = ()
 
     @property
     def joints(self) -> tuple[tuple[str, str], ...]:
@@ -269,7 +272,9 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
             if place in ground_places or place[:2] not in ground_places
         ]
     if isinstance(raw, Mapping) and context is not None:
-        problems += contradictions(raw) + load_contradictions(raw, joints_of(raw), context)
+        joints = joints_of(raw)
+        problems += contradictions(raw) + load_contradictions(raw, joints, context)
+        problems += stop_contradictions(raw, joints, context)
     if problems:
         raise DescriptionError(problems, source)
     return form
@@ -310,6 +315,8 @@ TABLES: dict[str, type[TableForm]] = {
     "body": BodyForm,
     "load": LoadForm,
     "spring": SpringForm,
+    "stop": StopForm,
+    "rod": RodForm,
 }
 
 _FORMS = FileForms(LinkageForm, TABLES, once=("rssr", "drive", "forces"))
