@@ -7,6 +7,7 @@ import pytest
 
 from sevenbar.description.gallery import text as gallery_text
 from sevenbar.design.task.file.reader import read_task, task_file
+from sevenbar.design.task.file.schema import MUSTS, WANTS, LimitsForm, PoseForm, TaskForm
 from sevenbar.errors import DescriptionError
 
 #: A task that is right, part by part.
@@ -326,3 +327,34 @@ def test_all_mistakes_come_at_once(tmp_path):
 def test_a_file_that_is_none_is_said(tmp_path):
     with pytest.raises(DescriptionError, match="no such file; give the path of a task file"):
         read_task(tmp_path / "none.toml")
+
+
+def test_every_key_of_a_task_file_is_on_the_page(monkeypatch):
+    root = Path(__file__).parent.parent
+    monkeypatch.syspath_prepend(root / "docs" / "_extensions")
+    from key_tables import task_keys_of
+
+    page = (root / "docs" / "design-task.md").read_text(encoding="utf-8")
+    tables = {f"want_{kind}": form for kind, form in WANTS.items()}
+    tables |= {f"must_{kind}": form for kind, form in MUSTS.items()}
+    tables |= {"": TaskForm, "limits": LimitsForm, "pose": PoseForm}
+    for head, form in tables.items():
+        assert f"<!-- made: task_keys{' ' + head if head else ''} -->" in page
+        rows = task_keys_of(root, head).splitlines()[2:]
+        assert [row.split("`")[1] for row in rows] == list(form.model_fields)
+
+
+@pytest.mark.parametrize("case", ["nozzle", "pick_place", "steering"])
+def test_the_examples_are_tasks(case):
+    folder = Path(__file__).parent.parent / "examples" / "design"
+    task = read_task(folder / f"{case}_task.toml")
+    assert task.free
+    assert task.wants
+
+
+def test_the_first_example_of_the_page_is_a_task(tmp_path):
+    page = (Path(__file__).parent.parent / "docs" / "design-task.md").read_text(encoding="utf-8")
+    text = page.split("```toml\n")[1].split("```")[0]
+    (tmp_path / "my_task.toml").write_text(text)
+    task = read_task(tmp_path / "my_task.toml")
+    assert task.names == ("M", "L1")
