@@ -233,9 +233,11 @@ class TomlSchema(GenerateJsonSchema):
     """JSON schema of a TOML file, in which a key that is not given is left out: there is no null."""
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
+        """Of a key that may be left out, that of its values."""
         return self.generate_inner(schema["schema"])
 
     def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        """With the default where it is a plain value."""
         inner = self.generate_inner(schema["schema"])
         plain = isinstance(schema.get("default"), (str, int, float))
         return {**inner, "default": schema["default"]} if plain else inner

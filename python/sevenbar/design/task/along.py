@@ -110,7 +110,7 @@ class DesignAlong:
         want = self.task.wants[self.wants[place][0]]
         begin = float(want.output[0]) if isinstance(want, FunctionWant) else 0.0
         read = np.unwrap(read)
-        return read - math.tau * np.round((read[0] - begin) / math.tau)
+        return np.asarray(read - math.tau * np.round((read[0] - begin) / math.tau))
 
     def places(self, place: int) -> Floats:
         """Where the points of a path or of poses, or the point of a straight line go (n, points, 3)."""

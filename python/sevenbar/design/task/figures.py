@@ -29,13 +29,13 @@ def want_figure(along: DesignAlong, number: int) -> Figure:
     """A want with a way, by its place among those: readings and error, or the path and its distances."""
     want = along.wants[number][1]
     if isinstance(want, (FunctionWant, DwellWant)):
-        return _readings(along, number)
+        return _readings(along, number, want)
     return _places(along, number)
 
 
-def _readings(along: DesignAlong, number: int) -> Figure:
+def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -> Figure:
     """The output's readings over the input's; below, the design's less those wanted."""
-    place, want, _ = along.wants[number]
+    place = along.wants[number][0]
     linkage = along.task.draft.linkage
     drive = linkage.drive
     zeros = along.zeros(number)

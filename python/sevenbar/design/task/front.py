@@ -24,7 +24,18 @@ from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import Design
 from sevenbar.design.task.contradictions import refuse_contradictions
 from sevenbar.design.task.search import STARTS, DesignsFound, designed
-from sevenbar.design.task.task import DesignTask, FigureMust, FigureWant, Most, Must
+from sevenbar.design.task.task import (
+    DesignTask,
+    DwellWant,
+    FigureMust,
+    FigureWant,
+    FunctionWant,
+    Most,
+    Must,
+    PathWant,
+    PoseWant,
+    StraightWant,
+)
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.text.progress import Progress, silent
@@ -126,8 +137,8 @@ def pareto(
         for improved in (one, other):
             if not search(None, math.inf, improved, [p.design.values for p in kept], starts):
                 raise RequestError(
-                    f"pareto: no design is found for want {improved + 1} alone; solve the task first, and ease "
-                    "what must hold"
+                    f"pareto: no design is found for want {improved + 1} alone; solve the task first, "
+                    "and ease what must hold"
                 )
         low, high = sorted(point.values[1] for point in kept)
         for bound in _bounds(low, high, points):
@@ -202,16 +213,16 @@ def _unit(task: DesignTask, place: int) -> float:
     match want:
         case FigureWant():
             return want.unit
-        case _ if hasattr(want, "places"):
+        case PathWant():
             return float(np.ptp(want.places, axis=0).max())
-        case _ if hasattr(want, "arm"):
-            return float(want.arm)
-        case _ if getattr(want, "length", None) is not None:
-            return float(want.length)  # type: ignore[union-attr]
-        case _ if hasattr(want, "point") or not linkage.turns(linkage.drive.output):
-            return float(Numbers(linkage).size)
-        case _:
+        case PoseWant():
+            return want.arm
+        case StraightWant(length=length) if length is not None:
+            return length
+        case FunctionWant() | DwellWant() if linkage.turns(linkage.drive.output):
             return 1.0
+        case _:
+            return float(Numbers(linkage).size)
 
 
 def _bounds(low: float, high: float, points: int) -> Floats:

@@ -192,9 +192,9 @@ def text(found: TaskDesigns) -> RenderableType:
     parts: list[RenderableType] = [
         Text(f"Design: {found.name}", style="bold underline"),
         facts.grid,
-        Text(),
-        _table(found),
     ]
+    for table in _tables(found):
+        parts += [Text(), table]
     free = found.task.free
     for begin in range(0, len(free), ACROSS):
         some = free[begin : begin + ACROSS]
@@ -220,35 +220,36 @@ def _bounded(design: Design, place: int, low: float, high: float) -> str:
     return f"{value:.5g}{'*' if value <= low + gap or value >= high - gap else ''}"
 
 
-def _table(found: TaskDesigns) -> RenderableType:
-    """A line for each design: how well each want is met, the musts, the optimum."""
-    task, linkage = found.task, found.task.draft.linkage
-    heads: list[str] = []
-    columns: list[list[str]] = []
-    sampled = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
-    for number, place in enumerate(sampled):
-        mets = [design.met[number] for design in found.found.designs]
-        unit, scale = ("deg", 180 / math.pi) if mets[0].unit == "rad" else (mets[0].unit, 1.0)
-        heads += [f"want {place + 1}\ngreatest\n[{unit}]", f"want {place + 1}\nRMS\n[{unit}]"]
-        columns += [
-            [f"{met.greatest * scale:.4g}" for met in mets],
-            [f"{met.rms * scale:.4g}" for met in mets],
+def _tables(found: TaskDesigns) -> list[RenderableType]:
+    """Tables with a line for each design: how well each want is met; the musts, the optimum, what it is."""
+    task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
+    met: list[tuple[str, list[str]]] = []
+    for number, place in enumerate(_sampled(task)):
+        mets = [design.met[number] for design in designs]
+        own, scale = ("deg", 180 / math.pi) if mets[0].unit == "rad" else (mets[0].unit, 1.0)
+        met += [
+            (f"want {place + 1}\ngreatest\n[{own}]", [f"{one.greatest * scale:.4g}" for one in mets]),
+            (f"want {place + 1}\nRMS\n[{own}]", [f"{one.rms * scale:.4g}" for one in mets]),
         ]
-    for name in dict.fromkeys(name for design in found.found.designs for name in design.figures):
-        heads.append(name.replace("_", "\n"))
-        columns.append([f"{design.figures[name]:.5g}" for design in found.found.designs])
-    if any(math.isfinite(design.room) for design in found.found.designs):
-        heads.append("least\nroom")
-        columns.append([f"{design.room:.2g}" for design in found.found.designs])
-    heads += ["KKT\nresidual", f"size\n[{linkage.length_unit}]", "motion type", "circuit"]
-    columns += [
-        [f"{design.optimality:.1e}" for design in found.found.designs],
-        [f"{design.candidate.size:.5g}" for design in found.found.designs],
-        [design.candidate.motion_type for design in found.found.designs],
-        [str(design.candidate.circuit) for design in found.found.designs],
+    for name in dict.fromkeys(name for design in designs for name in design.figures):
+        met.append((name.replace("_", "\n"), [f"{design.figures[name]:.5g}" for design in designs]))
+    rest = [("least\nroom", [f"{design.room:.2g}" for design in designs])]
+    if not any(math.isfinite(design.room) for design in designs):
+        rest = []
+    rest += [
+        ("KKT\nresidual", [f"{design.optimality:.1e}" for design in designs]),
+        (f"size\n[{unit}]", [f"{design.candidate.size:.5g}" for design in designs]),
+        ("motion type", [design.candidate.motion_type for design in designs]),
+        ("circuit", [str(design.candidate.circuit) for design in designs]),
     ]
-    rows = [[str(i), *cells] for i, cells in enumerate(zip(*columns, strict=True), 1)]
-    return number_table(["design", *heads], rows, words=[len(heads) - 1])
+    parts = [met[i : i + ACROSS] for i in range(0, len(met), ACROSS)]
+    return [_columns(part, ()) for part in parts] + [_columns(rest, [len(rest) - 1])]
+
+
+def _columns(columns: Sequence[tuple[str, list[str]]], words: Sequence[int]) -> RenderableType:
+    """A table of columns, a line for each design."""
+    rows = [[str(i), *cells] for i, cells in enumerate(zip(*(own for _, own in columns), strict=True), 1)]
+    return number_table(["design", *(head for head, _ in columns)], rows, words=words)
 
 
 def as_dict(found: TaskDesigns) -> dict[str, Any]:
