@@ -26,10 +26,10 @@ from sevenbar.design.task import (
     PoseWant,
     StraightWant,
 )
-from sevenbar.design.task.check import Design, checked_design
+from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.musts import nearest_shares, pose_rooms
-from sevenbar.design.task.problem import Problem, Seed, TaskModel
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
@@ -102,7 +102,7 @@ MUSTS = (
 def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
     names = NAMES if any(type(w).__name__ == "FigureWant" for w in wants) else (*NAMES, "Q.x", "Q.y", "Q.z")
     model = TaskModel(DesignTask(START, free(START, names), wants, **more))
-    problem = Problem(model, seeds(model, 0, 0, lambda: None)[0])
+    problem = TaskProblem(model, seeds(model, 0, 0, lambda: None)[0])
     z = problem.start
     here = problem.at(z)
     problem.take(z)
@@ -118,7 +118,7 @@ def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
 
 def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
     model = TaskModel(DesignTask(START, free(START, NAMES), (PATH,), placement="free", goal="minimax"))
-    problem = Problem(model, seeds(model, 0, 0, lambda: None)[0], minimax=True)
+    problem = TaskProblem(model, seeds(model, 0, 0, lambda: None)[0], minimax=True)
     z = problem.start + np.append(np.zeros(len(problem.start) - 6), [0.3, -0.2, 0.1, 0.02, 0.01, -0.03])
     here = problem.at(z)
     for k in range(len(z)):
@@ -207,7 +207,7 @@ def test_the_least_greatest_error_ripples_evenly():
         (solved(model, seed) for seed in seeds(model, 0, 0, lambda: None)[:2]), key=lambda one: one.cost
     )
     answer = checked_design(model, best)
-    assert isinstance(answer, Design)
+    assert isinstance(answer, TaskDesign)
     errors = answer.candidate.claim.errors
     extremes = np.flatnonzero(np.abs(errors) > (1 - 1e-7) * np.abs(errors).max())
     assert answer.met[0].greatest == pytest.approx(best.cost, rel=1e-9)
@@ -233,7 +233,7 @@ def as_solution(model, rows, circuits):
     q = np.stack([circuit.q[row] for row, circuit in zip(rows, circuits, strict=True)])
     inputs = np.array([circuit.input[row] for row, circuit in zip(rows, circuits, strict=True)])
     values = model.loop.start
-    seed = Seed(values, (inputs,), model.loop.poses(values, q), q[0], 0.0)
+    seed = TaskSeed(values, (inputs,), model.loop.poses(values, q), q[0], 0.0)
     return Solved(seed, (inputs,), 0.0, 0.0, math.inf)
 
 
@@ -251,7 +251,7 @@ def test_a_defective_design_is_refused_however_well_it_fits(rows, others, fault)
         assert isinstance(answer, Refusal)
         assert answer.fault == fault
     else:
-        assert isinstance(answer, Design)
+        assert isinstance(answer, TaskDesign)
         assert answer.met[0].greatest < 1e-9
 
 

@@ -12,14 +12,14 @@ import numpy as np
 
 from evidence.design.tasks import tasks
 from sevenbar.design.task import DesignTask, FunctionWant, PathWant, PoseWant
-from sevenbar.design.task.check import Design
+from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.kinematics.law import Law
 
 #: A known answer is found where no error is greater [rad, or relative to size, extent of the path, arm].
 FOUND = 1e-9
 
-#: Starts beside the linkage itself.
+#: Starts besides the linkage itself.
 STARTS = 32
 
 #: Inputs from the first to the last at which an accepted design is looked at for a dead centre between.
@@ -39,7 +39,7 @@ def unit_of(task: DesignTask) -> float:
     return want.arm
 
 
-def is_whole(design: Design) -> bool:
+def is_whole(design: TaskDesign) -> bool:
     """Whether one pass of the design's linkage leads from its first input to its last, asked anew."""
     inputs = design.candidate.claim.inputs
     between = np.linspace(inputs.min(), inputs.max(), BETWEEN)

@@ -1,6 +1,6 @@
 """One design task, one engine for any loop: free numbers within bounds, what is wanted, what must hold."""
 
-from sevenbar.design.task.check import Design, Met
+from sevenbar.design.task.check import Met, TaskDesign
 from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.design.task.task import (
     Apart,
@@ -24,7 +24,6 @@ from sevenbar.design.task.task import (
 __all__ = [
     "Apart",
     "Cone",
-    "Design",
     "DesignTask",
     "DesignsFound",
     "DwellWant",
@@ -40,6 +39,7 @@ __all__ = [
     "PathWant",
     "PoseWant",
     "StraightWant",
+    "TaskDesign",
     "Want",
     "designed",
 ]

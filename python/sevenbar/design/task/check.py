@@ -58,13 +58,13 @@ class Met:
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class TaskDesign:
     """A linkage that does what a task asks, with what the ordinary analysis says of it.
 
     `candidate` is that of the first want. `cost` is the root of the weighted mean squares, or the greatest
     weighted residual; `optimality` by how much the conditions of a local optimum are missed, relative;
-    `met` how well each want is met that is asked for at poses, `figures` the measures that are asked for;
-    `room` the least room of a must (infinite where there is none); `placing` where the linkage stands;
+    `met` how well each want is met at poses, `figures` the measures that are wanted or limited;
+    `room` the least room of a must (infinite where there is none); `placing` where the linkage is;
     `solution` what was solved for, with the inputs and own unknowns of each want.
     """
 
@@ -95,7 +95,7 @@ class _Way:
     errors: Floats
 
 
-def checked_design(model: TaskModel, solution: Solved) -> Design | Refusal:
+def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
     """The design with its errors found anew from what is written, or why it does not do what is asked."""
     draft = model.loop.drawn(solution.seed.values)
     try:
@@ -124,7 +124,7 @@ def checked_design(model: TaskModel, solution: Solved) -> Design | Refusal:
         )
         for one, w in zip(model.wanted, ways, strict=True)
     )
-    return Design(
+    return TaskDesign(
         candidate,
         solution.cost,
         solution.optimality,

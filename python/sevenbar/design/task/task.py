@@ -105,10 +105,10 @@ class FigureWant:
 
 @dataclass(frozen=True)
 class DwellWant:
-    """The output stands still while the input goes over a range (low, high) [rad, or length].
+    """The output rests while the input goes over a range (low, high) [rad, or length].
 
     It stays at `level`, a free one where that is `None`. Residuals: what it is off at `samples` inputs
-    [rad, or relative to the size]. A tolerated deviation is a `Most` beside it.
+    [rad, or relative to the size]. A tolerated deviation is a `Most` as well.
     """
 
     range: tuple[float, float]
@@ -122,8 +122,8 @@ class StraightWant:
     """A named point moves along a straight line, a free one, while the input goes over a range (low, high).
 
     `length` is how far it goes at least [length], which residuals, its distances from the line at `samples`
-    inputs, are relative to; without one they are relative to the linkage's size, and a point that stands
-    still is straight.
+    inputs, are relative to; without one they are relative to the linkage's size, and a point that rests
+    is straight.
     """
 
     point: str

@@ -14,7 +14,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.measures import gradient, measures_named
 from sevenbar.kinematics.motion import Motion
 
-#: Inputs of a turn at which circuits are asked for their measures: these are found between rows.
+#: Inputs of a turn at which circuits are measured: these are found between rows.
 SAMPLES = 72
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
@@ -34,7 +34,7 @@ class Figures:
         self._columns = [c for c, ball in enumerate(loop.numbers.is_ball) if not ball]
 
     def at(self, values: Floats, anchor: Floats, *, slopes: bool = True) -> tuple[Floats, Floats] | None:
-        """Values (f,) and slopes (f, k) at numbers (k,), of the circuit near a row (columns,) of an analysis.
+        """TaskValues (f,) and slopes (f, k) at numbers (k,), of the circuit near a row (columns,) of an analysis.
 
         `None` where the circuit is gone or one of the measures has no value.
         """
