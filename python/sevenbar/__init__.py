@@ -53,11 +53,13 @@ if TYPE_CHECKING:
     from sevenbar.forces.loading import Load, Loading, Spring
     from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
     from sevenbar.kinematics.screw_axes import ScrewAxes
+    from sevenbar.kinematics.stops import Cone
 
 __all__ = [
     "Body",
     "ChangePoint",
     "Circuit",
+    "Cone",
     "Count",
     "DeadCentre",
     "Drive",
@@ -124,6 +126,7 @@ _ON_DEMAND = {
 #: Names that many programs do without, and the modules that have them.
 _NAMES_ON_DEMAND = {
     "Body": "sevenbar.forces.bodies",
+    "Cone": "sevenbar.kinematics.stops",
     "Equilibrium": "sevenbar.forces.free_motion.equilibria",
     "FreeMotion": "sevenbar.forces.free_motion.result",
     "InstantCentre": "sevenbar.kinematics.instant_centres",

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.loads import loading_of
 from sevenbar.description.proportions import disproportions
+from sevenbar.description.stop_values import stops_of
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
 from sevenbar.kinematics.factors import Place, Values, between
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
@@ -318,6 +319,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
             length_unit=form.length_unit,
             columns=form.first_columns,
         ),
+        stops=stops_of(form.stop, form.rod, form.first_columns),
     )
 
 

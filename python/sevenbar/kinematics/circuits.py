@@ -11,7 +11,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, Words, finite_array
+from sevenbar.arrays import Floats, Integers, Words, counted, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.counterweights import Balance
@@ -20,10 +20,11 @@ from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
+from sevenbar.kinematics.extents import Allowed, BallCone, Clearance, JointRange, WithExtents
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.instant_centres import InstantCentres, instant_centres
 from sevenbar.kinematics.link_motion import LinkMotion, link_motion
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.rigid import placed, pose
 from sevenbar.kinematics.screw_axes import ScrewAxes, Twists, screw_axes
 from sevenbar.text.printing import Printed
 
@@ -56,6 +57,30 @@ class Answers(Protocol):
         """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
         ...
 
+    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
+        """The range of every column but a ball's."""
+        ...
+
+    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
+        """How far balls and universal joints are bent."""
+        ...
+
+    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
+        """How far one is bent between directions that are given."""
+        ...
+
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """The bend of each on its rows."""
+        ...
+
+    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
+        """The least distances of links that share no joint."""
+        ...
+
+    def allowed(self, circuit: Circuit) -> Allowed:
+        """What part of it is within the stops."""
+        ...
+
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) in the plane of a planar loop (..., 2)."""
         ...
@@ -83,7 +108,7 @@ def _given(**acting: object) -> dict[str, object]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Circuit(Printed):
+class Circuit(Printed, WithExtents):
     """One connected motion, row by row along it.
 
     `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
@@ -200,11 +225,10 @@ class Circuit(Printed):
     @cached_property
     def tally(self) -> Tally:
         """What there is to say of the rows as a whole."""
-        words, counts = np.unique(self.status, return_counts=True)
         known = self.residual[np.isfinite(self.residual)]
         return Tally(
             len(self.time),
-            {str(word): int(count) for word, count in zip(words, counts, strict=True)},
+            counted(self.status),
             float(known.max()) if known.size else math.nan,
         )
 
@@ -272,7 +296,7 @@ class Circuit(Printed):
         place = finite_array("at", at)
         if place.size != 3:
             raise RequestError(f"at: {place.size} numbers; give three")
-        return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
+        return self._point(int(link), placed(frame, place))
 
     @ends_here
     def sensitivity(self) -> Sensitivity:

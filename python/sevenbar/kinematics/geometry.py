@@ -17,6 +17,7 @@ from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
 from sevenbar.kinematics.joints import Freedom, JointKind, Step, X, Z, kind_row
 from sevenbar.kinematics.rigid import about, inverse, pose
+from sevenbar.kinematics.stops import NO_STOPS, Stops
 from sevenbar.text.printing import Drawable
 
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, the same in the
@@ -123,7 +124,7 @@ class Loop(Drawable):
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
     up to a closure error [rad, or relative to the size], the usual one where it is `None`;
-    `loading` is what acts on it.
+    `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion.
 
     Source: docs/theory.md, (1).
     """
@@ -142,6 +143,7 @@ class Loop(Drawable):
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
     loading: Loading = field(default=UNLOADED, repr=False)
     agree: float | None = None
+    stops: Stops = field(default=NO_STOPS, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):
@@ -234,6 +236,22 @@ class Loop(Drawable):
         if name not in self.columns:
             raise RequestError(f"{key}: {no_joint(name, known)}")
         return self.columns.index(name)
+
+    def input_column(self, name: str | None = None, key: str = "input") -> int:
+        """The place of the input's column: that named by the caller under a key, or the drive's."""
+        return self.column(self.drive.joint if name is None else name, key)
+
+    def end_columns(self, input: str | None = None, output: str | None = None) -> tuple[int, int]:
+        """The places of the columns of input and output, those named or the drive's; two different ones."""
+        first = self.input_column(input)
+        if output is None:
+            return first, self.other_column(first)
+        second = self.column(output, "output")
+        if second == first:
+            raise RequestError(
+                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
+            )
+        return first, second
 
     def other_column(self, column: int) -> int:
         """The output where only the input was named: the drive's, else that of the last other joint."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
@@ -15,7 +15,8 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Words
 from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.kinematics.circuits import Answers, Circuit
-from sevenbar.kinematics.columns import joint_column, point_column
+from sevenbar.kinematics.columns import joint_columns, point_column
+from sevenbar.kinematics.extents import JointRange
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.law import Law
@@ -317,6 +318,16 @@ class Motion(Drawable):
         """How freely the linkage moves."""
         return self.linkage.mobility(agree=self.agree)
 
+    @property
+    def joint_ranges(self) -> tuple[Mapping[str, JointRange], ...]:
+        """The joint ranges of each circuit; see `Circuit.joint_ranges`.
+
+        >>> import sevenbar as sb
+        >>> [ranges["crank"].endless for ranges in sb.load("rssr").motion().joint_ranges]
+        [True, True]
+        """
+        return tuple(circuit.joint_ranges for circuit in self.circuits)
+
     @cached_property
     def near_motion(self) -> NearMotion | None:
         """By how little a linkage without a circuit misses a motion; `None` where it has one, or misses more.
@@ -424,12 +435,8 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
         "status": circuit.status,
         "time_s": circuit.time,
     }
-    for order, values in enumerate((circuit.q, circuit.dq, circuit.ddq, circuit.dddq)):
-        for index, name in enumerate(circuit.columns):
-            slides = not linkage.turns(index)
-            column = values[:, index] * scale if slides else values[:, index]
-            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
-            columns[head] = np.degrees(column) if head.endswith("_deg") else column
+    rates = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
+    columns |= joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
     for point in linkage.points:
         trace = circuit.point(point.link, point.at)
         for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):
@@ -439,6 +446,11 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
     if circuit.transmission_angle is not None:
         transmission = circuit.transmission_angle
         columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
+    if not linkage.stops.is_empty:
+        for name, bend in circuit.bends.items():
+            columns[f"{name}_bend_{angle}"] = bend if si else np.degrees(bend)
+    if linkage.stops.stops:
+        columns["within_stops"] = circuit.allowed.within.astype(np.int64)
     head, factor = _advantage_column(circuit, length, scale)
     columns[head] = circuit.mechanical_advantage * factor
     columns[f"residual_{length}"] = circuit.residual * scale

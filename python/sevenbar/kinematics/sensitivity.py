@@ -30,7 +30,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.factors import Place, Product, Values, vector
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import about, adjoint, cross, zyx_turns
+from sevenbar.kinematics.rigid import about, adjoint, cross, placed, zyx_turns
 from sevenbar.kinematics.word import Carried, holding_axis, points_of, word_of
 
 #: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
@@ -125,13 +125,14 @@ class Numbers:
         p: Floats | None = None,
         only: Sequence[int] | None = None,
         marks: int | None = None,
+        extra: Sequence[Carried] = (),
     ) -> NumberedLoop:
         """The loop driven by a column at numbers p, the description's own by default.
 
         Derivatives are by all numbers, or `only` by some, (k,) then being these. With `marks`, a column, two
-        more points come last that lie on its axis, the size apart.
+        more points come last that lie on its axis, the size apart; then those `extra`.
         """
-        return NumberedLoop(self, input, self.nominal if p is None else p, only, marks)
+        return NumberedLoop(self, input, self.nominal if p is None else p, only, marks, extra)
 
     def poses(self, q: Floats, p: Floats | None = None) -> Floats:
         """Rows of an analysis (n, columns) as poses of the word.
@@ -192,6 +193,7 @@ class NumberedLoop:
         p: Floats,
         only: Sequence[int] | None = None,
         marks: int | None = None,
+        extra: Sequence[Carried] = (),
     ) -> None:
         self.numbers, self.input, self.p = numbers, input, p
         word, values = numbers.word, numbers.values(p)
@@ -213,6 +215,7 @@ class NumberedLoop:
         if marks is not None:
             count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
             points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
+        points += [self._point(point, values, own) for point in extra]
         self._own = fixed, advances = self._design(values)
         #: What the core knows of it.
         self.core = _core.Numbers(
@@ -254,7 +257,7 @@ class NumberedLoop:
                 ways[own[key]] = ways.get(own[key], 0.0) + matrix[:3, k]
         scales = {i: dimensions[k].scale for i, k in enumerate(self.only)}
         ready = [(i, scales[i] * way / size) for i, way in sorted(ways.items())]
-        return point.steps, (matrix[:3, :3] @ at + matrix[:3, 3]) / size, ready
+        return point.steps, placed(matrix, at) / size, ready
 
     def twists_of(self, frame: Product) -> list[tuple[int, Floats]]:
         """By number, the twist (6,) of a link's frame against the steps before it, as the core takes it."""

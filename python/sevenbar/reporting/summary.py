@@ -12,6 +12,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Modes, Motion
 from sevenbar.reporting.circuit_quantities import Reported, Texts, cells_of, nothing
+from sevenbar.reporting.extents import extent_rows, span_rows
 from sevenbar.reporting.facts import facts_of
 from sevenbar.text.words import say
 
@@ -44,10 +45,11 @@ class Summary:
     sheets: tuple[Sheet, ...]
 
 
-def summary(motion: Motion, room: int = 100) -> Summary:
+def summary(motion: Motion, room: int = 100, *, ranges: bool = False) -> Summary:
     """All that the report says of a motion, in lines of `room` characters if that can be.
 
-    Angles are in degrees, rates in radians.
+    Angles are in degrees, rates in radians. With `ranges`, and where the linkage has stops, there are tables
+    of ranges, bends and distances.
     """
     linkage = motion.linkage
     # of an overconstrained loop the last digits decide
@@ -57,8 +59,18 @@ def summary(motion: Motion, room: int = 100) -> Summary:
         sheets += _compared(motion, room)
     elif motion.circuits:
         sheets += _side_by_side(motion)
+    if motion.circuits and (ranges or not linkage.stops.is_empty):
+        sheets += _extents(motion)
     facts = tuple((say(name) if name else "", fact) for name, fact in facts_of(motion))
     return Summary(linkage.heading, facts, tuple(sheets))
+
+
+def _extents(motion: Motion) -> list[Sheet]:
+    """How far joints, balls and links go, and what stops leave of each circuit."""
+    parts = [extent_rows(motion)]
+    if motion.linkage.stops.stops:
+        parts.append(span_rows(motion))
+    return [Sheet(heads, tuple(rows), frozenset({0})) for heads, rows in parts]
 
 
 def modes_sheets(linkage: Loop, modes: Modes, room: int) -> list[Sheet]:

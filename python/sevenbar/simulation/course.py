@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from sevenbar.arrays import Floats, Integers
+from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
@@ -119,7 +119,7 @@ def course(motion: Motion, index: int) -> Course:
     return Course(motion, circuit, lead, inner, float(abs(steps[0] / motion.speed)), closes=False)
 
 
-def _longest_pass(circuit: Circuit, solved: np.ndarray) -> Integers:
+def _longest_pass(circuit: Circuit, solved: Booleans) -> Integers:
     """The rows of the longest pass between input dead centres that have all values."""
     marks = np.flatnonzero(np.diff(circuit.branch) != 0) + 1
     passes = [np.arange(a, b) for a, b in pairwise([0, *marks, len(circuit.branch)])]

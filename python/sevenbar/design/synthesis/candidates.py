@@ -130,19 +130,25 @@ class Candidate(Printed):
 
 
 def checked(
-    draft: Draft, claim: Claim, limits: Limits | None = None, *, poses: Floats | None = None
+    draft: Draft,
+    claim: Claim,
+    limits: Limits | None = None,
+    *,
+    poses: Floats | None = None,
+    samples: int = CHECK_SAMPLES,
 ) -> Candidate | Refusal:
     """The design as the ordinary analysis finds it, or why it does not do what is claimed.
 
     All poses must lie on one circuit and on one pass of it, so that no dead centre of the input is between
     any two, and follow each other in the order claimed; then come the limits. `poses` (n, columns) hold all
-    joints, where circuits may share the values of input and output. Raises nothing for a design that cannot
-    be a linkage: that is a refusal, too.
+    joints, where circuits may share the values of input and output. `samples` inputs of a full turn are
+    compared: more where the input moves little. Raises nothing for a design that cannot be a linkage: that
+    is a refusal, too.
     """
     limits = Limits() if limits is None else limits
     try:
         linkage = draft.linkage
-        motion = linkage.motion(CHECK_SAMPLES)
+        motion = linkage.motion(samples)
     except (DescriptionError, RequestError) as error:
         return Refusal("assembly", str(error))
     if not motion.circuits:

@@ -13,6 +13,7 @@ from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, val
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.extent_slopes import extent_slopes
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.force_measures import force_slopes
 from sevenbar.kinematics.gradients import QUANTITIES, MeasureSlopes, measure_slopes
@@ -217,6 +218,7 @@ def sensitivities(
         one for one in measure_slopes(numbers, chosen, motion.speed) if not one.name.startswith("jerk_")
     ]
     measures += force_slopes(numbers, chosen, motion.speed)
+    measures += extent_slopes(numbers, chosen)
     if following is not None:
         slopes = following.chained(slopes, numbers.nominal)
         measures = [replace(one, slopes=following.chained(one.slopes, numbers.nominal)) for one in measures]

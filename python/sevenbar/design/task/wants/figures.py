@@ -34,7 +34,7 @@ class Figures:
         self._columns = [c for c, ball in enumerate(loop.numbers.is_ball) if not ball]
 
     def at(self, values: Floats, anchor: Floats, *, slopes: bool = True) -> tuple[Floats, Floats] | None:
-        """TaskValues (f,) and slopes (f, k) at numbers (k,), of the circuit near a row (columns,) of an analysis.
+        """Values (f,) and slopes (f, k) at numbers (k,), of the circuit near a row (columns,) of an analysis.
 
         `None` where the circuit is gone or one of the measures has no value.
         """
