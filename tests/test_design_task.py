@@ -13,7 +13,6 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.candidates import Refusal
 from sevenbar.design.task import (
     Apart,
-    Cone,
     DesignTask,
     DwellWant,
     FigureMust,
@@ -21,7 +20,8 @@ from sevenbar.design.task import (
     FreeNumber,
     FunctionWant,
     InBox,
-    JointRange,
+    InCone,
+    InRange,
     PathWant,
     PoseWant,
     StraightWant,
@@ -71,9 +71,9 @@ PLACES, INPUTS, OUTPUTS = CIRCUIT.point("Q").position[ROWS], CIRCUIT.input[ROWS]
 PATH = PathWant("Q", PLACES)
 FUNCTION = FunctionWant(INPUTS - INPUTS[0], OUTPUTS - OUTPUTS[0], (None, None))
 MUSTS = (
-    Cone("ball_a", 1.0),
-    Cone("ball_b", 1.2, seat=(1.0, 0.5, 0.0)),
-    JointRange("rocker", -0.2, 0.9),
+    InCone("ball_a", 1.0),
+    InCone("ball_b", 1.2, seat=(1.0, 0.5, 0.0)),
+    InRange("rocker", -0.2, 0.9),
     InBox((-300.0, -100.0, -900.0), (900.0, 900.0, 650.0), ("ball_a", "Q")),
     Apart((1, 3), 720.0),
 )
@@ -131,7 +131,7 @@ def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
 def test_a_cone_is_the_angle_between_the_cranks_axis_and_the_coupler():
     model = TaskModel(DesignTask(KNOWN, free(KNOWN, NAMES), (FunctionWant(INPUTS, OUTPUTS),)))
     loop = model.loop
-    ((_, room),) = pose_rooms(loop, (Cone("ball_a", 1.0, seat=(0.0, 0.0, -1.0)),))
+    ((_, room),) = pose_rooms(loop, (InCone("ball_a", 1.0, seat=(0.0, 0.0, -1.0)),))
     q = loop.closed(loop.start, INPUTS, loop.poses(loop.start, CIRCUIT.q[ROWS]))
     a, b = (CIRCUIT.point(name).position[ROWS] for name in ("A", "B"))
     along = (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
@@ -186,7 +186,7 @@ def test_musts_hold_to_the_stop_and_the_optimum_meets_its_conditions():
     want = FunctionWant(
         np.radians(np.linspace(0, 60, 13)), np.radians(20 * np.linspace(0, 1, 13) ** 2), (None, None)
     )
-    task = DesignTask(START, free(START, ("M", "L1", "L3")), (want,), musts=(Cone("ball_a", 0.8),))
+    task = DesignTask(START, free(START, ("M", "L1", "L3")), (want,), musts=(InCone("ball_a", 0.8),))
     (best,) = designed(task, count=1, starts=0).designs
     assert best.optimality < 1e-8
     # the cone stops it: without one the error is smaller
@@ -258,8 +258,8 @@ def test_a_defective_design_is_refused_however_well_it_fits(rows, others, fault)
 def test_a_missed_must_is_refused_by_its_name():
     places = CIRCUIT.point("Q").position[[1, 4, 9, 13]]
     for must, fault in (
-        (Cone("ball_a", 0.1), "cone"),
-        (JointRange("rocker", 0.4, 0.6), "range"),
+        (InCone("ball_a", 0.1), "cone"),
+        (InRange("rocker", 0.4, 0.6), "range"),
         (InBox((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), ("Q",)), "box"),
         (Apart((1, 3), 5000.0), "distance"),
         (FigureMust("swing", 100.0), "figure"),

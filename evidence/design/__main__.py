@@ -22,7 +22,7 @@ FOUND = 1e-9
 #: Starts besides the linkage itself.
 STARTS = 32
 
-#: Inputs from the first to the last at which an accepted design is looked at for a dead centre between.
+#: Inputs from the first to the last at which an accepted design is searched for a dead centre between.
 BETWEEN = 721
 
 

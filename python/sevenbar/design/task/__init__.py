@@ -4,7 +4,6 @@ from sevenbar.design.task.check import Met, TaskDesign
 from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.design.task.task import (
     Apart,
-    Cone,
     DesignTask,
     DwellWant,
     FigureMust,
@@ -12,7 +11,8 @@ from sevenbar.design.task.task import (
     FreeNumber,
     FunctionWant,
     InBox,
-    JointRange,
+    InCone,
+    InRange,
     Most,
     Must,
     PathWant,
@@ -23,7 +23,6 @@ from sevenbar.design.task.task import (
 
 __all__ = [
     "Apart",
-    "Cone",
     "DesignTask",
     "DesignsFound",
     "DwellWant",
@@ -32,7 +31,8 @@ __all__ = [
     "FreeNumber",
     "FunctionWant",
     "InBox",
-    "JointRange",
+    "InCone",
+    "InRange",
     "Met",
     "Most",
     "Must",

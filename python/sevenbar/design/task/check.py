@@ -25,7 +25,7 @@ from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
-from sevenbar.design.task.task import Apart, Cone, FigureMust, InBox, JointRange, Most
+from sevenbar.design.task.task import Apart, FigureMust, InBox, InCone, InRange, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
@@ -45,7 +45,7 @@ DENSE, MISSED = 361, 1e-4
 #: By how much a measure may miss its limit through rounding, relative to it.
 ROUNDING = 1e-6
 
-FAULTS: Mapping[type, Fault] = {JointRange: "range", Cone: "cone", InBox: "box", Apart: "distance"}
+FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 @dataclass(frozen=True, eq=False)

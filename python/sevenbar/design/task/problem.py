@@ -154,7 +154,7 @@ class TaskProblem:
         self._asked: tuple[bytes, Floats | None] | None = None
         self._known: tuple[bytes, TaskValues | None] | None = None
 
-    # ---- the inputs at which the linkage is looked at
+    # ---- the inputs at which the linkage is seen
 
     def _all_stations(self) -> Stations:
         """Those of the wants, then those between them where something must hold there."""

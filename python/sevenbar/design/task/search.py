@@ -1,4 +1,4 @@
-"""The search for designs: many starts are looked at, the promising ones solved, each of them checked."""
+"""The search for designs: many starts are tried, the promising ones solved, each of them checked."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from sevenbar.text.progress import Progress, silent
 #: Starts by default.
 STARTS = 256
 
-#: Of the starts so many for each design wanted are looked at closer, and of these so many solved at most.
-LOOKED_AT, TAKEN = 8, 3
+#: Of the starts so many for each design wanted are tried closer, and of these so many solved at most.
+TRIED, TAKEN = 8, 3
 
 #: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
@@ -80,7 +80,7 @@ def designed(
         True
     """
     model = TaskModel(task)
-    course = SearchCourse(starts + 1 + len(given) + (LOOKED_AT + TAKEN) * count, progress)
+    course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
     kept: list[TaskDesign] = []
     refusals: list[Refusal] = []
     unfinished, found = "", 0
@@ -105,15 +105,15 @@ def _search(
     kept: list[TaskDesign],
     refusals: list[Refusal],
 ) -> None:
-    looked: list[Solved] = []
-    for one in apart(model, begun, LOOKED_AT * count):
-        look = _looked(model, one)
+    tried: list[Solved] = []
+    for one in apart(model, begun, TRIED * count):
+        look = _first_look(model, one)
         if look is not None:
-            looked.append(look)
-        nearest = min((look.cost for look in looked), default=None)
+            tried.append(look)
+        nearest = min((look.cost for look in tried), default=None)
         course.step("" if nearest is None else f"nearest: {nearest:.3g}")
-    looked.sort(key=lambda look: (look.room < -0.01, look.cost))
-    for i, look in enumerate(looked):
+    tried.sort(key=lambda look: (look.room < -0.01, look.cost))
+    for i, look in enumerate(tried):
         if len(distinct_designs(kept)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
         solution = solved(model, look.seed)
@@ -129,7 +129,7 @@ def _search(
         course.step(f"best: {kept[0].cost:.3g}" if kept else "", done=int(course.done < course.total))
 
 
-def _looked(model: TaskModel, one: TaskSeed) -> Solved | None:
+def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:
     """A first look at a start; free inputs are matched anew once, where they may have left their places."""
     look = solved(model, one, LOOK, whole=False)
     if look is None or look.cost < EXACT or not any(want.stations.free for want in model.wanted):

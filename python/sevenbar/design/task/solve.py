@@ -6,7 +6,7 @@ optimum (Karush, Kuhn and Tucker),
     grad f = sum y grad c,    y >= 0,    c >= 0,    y c = 0                                              (1)
 
 with c the rooms and the bounds, and f half the sum of squares, or for the greatest residual t itself with
-rooms t - h of every height h. What (1) is missed by tells how good a local optimum was found.
+rooms t - h of every height h. What (1) is missed by shows how good a local optimum was found.
 """
 
 from __future__ import annotations

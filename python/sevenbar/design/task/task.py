@@ -139,7 +139,7 @@ Want = SampledWant | FigureWant
 
 
 @dataclass(frozen=True)
-class JointRange:
+class InRange:
     """A column's value stays within `low` and `high` [rad, or length] at all poses that are used."""
 
     column: str
@@ -148,7 +148,7 @@ class JointRange:
 
 
 @dataclass(frozen=True)
-class Cone:
+class InCone:
     """The angle of a ball or a U joint from its seat stays below `angle` [rad] at all poses that are used.
 
     The angle is that between two directions: `seat` (3,), of the link before the joint, and `stud` (3,), of
@@ -196,7 +196,7 @@ class Most:
     most: float
 
 
-Must = JointRange | Cone | InBox | Apart | FigureMust | Most
+Must = InRange | InCone | InBox | Apart | FigureMust | Most
 
 
 @dataclass(frozen=True, eq=False)
