@@ -33,6 +33,7 @@ from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
+from sevenbar.kinematics.ball_angle import ball_angle
 
 KNOWN = Draft.of_linkage(sb.load("rssr")).with_values({"L2": 1000.0}).with_point("Q", 3, (50.0, 60.0, 20.0))
 NAMES = ("M", "N", "L1", "L2", "L3", "D")
@@ -136,6 +137,13 @@ def test_a_cone_is_the_angle_between_the_cranks_axis_and_the_coupler():
     a, b = (CIRCUIT.point(name).position[ROWS] for name in ("A", "B"))
     along = (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
     assert room(loop.here(loop.start, q))[0][:, 0] == pytest.approx(1.0 - np.arccos(-along[:, 2]), abs=1e-12)
+    # as the analysis has it, from a seat and from the rods
+    bend = ball_angle(KNOWN.linkage, "ball_a", seat=(0.0, 0.0, -1.0))
+    assert room(loop.here(loop.start, q))[0][:, 0] == pytest.approx(1.0 - bend.at(CIRCUIT.q[ROWS]), abs=1e-12)
+    for ball in ("ball_a", "ball_b"):
+        ((_, room),) = pose_rooms(loop, (InCone(ball, 1.0),))
+        found = room(loop.here(loop.start, q))[0][:, 0]
+        assert found == pytest.approx(1.0 - ball_angle(KNOWN.linkage, ball).at(CIRCUIT.q[ROWS]), abs=1e-12)
 
 
 def test_the_nearest_places_of_two_rods_are_those_of_all():

@@ -44,7 +44,7 @@ class Here:
 class TaskLoop:
     """The loop of a draft whose `free` numbers, by name, may change; `values` (k,) are theirs.
 
-    Points of which something is wanted are named once, before the first pose, and known by their number.
+    Points of which something is wanted are known by their number.
     A coupler that the draft leaves out follows unless it is one of the free numbers.
     """
 
@@ -89,6 +89,7 @@ class TaskLoop:
         if carried not in self._points:
             self._points[carried] = len(self.numbers.points)
             self.numbers.points.append(carried)
+            self._loop = None
         return self._points[carried]
 
     def whole(self, values: Floats) -> Floats:

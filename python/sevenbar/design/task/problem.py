@@ -23,6 +23,7 @@ from sevenbar.design.synthesis.limits import INPUT_TURNS, transmission_room, tur
 from sevenbar.design.synthesis.path.match import STILL, Placing, placed
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
     FigureMust,
@@ -47,9 +48,6 @@ HELD = 73
 
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
-
-#: A turn [rad] below which the first terms of its series stand for the rest.
-SMALL = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,7 +337,7 @@ class TaskProblem:
         ]
         units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
         weight = np.concatenate(weights)[:, None]
-        moves = weight / np.concatenate(units)[:, None] * _rigid(every - every.mean(axis=0))
+        moves = weight / np.concatenate(units)[:, None] * rigid_moves(every - every.mean(axis=0))
         basis, sizes, _ = np.linalg.svd(moves, full_matrices=False)
         basis = basis[:, sizes > FLAT * sizes[0]]
         joined = weight * np.concatenate([slopes[i] for i, _ in own])
@@ -478,33 +476,3 @@ def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> li
                 )
             )
     return found
-
-
-def _rigid(places: Floats) -> Floats:
-    """The small rigid motions (3 n, 6) of places (n, 3): three shifts, three turns."""
-    moves = np.zeros((len(places), 3, 6))
-    moves[:, :, :3] = np.eye(3) * float(np.abs(places).max())
-    for axis, unit in enumerate(np.eye(3)):
-        moves[:, :, 3 + axis] = np.cross(unit, places)
-    return moves.reshape(-1, 6)
-
-
-def rotation_of_vector(turn: Floats) -> Floats:
-    """The rotation (3, 3) about an axis by its length [rad]."""
-    angle = float(np.linalg.norm(turn))
-    own = _crossed(turn)
-    half = 0.5 * np.sinc(angle / math.tau) ** 2
-    return np.asarray(np.eye(3) + np.sinc(angle / math.pi) * own + half * own @ own)
-
-
-def left_jacobian(turn: Floats) -> Floats:
-    """J (3, 3): rotations near that of a turn (3,) are a turn by `J d` of it, where the turn changes by d."""
-    angle = float(np.linalg.norm(turn))
-    third = 1 / 6 - angle**2 / 120 if angle < SMALL else (angle - math.sin(angle)) / angle**3
-    own = _crossed(turn)
-    return np.asarray(np.eye(3) + 0.5 * np.sinc(angle / math.tau) ** 2 * own + third * own @ own)
-
-
-def _crossed(vector: Floats) -> Floats:
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
