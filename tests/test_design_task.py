@@ -176,7 +176,7 @@ def test_least_squares_follow_a_bent_valley_and_stop_at_bounds():
     assert low[:2] == pytest.approx([0.5, 0.25], abs=1e-9)
 
 
-CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10)}
+CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10), "cusp": (3,)}
 
 
 @pytest.mark.slow

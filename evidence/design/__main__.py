@@ -1,6 +1,6 @@
 """Sixty design tasks with a known answer: how many are found, how exactly, and whether any is defective.
 
-python -m evidence.design [FAMILY ..]        path, function, poses; all where none is given
+python -m evidence.design [FAMILY ..]        path, function, poses, cusp; all where none is given
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def main(families: list[str]) -> int:
     """Prints a row for each task, and the sums."""
     print(f"{'task':50} {'off':>4} {'error':>9} {'optimality':>10} {'time':>6}  refused")
     sums = {}
-    for family in families or ["path", "function", "poses"]:
+    for family in families or ["path", "function", "poses", "cusp"]:
         found, defective, number = 0, 0, 0
         for made in tasks(family):
             begin = time.perf_counter()
