@@ -66,6 +66,16 @@ def real_array(name: str, values: npt.ArrayLike) -> Floats:
     return array.reshape(-1)
 
 
+def counted(words: Words) -> dict[str, int]:
+    """How often each word is there, by the words in order of the alphabet.
+
+    >>> counted(np.array(["ok", "dead-centre", "ok"]))
+    {'dead-centre': 1, 'ok': 2}
+    """
+    found, counts = np.unique(words, return_counts=True)
+    return {str(word): int(count) for word, count in zip(found, counts, strict=True)}
+
+
 def short_way(angles: npt.ArrayLike) -> Floats:
     """Angles [rad] by the short way round, in [-pi, pi): `(a + pi) mod 2 pi - pi`.
 

@@ -49,7 +49,7 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
         >>> law.q.round(6).tolist()
         [0.0, 0.785398]
     """
-    column = linkage.column(linkage.drive.joint if input is None else input, "input")
+    column = linkage.input_column(input)
     table = read_table(Path(path), "an input law")
     if len(table.rows) > MOST_SAMPLES:
         raise table.wrong(f"has more than {MOST_SAMPLES} rows; give every tenth of them, say")

@@ -11,7 +11,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, Integers, Words, finite_array
+from sevenbar.arrays import Floats, Integers, Words, counted, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.counterweights import Balance
@@ -23,7 +23,7 @@ from sevenbar.kinematics.circuit_values import DeadCentre, Extremes, Sensitivity
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.instant_centres import InstantCentres, instant_centres
 from sevenbar.kinematics.link_motion import LinkMotion, link_motion
-from sevenbar.kinematics.rigid import pose
+from sevenbar.kinematics.rigid import placed, pose
 from sevenbar.kinematics.screw_axes import ScrewAxes, Twists, screw_axes
 from sevenbar.text.printing import Printed
 
@@ -200,11 +200,10 @@ class Circuit(Printed):
     @cached_property
     def tally(self) -> Tally:
         """What there is to say of the rows as a whole."""
-        words, counts = np.unique(self.status, return_counts=True)
         known = self.residual[np.isfinite(self.residual)]
         return Tally(
             len(self.time),
-            {str(word): int(count) for word, count in zip(words, counts, strict=True)},
+            counted(self.status),
             float(known.max()) if known.size else math.nan,
         )
 
@@ -272,7 +271,7 @@ class Circuit(Printed):
         place = finite_array("at", at)
         if place.size != 3:
             raise RequestError(f"at: {place.size} numbers; give three")
-        return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
+        return self._point(int(link), placed(frame, place))
 
     @ends_here
     def sensitivity(self) -> Sensitivity:

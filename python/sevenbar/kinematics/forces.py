@@ -27,7 +27,7 @@ from sevenbar.kinematics.driven import driven
 from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import half_turn, inverse
+from sevenbar.kinematics.rigid import half_turn, inverse, placed
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.text.units import LENGTHS
 
@@ -75,8 +75,7 @@ class ForceSolver:
 
     def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
         steps, product = self._carrier(link)
-        frame = self._frame(link)
-        place = (frame[:3, :3] @ np.asarray(at) + frame[:3, 3]) / self.numbers.size
+        place = placed(self._frame(link), at) / self.numbers.size
         return steps, place, self.loop.twists_of(product) if self.by_numbers else []
 
     def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:

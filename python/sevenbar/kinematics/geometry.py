@@ -235,6 +235,22 @@ class Loop(Drawable):
             raise RequestError(f"{key}: {no_joint(name, known)}")
         return self.columns.index(name)
 
+    def input_column(self, name: str | None = None, key: str = "input") -> int:
+        """The place of the input's column: that named by the caller under a key, or the drive's."""
+        return self.column(self.drive.joint if name is None else name, key)
+
+    def end_columns(self, input: str | None = None, output: str | None = None) -> tuple[int, int]:
+        """The places of the columns of input and output, those named or the drive's; two different ones."""
+        first = self.input_column(input)
+        if output is None:
+            return first, self.other_column(first)
+        second = self.column(output, "output")
+        if second == first:
+            raise RequestError(
+                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
+            )
+        return first, second
+
     def other_column(self, column: int) -> int:
         """The output where only the input was named: the drive's, else that of the last other joint."""
         if self.columns[column] != self.drive.output:

@@ -26,16 +26,29 @@ class LinkMotion(Printed):
     acceleration: Floats
 
 
-def link_motion(point: Callable[[Floats], Trace], size: float) -> LinkMotion:
-    """How a link turns whose points are traced by their coordinates (3,), in a linkage of a size [length]."""
-    # the axes of the link's frame as far points, so that differences lose nothing
+#: A point of a link by its coordinates (3,), along a circuit.
+Traced = Callable[[Floats], Trace]
+
+
+def rates_of_frame(point: Traced, size: float) -> Callable[[str], tuple[Floats, Floats]]:
+    """The origin (n, 3) and the axes (n, 3, 3) of the frame in which points are given, or rates of them.
+
+    By what a trace has: "position", "velocity", .. The axes are those of points as far off as the linkage's
+    `size` [length], so that differences lose nothing.
+    """
     traces = [point(place) for place in (np.zeros(3), *(size * np.eye(3)))]
 
-    def axes(name: str) -> Floats:
+    def of(name: str) -> tuple[Floats, Floats]:
         origin, *ends = (getattr(trace, name) for trace in traces)
-        return np.stack([(end - origin) / size for end in ends], axis=-1)
+        return origin, np.stack([(end - origin) / size for end in ends], axis=-1)
 
-    turn, rate, second = axes("position"), axes("velocity"), axes("acceleration")
+    return of
+
+
+def link_motion(point: Traced, size: float) -> LinkMotion:
+    """How a link turns whose points are traced by their coordinates, in a linkage of a size [length]."""
+    of = rates_of_frame(point, size)
+    turn, rate, second = (of(name)[1] for name in ("position", "velocity", "acceleration"))
     back = np.swapaxes(turn, -1, -2)
     spin = rate @ back
     return LinkMotion(turn, axial(spin), axial(second @ back + rate @ np.swapaxes(rate, -1, -2)))

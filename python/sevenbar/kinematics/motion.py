@@ -15,7 +15,7 @@ import numpy.typing as npt
 from sevenbar.arrays import Floats, Words
 from sevenbar.errors import MissingExtraError, RequestError, shown
 from sevenbar.kinematics.circuits import Answers, Circuit
-from sevenbar.kinematics.columns import joint_column, point_column
+from sevenbar.kinematics.columns import joint_columns, point_column
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.law import Law
@@ -424,12 +424,8 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
         "status": circuit.status,
         "time_s": circuit.time,
     }
-    for order, values in enumerate((circuit.q, circuit.dq, circuit.ddq, circuit.dddq)):
-        for index, name in enumerate(circuit.columns):
-            slides = not linkage.turns(index)
-            column = values[:, index] * scale if slides else values[:, index]
-            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
-            columns[head] = np.degrees(column) if head.endswith("_deg") else column
+    rates = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
+    columns |= joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
     for point in linkage.points:
         trace = circuit.point(point.link, point.at)
         for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):

@@ -30,7 +30,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
 from sevenbar.kinematics.factors import Place, Product, Values, vector
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import about, adjoint, cross, zyx_turns
+from sevenbar.kinematics.rigid import about, adjoint, cross, placed, zyx_turns
 from sevenbar.kinematics.word import Carried, holding_axis, points_of, word_of
 
 #: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
@@ -254,7 +254,7 @@ class NumberedLoop:
                 ways[own[key]] = ways.get(own[key], 0.0) + matrix[:3, k]
         scales = {i: dimensions[k].scale for i, k in enumerate(self.only)}
         ready = [(i, scales[i] * way / size) for i, way in sorted(ways.items())]
-        return point.steps, (matrix[:3, :3] @ at + matrix[:3, 3]) / size, ready
+        return point.steps, placed(matrix, at) / size, ready
 
     def twists_of(self, frame: Product) -> list[tuple[int, Floats]]:
         """By number, the twist (6,) of a link's frame against the steps before it, as the core takes it."""

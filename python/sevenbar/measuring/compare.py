@@ -134,13 +134,7 @@ def ends_of(linkage: Linkage, input: str | None = None, output: str | None = Non
     >>> ends.output, ends.output_slides
     ('slider', True)
     """
-    first = linkage.column(linkage.drive.joint if input is None else input, "input")
-    second = linkage.other_column(first) if output is None else linkage.column(output, "output")
-    if first == second:
-        raise RequestError(
-            f"output: joint '{linkage.columns[first]}' is the input; "
-            f"give another: {', '.join(linkage.drivable(first))}"
-        )
+    first, second = linkage.end_columns(input, output)
     first_slides, second_slides = (not linkage.turns(column) for column in (first, second))
     names = linkage.columns[first], linkage.columns[second]
     return Ends(*names, first_slides, second_slides, linkage.length_unit)

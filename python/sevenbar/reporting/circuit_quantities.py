@@ -259,7 +259,7 @@ def quantities_of(motion: Motion) -> list[CircuitQuantity]:
 def way_round(circuit: Circuit) -> str:
     """How a circuit closes: after so many turns of the input, to and fro, or not."""
     if not circuit.closed:
-        return say("open")
+        return say("not closed")
     return turns_text(circuit.turns) if circuit.turns else say("to and fro")
 
 

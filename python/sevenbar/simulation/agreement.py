@@ -10,6 +10,7 @@ import numpy as np
 
 from sevenbar.arrays import Booleans, Floats
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.rigid import placed
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
 from sevenbar.simulation.force_agreement import ComparedForce, compared_forces
@@ -108,8 +109,7 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
     _unwind(values, theory, linkage.turning)
     points = {}
     for point in linkage.points:
-        frame = linkage.point_frames[point.link - 1]
-        place = frame[:3, :3] @ np.array(point.at) + frame[:3, 3]
+        place = placed(linkage.point_frames[point.link - 1], point.at)
         trace = circuit.point(point.link, point.at)
         points[point.name] = (
             PointValues(*bodies.point(point.link - 1, place)),

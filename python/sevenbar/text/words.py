@@ -79,6 +79,11 @@ def retold(text: str) -> str:
     return text
 
 
+def retold_parts(text: str, between: str) -> str:
+    """`retold` for each part of a list."""
+    return say(between).join(map(retold, text.split(between)))
+
+
 @cache
 def catalogue(code: str) -> Mapping[str, str]:
     """What each English sentence is in a language; empty for English."""

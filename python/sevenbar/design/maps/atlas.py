@@ -175,7 +175,7 @@ def motion_map(
             raise RequestError(f"follow: {axis.name} is an axis of the map; leave one of the two out")
     draft = draft.holding(follow)
     linkage = draft.linkage
-    column = linkage.column(linkage.drive.joint if input is None else input, "input")
+    column = linkage.input_column(input)
     driver = linkage.columns[column]
     places = {axis.dimension.place[0] for axis in axes}
     plane: Plane

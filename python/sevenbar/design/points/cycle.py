@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -12,9 +13,9 @@ from sevenbar.arrays import Booleans, Floats, finite_array
 from sevenbar.curves.stationary import highest_between
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuit_values import Trace
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven as driven_circuit
+from sevenbar.kinematics.link_motion import rates_of_frame
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
@@ -195,15 +196,10 @@ def _refuse_link(motion: Motion, link: object) -> None:
 
 def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:
     """The rates of a link at rows of a circuit, from four points that are the circuit's size apart."""
-    places = [np.zeros(3), *(circuit.size * np.eye(3))]
-    traces = [circuit.point(link, (float(x), float(y), float(z))) for x, y, z in places]
-
-    def rates_of(trace: Trace) -> Floats:
-        return np.stack([getattr(trace, order)[rows] for order in ORDERS])
-
-    origin, *ends = map(rates_of, traces)
-    gradient = np.stack([(end - origin) / circuit.size for end in ends], axis=-1)
-    return LinkRates(circuit.input[rows], circuit.time[rows], origin, gradient)
+    frame = rates_of_frame(partial(circuit.point, link), circuit.size)
+    origins, axes = zip(*(frame(order) for order in ORDERS), strict=True)
+    constant, gradient = (np.stack([part[rows] for part in parts]) for parts in (origins, axes))
+    return LinkRates(circuit.input[rows], circuit.time[rows], constant, gradient)
 
 
 def box_of(box: npt.ArrayLike, *, name: str = "box") -> tuple[Floats, Floats]:
