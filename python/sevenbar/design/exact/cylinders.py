@@ -24,7 +24,7 @@ from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import directions
 from sevenbar.design.exact.dyads import Dyad
-from sevenbar.design.exact.given import Displacements, poses_given
+from sevenbar.design.exact.given import Displacements, place_text, poses_given
 from sevenbar.design.exact.lines import line_dyad, places
 from sevenbar.design.exact.loops import all_loops, drawn, loop
 from sevenbar.design.exact.spherical import NOTHING, refuse_one_axis
@@ -111,8 +111,8 @@ def _refuse_special(task: Displacements) -> None:
     sides, right = np.concatenate(np.eye(3) - task.turns), np.concatenate(task.shifts)
     centre = np.linalg.lstsq(sides, right, rcond=None)[0]
     if np.abs(sides @ centre - right).max() < NOTHING:
-        x, y, z = centre * task.reach + task.origin
+        place = place_text(centre * task.reach + task.origin, task.reach)
         raise RequestError(
-            f"poses: all are turns about one point, ({x:.6g}, {y:.6g}, {z:.6g}), which spherical linkages "
+            f"poses: all are turns about one point, {place}, which spherical linkages "
             "take: give their rotations to spherical_orientations"
         )
