@@ -106,11 +106,14 @@ def _(found: Sizing) -> str:
     def at(peak: Peak | None) -> str:
         return "" if peak is None else f"{number(peak.value)} at {peak.input:.6g}"
 
-    most = [
-        f"{name} {number(bearing.force.peak.value)} N"
-        for name, bearing in found.bearings.items()
-        if math.isfinite(bearing.force.peak.value)
-    ]
+    most, in_plane = (
+        [
+            f"{name} {number(burden.peak.value)} N"
+            for name, bearing in found.bearings.items()
+            if math.isfinite((burden := getattr(bearing, part)).peak.value)
+        ]
+        for part in ("force", "in_plane")
+    )
     return lines(
         "Sizing of a drive",
         [
@@ -126,6 +129,7 @@ def _(found: Sizing) -> str:
                 else f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}",
             ),
             ("peak forces", ", ".join(most)),
+            *([("in the plane", ", ".join(in_plane))] if in_plane else []),
             ("found", found_text(found)),
         ],
     )
@@ -137,12 +141,14 @@ def _(bearing: Bearing) -> str:
     for part, unit in LISTED.items():
         burden: Burden = getattr(bearing, part)
         said = OPEN
+        if part == "in_plane" and not math.isfinite(burden.peak.value):
+            continue
         if math.isfinite(burden.peak.value):
             said = (
                 f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}, "
                 f"cubic mean {number(burden.mean_cube)} {unit}"
             )
-        facts.append((part, said))
+        facts.append((part.replace("_", " "), said))
     return lines("Loads of a bearing", facts)
 
 

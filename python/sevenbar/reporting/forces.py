@@ -39,6 +39,7 @@ from sevenbar.reporting.force_words import (
     shaking_facts,
     shaking_found,
     spin_facts,
+    unbounded_facts,
 )
 from sevenbar.reporting.page import Facts, drive_text, number_table
 
@@ -126,6 +127,7 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     facts += shaking_facts(forces, found.shaking)
     facts += spin_facts(forces)
     facts += open_facts(forces)
+    facts += unbounded_facts(forces, found.sizing)
     facts.append(("found", found_text(found.sizing, law=found.motion.law is not None)))
     facts.append(("checks", check_text(forces)))
     words, counts = np.unique(forces.status, return_counts=True)
@@ -143,29 +145,43 @@ def text(found: CircuitForces) -> RenderableType:
         facts.add(label, said, style="bold" if strong else "")
     parts: list[RenderableType] = [Text(found.motion.linkage.heading, style="bold underline"), facts.grid]
     if found.sizing is not None:
-        head, rows = bearing_rows(forces, found.sizing)
+        planar = found.motion.linkage.plane is not None
+        head, rows = bearing_rows(forces, found.sizing, planar=planar)
+        without = ""
+        if head[1] != WHOLE:
+            where = "in the plane of motion" if planar else "without the component that is open"
+            without = f"; {head[1].partition(chr(10))[0]}: the force {where}, the whole is open"
         parts += [
             Text(),
             number_table(head, rows),
             Text(
                 "peaks of what the link before puts on the link after; radial square to the joint's axis, "
-                "axial along it, tilting moment square to it, turning about it",
+                f"axial along it, tilting moment square to it, turning about it{without}",
                 style="dim",
             ),
         ]
     return Group(*parts)
 
 
-def bearing_rows(forces: Forces, found: Sizing) -> tuple[list[str], list[list[str]]]:
-    """The table of joints: what each bears at most, and the force's place and cubic mean."""
+#: The head of the column of whole forces.
+WHOLE = "force\n[N]"
+
+
+def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tuple[list[str], list[list[str]]]:
+    """The table of joints: what each bears at most, and the force's place and cubic mean.
+
+    Where no joint's whole force is determined, but that in the `planar` loop's plane is, it has the latter.
+    """
     place = Places(forces)
+    whole = any(math.isfinite(one.force.peak.value) for one in found.bearings.values())
+    partly = not whole and any(math.isfinite(one.in_plane.peak.value) for one in found.bearings.values())
     head = [
-        "joint", "force\n[N]", "@", "cubic mean\n[N]", "radial\n[N]", "axial\n[N]", "tilting\n[N m]",
+        "joint", ("in plane\n[N]" if planar else "known\n[N]") if partly else WHOLE, "@", "cubic mean\n[N]", "radial\n[N]", "axial\n[N]", "tilting\n[N m]",
         "turning\n[N m]",
     ]  # fmt: skip
     rows = []
     for name, bearing in found.bearings.items():
-        force = bearing.force
+        force = bearing.in_plane if partly else bearing.force
         known = math.isfinite(force.peak.value)
         cells = [
             name,
@@ -219,6 +235,9 @@ def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
         six = np.concatenate([reaction.moment, reaction.force], axis=1)
         for i in (3, 4, 5, 0, 1, 2):
             found[f"{name}_{COMPONENTS[i]}_{units[i]}"] = six[:, i]
+        known = reaction.determinate[3:]
+        if known.sum() == 2:
+            found[f"{name}_F_in_plane_N"] = np.linalg.norm(reaction.force[:, known], axis=1)
     if not forces.at_rest:
         for i in (3, 4, 5, 0, 1, 2):
             found[f"shaking_{COMPONENTS[i]}_{units[i]}"] = forces.shaking[:, i]

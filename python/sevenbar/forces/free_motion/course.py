@@ -123,7 +123,7 @@ class EnergyCourse:
         return own.reshape(*grid.shape, -1)[:, :, [MASS, 5, 6]]
 
     def at_nodes(self, pieces: npt.NDArray[np.int64], laps: Floats) -> tuple[Floats, Floats]:
-        """m and U (j, terms) at the nodes of pieces (j,) on laps (j,)."""
+        """M and U (j, terms) at the nodes of pieces (j,) on laps (j,)."""
         own = self._nodes[pieces]
         return own[:, :, 0], self._energy(own[:, :, 1], own[:, :, 2], laps[:, None])
 

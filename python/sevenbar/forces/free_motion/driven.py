@@ -33,7 +33,6 @@ MOST_STRETCHES = 100_000
 PUSH = 1e-12
 
 
-
 @dataclass(frozen=True, eq=False)
 class Motor:
     """A torque at the input [J for a radian, or by the length unit], by a table or a function of the speed."""
@@ -71,7 +70,9 @@ class Driven:
         """Places and speeds s' (j,) at times (j,) [s]; NaN past the end of an open circuit."""
         t = np.asarray(t, dtype=np.float64)
         end = self.states.edges[-1]
-        place, speed = np.where((t <= end * (1 + 1e-14))[:, None], self.states.at(np.minimum(t, end)), np.nan).T
+        place, speed = np.where(
+            (t <= end * (1 + 1e-14))[:, None], self.states.at(np.minimum(t, end)), np.nan
+        ).T
         return place, speed
 
 
@@ -81,7 +82,9 @@ def driven(
     """The motion from a place with s' = `speed` for a time [s]."""
     length, edges = course.length, course.quantities.edges
     median = float(np.median(course.quantities.at((edges[:-1] + edges[1:]) / 2)[:, 0]))
-    scale = max(abs(speed), math.sqrt(2 * float(np.ptp(course.at(course.marks(np.zeros(1)))[2])) / median), 1e-6)
+    scale = max(
+        abs(speed), math.sqrt(2 * float(np.ptp(course.at(course.marks(np.zeros(1)))[2])) / median), 1e-6
+    )
     times, series = [np.zeros(1)], []
     time, ended = 0.0, False
     start = place

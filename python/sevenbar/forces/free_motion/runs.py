@@ -84,7 +84,9 @@ class Run:
         share = min(max(share, 0.0), 1.0)
         w = {LOW: share**0.5, PLAIN: share, HIGH: 1 - (1 - share) ** 0.5}[int(self.kind[i])]
         x = (2 * w - self.first[i] - self.last[i]) / (self.last[i] - self.first[i])
-        return float(self.times[i] + chebyshev.chebval(min(max(x, -1.0), 1.0), self._series(np.array([i]))[1][0]))
+        return float(
+            self.times[i] + chebyshev.chebval(min(max(x, -1.0), 1.0), self._series(np.array([i]))[1][0])
+        )
 
     def at(self, t: Floats) -> tuple[Floats, Floats]:
         """Places and speeds s' (j,) of the motion upwards at times (j,) [s] from `low` on."""
