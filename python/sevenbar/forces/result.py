@@ -109,7 +109,7 @@ class Forces(Drawable):
     heading: str
     #: Whether the linkage is held still on every row: statics, without inertia and damping.
     at_rest: bool = False
-    #: Whether the circuit passes change points, at which a joint's torque and forces have no values of their own.
+    #: Whether the circuit passes change points, where torque and reactions have no values of their own.
     through_change_points: bool = False
     #: The same at any inputs (m,) of the cycle, where it is periodic.
     between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
@@ -144,9 +144,9 @@ class Forces(Drawable):
         """Peaks of torque and power with their places, means, fluctuation of energy, bearing loads.
 
         With an `unevenness`, (highest less lowest speed) / mean speed, also the flywheel for it. `None` for
-        rows without a torque, as of a circuit that rocks at constant speed: there it has no bound. Of a circuit
-        that passes change points the series through its rows goes across these; forces in joints that grow
-        without bound there are NaN.
+        rows without a torque, as of a circuit that rocks at constant speed: there it has no bound. Of a
+        circuit that passes change points the series through its rows goes across these; forces in joints
+        that grow without bound there are NaN. Of loads that set in or end on such a circuit `None`, too.
 
             >>> import sevenbar as sb
             >>> circuit = sb.load("rssr").motion().circuits[0]

@@ -39,7 +39,7 @@ PARTS: Mapping[str, tuple[int, ...]] = {
 }
 
 
-#: The last waves of a force that a series leads across change points are below this part of its greatest value.
+#: A force has a bound at change points where its last waves are below this part of its greatest value.
 ACROSS = 1e-6
 
 #: A moment or force below this part of the others of its kind is rounding.

@@ -160,7 +160,10 @@ def no_peak(forces: Forces) -> str:
     """Why no peaks are found; empty where there are."""
     lost = ~np.isfinite(forces.torque)
     if forces.through_change_points and forces.periodic and forces.loading.breaks(turns=1):
-        return "no peak: loads that set in or end are not sized on a circuit that passes change points; see the rows"
+        return (
+            "no peak: loads that set in or end are not sized on a circuit that passes change points; "
+            "see the rows"
+        )
     if not lost.any():
         return ""
     dead = np.unique(forces.status[lost])
@@ -287,8 +290,8 @@ def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str
     return [
         (
             "no bound",
-            f"forces in {', '.join(lost)} grow without bound at the change points, where a link in line with its "
-            "neighbour cannot drive it; the torque does not",
+            f"forces in {', '.join(lost)} grow without bound at the change points, where a link in line "
+            "with its neighbour cannot drive it; the torque does not",
         )
     ]
 

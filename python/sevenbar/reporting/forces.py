@@ -145,7 +145,7 @@ def text(found: CircuitForces) -> RenderableType:
         facts.add(label, said, style="bold" if strong else "")
     parts: list[RenderableType] = [Text(found.motion.linkage.heading, style="bold underline"), facts.grid]
     if found.sizing is not None:
-        planar = found.motion.linkage.plane is not None
+        planar = getattr(found.motion.linkage, "plane", None) is not None
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
         without = ""
         if head[1] != WHOLE:
@@ -175,8 +175,9 @@ def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tupl
     place = Places(forces)
     whole = any(math.isfinite(one.force.peak.value) for one in found.bearings.values())
     partly = not whole and any(math.isfinite(one.in_plane.peak.value) for one in found.bearings.values())
+    first = ("in plane\n[N]" if planar else "known\n[N]") if partly else WHOLE
     head = [
-        "joint", ("in plane\n[N]" if planar else "known\n[N]") if partly else WHOLE, "@", "cubic mean\n[N]", "radial\n[N]", "axial\n[N]", "tilting\n[N m]",
+        "joint", first, "@", "cubic mean\n[N]", "radial\n[N]", "axial\n[N]", "tilting\n[N m]",
         "turning\n[N m]",
     ]  # fmt: skip
     rows = []

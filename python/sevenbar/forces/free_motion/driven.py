@@ -35,7 +35,7 @@ PUSH = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Motor:
-    """A torque at the input [J for a radian, or by the length unit], by a table or a function of the speed."""
+    """A torque at the input [J for a radian, or the length unit]: a table, or a function of the speed."""
 
     table: tuple[Floats, Floats] | None = None
     by_time: bool = False
