@@ -64,6 +64,9 @@ pub(crate) enum Motor<'py> {
     Function(Bound<'py, PyAny>),
 }
 
+/// Times, series, the state at the end, whether a bound stopped it, whether it is whole.
+type StepsFound<'py> = (Array<'py>, Array<'py>, (f64, f64), bool, bool);
+
 fn between(across: &[f64], torques: &[f64], at: f64) -> f64 {
     let next = across.partition_point(|&x| x <= at);
     if next == 0 || next == across.len() {
@@ -89,7 +92,7 @@ pub(crate) fn driven<'py>(
     errors: (f64, f64),
     bounds: (f64, f64),
     motor: Option<Motor<'py>>,
-) -> PyResult<(Array<'py>, Array<'py>, (f64, f64), bool, bool)> {
+) -> PyResult<StepsFound<'py>> {
     let own = pieces(&edges, &quantities)?;
     if own.width() != 6 {
         return Err(CoreError::new_err("quantities: give six"));

@@ -214,7 +214,7 @@ def cycle_series(
 
 
 def filled(rows: Floats, missing: npt.NDArray[np.bool_]) -> Floats:
-    """Rows (n, k) round a cycle, missing ones with the values that leave least in the upper half of the waves.
+    """Rows (n, k) round a cycle, missing ones with values that leave least in the upper half of the waves.
 
     Of a smooth quantity, of which the upper half is rounding, these are its own values to rounding.
     """

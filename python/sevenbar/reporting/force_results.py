@@ -173,6 +173,11 @@ def _(found: Shaking) -> str:
 
 @text_of.register(Balance)
 def _(found: Balance) -> str:
+    return lines("Counterweights", balance_facts(found))
+
+
+def balance_facts(found: Balance) -> list[tuple[str, str]]:
+    """The counterweights link by link, what they leave of the shaking, and how they were found."""
     unit = "N"
     facts = [(f"link {one.link}", _weight(one)) for one in found.counterweights]
     facts.append(
@@ -183,7 +188,7 @@ def _(found: Balance) -> str:
     )
     facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
     facts.append(("idle", "; ".join(found.idle)))
-    return lines("Counterweights", facts)
+    return facts
 
 
 def _weight(one: Counterweight) -> str:

@@ -14,6 +14,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.curves.curve import Peak
+from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking
 from sevenbar.forces.sizing import Burden, Sizing
@@ -56,6 +57,7 @@ class CircuitForces:
     forces: Forces
     sizing: Sizing | None
     shaking: Shaking | None
+    balance: Balance | None = None
 
     @classmethod
     def of(
@@ -144,6 +146,13 @@ def text(found: CircuitForces) -> RenderableType:
         strong = label == f"input {quantity(forces)}"
         facts.add(label, said, style="bold" if strong else "")
     parts: list[RenderableType] = [Text(found.motion.linkage.heading, style="bold underline"), facts.grid]
+    if found.balance is not None:
+        # a reader of its own, which knows these pages
+        from sevenbar.reporting.force_results import balance_facts
+
+        facts.add("counterweights", "least squares of the shaking over the cycle")
+        for label, said in balance_facts(found.balance):
+            facts.add(label, said)
     if found.sizing is not None:
         planar = getattr(found.motion.linkage, "plane", None) is not None
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
@@ -247,6 +256,21 @@ def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
     return found
 
 
+def _weights(found: Balance) -> dict[str, Any]:
+    """Counterweights: mass times radius [kg length] in a direction, and the shaking [N] before and after."""
+    weights = [
+        {
+            "link": one.link,
+            "pivot": list(one.pivot),
+            "product": one.product,
+            "direction": one.direction.tolist(),
+            "mass": one.mass,
+        }
+        for one in found.counterweights
+    ]
+    return {"weights": weights, "before": found.before, "after": found.after, "measure": found.measure}
+
+
 def as_dict(found: CircuitForces) -> dict[str, Any]:
     """Forces as plain values: inputs in radians or lengths, null where nothing is determined."""
     motion, forces = found.motion, found.forces
@@ -276,6 +300,7 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
         "rows": len(forces.status),
         "acting": _acting(forces),
         **numbers(found),
+        "counterweights": None if found.balance is None else _weights(found.balance),
         "not_determined": list(forces.indeterminate),
         "idle_spin": {link: greatest(moment) for link, moment in forces.spin.items()},
         "checks": check_values(forces),
