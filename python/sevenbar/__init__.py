@@ -17,9 +17,11 @@ from sevenbar import errors
 from sevenbar._core import __version__
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
-from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
+from sevenbar.kinematics.circuit_values import DeadCentre, Extremes, Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Drive, Joint, Point
 from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.link_bodies import DRAWN_IN
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search

@@ -22,7 +22,6 @@ from sevenbar.commands.deliver import check_out, deliver, tell_written, write_fi
 from sevenbar.commands.given import (
     check_law,
     film_of,
-    input_column,
     input_value,
     law_of,
     look_of,
@@ -270,7 +269,7 @@ def modes(
     from sevenbar.reporting.report import modes_report
 
     loaded = opened(linkage, agree)
-    column = input_column(loaded, input_joint)
+    column = loaded.input_column(input_joint, "--input")
     check_targets([] if out is None else [out], force=force)
     value = input_value("--at", at, loaded, input_joint)
     found = loaded.assembly_modes(value, input=loaded.columns[column])

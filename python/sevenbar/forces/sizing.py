@@ -18,9 +18,8 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_number
+from sevenbar.arrays import Booleans, Floats, finite_number
 from sevenbar.curves.curve import Curve, Peak, greatest, mean
 from sevenbar.curves.cycle_series import CycleSeries, cycle_series, filled
 from sevenbar.curves.pieces import pieces
@@ -60,7 +59,7 @@ class Wrenches(Protocol):
         ...
 
     @property
-    def determinate(self) -> npt.NDArray[np.bool_]:
+    def determinate(self) -> Booleans:
         """Whether equilibrium determines each part."""
         ...
 
@@ -249,9 +248,7 @@ def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:
     return fluctuation / (unevenness * speed**2)
 
 
-def _bearing(
-    every: Curve, units: Floats, known: npt.NDArray[np.bool_], wrenches: Wrenches, start: int
-) -> Bearing:
+def _bearing(every: Curve, units: Floats, known: Booleans, wrenches: Wrenches, start: int) -> Bearing:
     burdens = {}
     forces = tuple(i for i in PARTS["force"] if known[start + i])
     for name, part in {**PARTS, "in_plane": forces if len(forces) == 2 else PARTS["force"]}.items():

@@ -16,8 +16,10 @@ from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import Forces
-from sevenbar.kinematics.circuits import Circuit, Extremes, Law
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Point
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.loaded import loading_with
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.plane_and_sphere import plane_of

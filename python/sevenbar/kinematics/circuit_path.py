@@ -17,10 +17,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.along import Along
 from sevenbar.curves.stationary import coefficients, nodes
 from sevenbar.errors import RequestError
@@ -73,7 +72,7 @@ class CircuitPath:
     """
 
     poses: Along
-    drivers: npt.NDArray[np.int64]
+    drivers: Integers
     gain: Floats
     closed: bool
     tail: float

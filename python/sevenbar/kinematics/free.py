@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number
+from sevenbar.arrays import Floats, Words, finite_array, finite_number
 from sevenbar.errors import RequestError, shown
 from sevenbar.forces.free_motion.conservative import conservative
 from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, EnergyCourse
@@ -24,12 +24,13 @@ from sevenbar.forces.free_motion.equilibria import Equilibrium, resting_places
 from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, TurningPoint
 from sevenbar.forces.loading import Loading
 from sevenbar.kinematics.circuit_path import ENOUGH_ROWS, CircuitPath, path_of
-from sevenbar.kinematics.circuits import Circuit, Law, Words
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.columns import joint_column
 from sevenbar.kinematics.energy_path import EnergyBuilder
 from sevenbar.kinematics.forces import ForceSolver
 from sevenbar.kinematics.free_rows import CourseRows
 from sevenbar.kinematics.joint_text import joint_number, joint_speed
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import Motion, Solvable
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import LENGTHS

@@ -13,11 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.curves.along import Along
 from sevenbar.curves.stationary import coefficients, nodes
 from sevenbar.kinematics.circuit_path import TERMS
-from sevenbar.kinematics.circuits import Trace, Words
+from sevenbar.kinematics.circuit_values import Trace
 from sevenbar.kinematics.energy_path import EnergyBuilder
 from sevenbar.kinematics.poses import frames_of
 

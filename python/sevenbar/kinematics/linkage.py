@@ -15,12 +15,13 @@ from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.kinematics.answers import LinkageAnswers
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.four_bar import four_bar_of
 from sevenbar.kinematics.general import AGREE, GeneralLoop
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.loaded import loaded
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
@@ -105,20 +106,6 @@ class Linkage(Solvable):
             )
         return self._closed_form
 
-    def _input(self, name: str | None) -> int:
-        return self.column(self.drive.joint if name is None else name, "input")
-
-    def _ends(self, input: str | None, output: str | None) -> tuple[int, int]:
-        first = self._input(input)
-        if output is None:
-            return first, self.other_column(first)
-        second = self.column(output, "output")
-        if second == first:
-            raise RequestError(
-                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
-            )
-        return first, second
-
     def _speed(self, speed: object, column: int) -> float:
         if speed is None:
             return self.speed_of(column)
@@ -152,7 +139,7 @@ class Linkage(Solvable):
         Source: docs/rssr.md, (3) to (9); Sun and Zhou, eq. (8), (9), and (12), (13) with their signs mended.
         """
         solver = self._rssr("output")
-        column = self._input(input)
+        column = self.input_column(input)
         array = joint_numbers("input", values, self, column)
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
             raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
@@ -191,7 +178,7 @@ class Linkage(Solvable):
 
         Source: docs/theory.md, (6); docs/rssr.md, (4).
         """
-        column = self._input(input)
+        column = self.input_column(input)
         value = joint_number("theta", theta, self, column)
         general = self.agreeing(agree)._general
         if self._has_closed_form(method):
@@ -253,7 +240,9 @@ class Linkage(Solvable):
 
         Source: docs/theory_measures.md, (1) to (3).
         """
-        first, second = self._ends(input, self.drive.output if output is None and input is None else output)
+        first, second = self.end_columns(
+            input, self.drive.output if output is None and input is None else output
+        )
         return four_bar_of(self, self.columns[first], self.columns[second])
 
     @property
@@ -380,7 +369,7 @@ class Linkage(Solvable):
         self, samples: int, input: str | None, output: str | None, speed: float | str | None
     ) -> tuple[int, int, int, float]:
         """Columns of input and output, a count, and the speed, once checked."""
-        column, output_column = self._ends(
+        column, output_column = self.end_columns(
             input, self.drive.output if output is None and input is None else output
         )
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)

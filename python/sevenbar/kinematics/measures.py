@@ -9,7 +9,8 @@ from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.sizing import Bearing, Sizing
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.gradients import MeasureSlopes, measure_slopes
@@ -57,7 +58,7 @@ class Measure:
 
     def unit(self, linkage: Loop, output: str) -> str:
         """The unit of its numbers, "" where there is none; `output` is the column of the output."""
-        slides = linkage.column_kinds[linkage.columns.index(output)] == "slide"
+        slides = not linkage.turns(output)
         length = linkage.length_unit
         rate = length if slides else "rad"
         return {

@@ -16,7 +16,8 @@ from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion

@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 
 #: An engine starts so many rows ahead of the first that is compared. Its accelerations start with an error
@@ -63,7 +63,7 @@ class Course:
         values = self.circuit.q[self.rows].copy()
         if self.closes:
             ahead = 2 * values[-2] - values[-3]
-            turns = np.array([kind == "turn" for kind in self.motion.linkage.column_kinds])
+            turns = self.motion.linkage.turning
             whole = np.round((ahead - values[-1]) / math.tau) * math.tau
             values[-1] += np.where(turns & np.isfinite(whole), whole, 0.0)
         return values

@@ -15,7 +15,7 @@ from sevenbar.drawing.figure import input_label, range_drawn, shown_value, slide
 from sevenbar.drawing.output_curves import inputs_between, place_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.drawing.ticks import FLAT
-from sevenbar.kinematics.circuits import Extremes
+from sevenbar.kinematics.circuit_values import Extremes
 from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.panel import Panel
