@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from sevenbar.arrays import Booleans, Floats, finite_number
 from sevenbar.curves.curve import Curve, Peak, greatest, mean
