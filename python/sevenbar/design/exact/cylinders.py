@@ -7,12 +7,9 @@ the fixed line (RC), so does that on the moving line (RR): 2, 3, 4 equations for
     RC    3 poses: one dyad for each direction of the moving line, two numbers free; none for 4 poses
     RR    3 poses: 2 real dyads, which make a Bennett linkage (`bennett`)
 
-So five general poses give CCCC linkages, which have two freedoms, and none with an R joint. Chen and Roth
-counted so which binary links meet how many poses.
+So five general poses give CCCC linkages, which have two freedoms, and none with an R joint.
 
-Source: P. Chen and B. Roth, "Design equations for the finitely and infinitesimally separated position
-synthesis of binary links and combined link chains", J. Eng. Ind. 91 (1969), 209; docs/theory_design.md, (33)
-to (35).
+Source: docs/theory_design.md, (33) to (35).
 """
 
 from __future__ import annotations
