@@ -13,7 +13,6 @@ from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.candidates import Refusal
 from sevenbar.design.task import (
     Apart,
-    Cone,
     DesignTask,
     DwellWant,
     FigureMust,
@@ -21,18 +20,20 @@ from sevenbar.design.task import (
     FreeNumber,
     FunctionWant,
     InBox,
-    JointRange,
+    InCone,
+    InRange,
     PathWant,
     PoseWant,
     StraightWant,
 )
-from sevenbar.design.task.check import Design, checked_design
+from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.musts import nearest_shares, pose_rooms
-from sevenbar.design.task.problem import Problem, Seed, TaskModel
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
+from sevenbar.kinematics.ball_angle import ball_angle
 
 KNOWN = Draft.of_linkage(sb.load("rssr")).with_values({"L2": 1000.0}).with_point("Q", 3, (50.0, 60.0, 20.0))
 NAMES = ("M", "N", "L1", "L2", "L3", "D")
@@ -71,9 +72,9 @@ PLACES, INPUTS, OUTPUTS = CIRCUIT.point("Q").position[ROWS], CIRCUIT.input[ROWS]
 PATH = PathWant("Q", PLACES)
 FUNCTION = FunctionWant(INPUTS - INPUTS[0], OUTPUTS - OUTPUTS[0], (None, None))
 MUSTS = (
-    Cone("ball_a", 1.0),
-    Cone("ball_b", 1.2, seat=(1.0, 0.5, 0.0)),
-    JointRange("rocker", -0.2, 0.9),
+    InCone("ball_a", 1.0),
+    InCone("ball_b", 1.2, seat=(1.0, 0.5, 0.0)),
+    InRange("rocker", -0.2, 0.9),
     InBox((-300.0, -100.0, -900.0), (900.0, 900.0, 650.0), ("ball_a", "Q")),
     Apart((1, 3), 720.0),
 )
@@ -102,7 +103,7 @@ MUSTS = (
 def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
     names = NAMES if any(type(w).__name__ == "FigureWant" for w in wants) else (*NAMES, "Q.x", "Q.y", "Q.z")
     model = TaskModel(DesignTask(START, free(START, names), wants, **more))
-    problem = Problem(model, seeds(model, 0, 0, lambda: None)[0])
+    problem = TaskProblem(model, seeds(model, 0, 0, lambda: None)[0])
     z = problem.start
     here = problem.at(z)
     problem.take(z)
@@ -118,7 +119,7 @@ def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
 
 def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
     model = TaskModel(DesignTask(START, free(START, NAMES), (PATH,), placement="free", goal="minimax"))
-    problem = Problem(model, seeds(model, 0, 0, lambda: None)[0], minimax=True)
+    problem = TaskProblem(model, seeds(model, 0, 0, lambda: None)[0], minimax=True)
     z = problem.start + np.append(np.zeros(len(problem.start) - 6), [0.3, -0.2, 0.1, 0.02, 0.01, -0.03])
     here = problem.at(z)
     for k in range(len(z)):
@@ -131,11 +132,18 @@ def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
 def test_a_cone_is_the_angle_between_the_cranks_axis_and_the_coupler():
     model = TaskModel(DesignTask(KNOWN, free(KNOWN, NAMES), (FunctionWant(INPUTS, OUTPUTS),)))
     loop = model.loop
-    ((_, room),) = pose_rooms(loop, (Cone("ball_a", 1.0, seat=(0.0, 0.0, -1.0)),))
+    ((_, room),) = pose_rooms(loop, (InCone("ball_a", 1.0, seat=(0.0, 0.0, -1.0)),))
     q = loop.closed(loop.start, INPUTS, loop.poses(loop.start, CIRCUIT.q[ROWS]))
     a, b = (CIRCUIT.point(name).position[ROWS] for name in ("A", "B"))
     along = (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
     assert room(loop.here(loop.start, q))[0][:, 0] == pytest.approx(1.0 - np.arccos(-along[:, 2]), abs=1e-12)
+    # as the analysis has it, from a seat and from the rods
+    bend = ball_angle(KNOWN.linkage, "ball_a", seat=(0.0, 0.0, -1.0))
+    assert room(loop.here(loop.start, q))[0][:, 0] == pytest.approx(1.0 - bend.at(CIRCUIT.q[ROWS]), abs=1e-12)
+    for ball in ("ball_a", "ball_b"):
+        ((_, room),) = pose_rooms(loop, (InCone(ball, 1.0),))
+        found = room(loop.here(loop.start, q))[0][:, 0]
+        assert found == pytest.approx(1.0 - ball_angle(KNOWN.linkage, ball).at(CIRCUIT.q[ROWS]), abs=1e-12)
 
 
 def test_the_nearest_places_of_two_rods_are_those_of_all():
@@ -168,7 +176,7 @@ def test_least_squares_follow_a_bent_valley_and_stop_at_bounds():
     assert low[:2] == pytest.approx([0.5, 0.25], abs=1e-9)
 
 
-CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10)}
+CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10), "cusp": (3,)}
 
 
 @pytest.mark.slow
@@ -186,7 +194,7 @@ def test_musts_hold_to_the_stop_and_the_optimum_meets_its_conditions():
     want = FunctionWant(
         np.radians(np.linspace(0, 60, 13)), np.radians(20 * np.linspace(0, 1, 13) ** 2), (None, None)
     )
-    task = DesignTask(START, free(START, ("M", "L1", "L3")), (want,), musts=(Cone("ball_a", 0.8),))
+    task = DesignTask(START, free(START, ("M", "L1", "L3")), (want,), musts=(InCone("ball_a", 0.8),))
     (best,) = designed(task, count=1, starts=0).designs
     assert best.optimality < 1e-8
     # the cone stops it: without one the error is smaller
@@ -207,7 +215,7 @@ def test_the_least_greatest_error_ripples_evenly():
         (solved(model, seed) for seed in seeds(model, 0, 0, lambda: None)[:2]), key=lambda one: one.cost
     )
     answer = checked_design(model, best)
-    assert isinstance(answer, Design)
+    assert isinstance(answer, TaskDesign)
     errors = answer.candidate.claim.errors
     extremes = np.flatnonzero(np.abs(errors) > (1 - 1e-7) * np.abs(errors).max())
     assert answer.met[0].greatest == pytest.approx(best.cost, rel=1e-9)
@@ -233,7 +241,7 @@ def as_solution(model, rows, circuits):
     q = np.stack([circuit.q[row] for row, circuit in zip(rows, circuits, strict=True)])
     inputs = np.array([circuit.input[row] for row, circuit in zip(rows, circuits, strict=True)])
     values = model.loop.start
-    seed = Seed(values, (inputs,), model.loop.poses(values, q), q[0], 0.0)
+    seed = TaskSeed(values, (inputs,), model.loop.poses(values, q), q[0], 0.0)
     return Solved(seed, (inputs,), 0.0, 0.0, math.inf)
 
 
@@ -251,15 +259,15 @@ def test_a_defective_design_is_refused_however_well_it_fits(rows, others, fault)
         assert isinstance(answer, Refusal)
         assert answer.fault == fault
     else:
-        assert isinstance(answer, Design)
+        assert isinstance(answer, TaskDesign)
         assert answer.met[0].greatest < 1e-9
 
 
 def test_a_missed_must_is_refused_by_its_name():
     places = CIRCUIT.point("Q").position[[1, 4, 9, 13]]
     for must, fault in (
-        (Cone("ball_a", 0.1), "cone"),
-        (JointRange("rocker", 0.4, 0.6), "range"),
+        (InCone("ball_a", 0.1), "cone"),
+        (InRange("rocker", 0.4, 0.6), "range"),
         (InBox((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), ("Q",)), "box"),
         (Apart((1, 3), 5000.0), "distance"),
         (FigureMust("swing", 100.0), "figure"),

@@ -78,6 +78,27 @@ def test_places_on_a_line_have_a_slider_for_a_crank():
         assert worst_miss(answer, displaced(FIVE)) < 1e-7
 
 
+def test_the_rod_of_a_slider_crank_has_its_slider_again():
+    circuit = sb.slider_crank(40, 140, 20).motion(90).circuits[0]
+    frames = coupler_poses(circuit, np.array([0, 7, 15, 22, 33]))
+    found = planar_poses(np.column_stack([frames[:, :2, 3], zyx_turns(frames[:, :3, :3])[:, 0]]))
+    assert found.complete
+    assert found.sliders == 1
+    (slider,) = (dyad for dyad in found.dyads if dyad.kind == "PR")
+    assert np.abs(slider.ground.axis) == pytest.approx([1, 0, 0], abs=1e-9)
+    assert slider.ground.at[1] == pytest.approx(20, abs=1e-7)
+    # the crank about the origin is another
+    cranks = [np.abs(dyad.ground.at).max() for dyad in found.dyads if dyad.kind == "RR"]
+    assert min(cranks) < 1e-7
+
+
+def test_squares_that_fold_turn_about_a_hinge():
+    circuit = sb.four_bar(50, 50, 50, 50).motion(90).circuits[0]
+    frames = coupler_poses(circuit, np.array([0, 7, 15, 22, 33]))
+    with pytest.raises(RequestError, match=r"turns about one point, \(0, 0\), and a hinge there"):
+        planar_poses(np.column_stack([frames[:, :2, 3], zyx_turns(frames[:, :3, :3])[:, 0]]))
+
+
 def test_defects_are_told_apart():
     found = planar_poses(FIVE)
     assert set(found.faults) <= {"circuit", "dead centre", "order"}

@@ -272,3 +272,40 @@ def test_forces_print_what_a_person_asks_first() -> None:
     open_one = sb.load("engine").motion(72).circuits[0].forces().reactions["piston"]
     assert "not determined by equilibrium of rigid bodies" in repr(open_one)
     assert "Mx  open" in repr(open_one)
+
+
+def test_counterweights_are_those_of_the_circuit() -> None:
+    run = sevenbar("forces", "rssr_press", "--counterweights", "1,3", "--radius", "100", "--json")
+    assert run.returncode == 0, run.stderr
+    found = json.loads(run.stdout)["counterweights"]
+    balance = sb.load("rssr_press").motion().circuits[0].counterweights([1, 3], radius=100)
+    assert [one["mass"] for one in found["weights"]] == pytest.approx([12.5, 66.0], rel=1e-9)
+    assert [one["product"] for one in found["weights"]] == [one.product for one in balance.counterweights]
+    assert found["after"] < 1e-10 * found["before"]
+    assert "link 3 6600 kg length" in told("rssr_press", "--counterweights", "1", "--counterweights", "3")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--counterweights", "crank"], "'crank' is not a link; give their numbers, as in 1,3"),
+        (["--radius", "100"], "it is that of counterweights; give --counterweights, as in 1,3"),
+        (["--counterweights", "1", "--speed", "0"], "they are found for a constant speed"),
+    ],
+)
+def test_counterweights_that_cannot_be_found_are_refused(arguments: list[str], message: str) -> None:
+    assert message in mistake("forces", "rssr_press", *arguments)
+
+
+def test_the_force_in_the_plane_is_in_the_table_the_json_and_the_csv(tmp_path: Path) -> None:
+    page = told("engine", "--out", str(tmp_path / "out"), cwd=tmp_path)
+    sizing = sb.load("engine").motion().circuits[0].forces().sizing()
+    piston = sizing.bearings["piston"].in_plane
+    assert f"piston {piston.peak.value:.4g}" in page
+    assert "in plane: the force in the plane of motion, the whole is open" in page
+    joints = json.loads((tmp_path / "out" / "forces.json").read_text())["joints"]
+    assert joints["piston"]["in_plane"]["mean_cube"] == pytest.approx(piston.mean_cube, rel=1e-12)
+    with (tmp_path / "out" / "forces.csv").open(newline="", encoding="utf-8-sig") as file:
+        rows = list(csv.DictReader(file))
+    sizes = [float(row["piston_F_in_plane_N"]) for row in rows]
+    assert max(sizes) == pytest.approx(piston.peak.value, rel=1e-3)

@@ -24,6 +24,9 @@ def shown() -> list[tuple[str, list[str]]]:
     return [(command, text.splitlines()) for command, text in found]
 
 
+EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+
+
 def words(text: str) -> str:
     return " ".join(ROUNDING.sub("~", text).split())
 
@@ -44,8 +47,12 @@ def test_what_the_page_shows_is_printed_today(command: str, lines: list[str], tm
         assert printed.partition(" written:")[0] == whole
 
 
-def test_the_example_prints_what_its_comments_say() -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+def test_the_page_has_examples() -> None:
+    assert len(EXAMPLES) == 2
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_an_example_prints_what_its_comments_say(code: str) -> None:
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(code, {})

@@ -16,6 +16,8 @@ RUST_FILES = sorted((ROOT / "crates").rglob("*.rs"))
 CORE_FILES = sorted((CORE / "src").rglob("*.rs"))
 
 CORE_IMPORTERS = {
+    "curves/along",
+    "forces/free_motion/driven",
     "__init__",
     *(
         f"kinematics/{name}"

@@ -1,6 +1,6 @@
 """Sixty design tasks with a known answer: how many are found, how exactly, and whether any is defective.
 
-python -m evidence.design [FAMILY ..]        path, function, poses; all where none is given
+python -m evidence.design [FAMILY ..]        path, function, poses, cusp; all where none is given
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ import numpy as np
 
 from evidence.design.tasks import tasks
 from sevenbar.design.task import DesignTask, FunctionWant, PathWant, PoseWant
-from sevenbar.design.task.check import Design
+from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.kinematics.law import Law
 
 #: A known answer is found where no error is greater [rad, or relative to size, extent of the path, arm].
 FOUND = 1e-9
 
-#: Starts beside the linkage itself.
+#: Starts besides the linkage itself.
 STARTS = 32
 
-#: Inputs from the first to the last at which an accepted design is looked at for a dead centre between.
+#: Inputs from the first to the last at which an accepted design is searched for a dead centre between.
 BETWEEN = 721
 
 
@@ -39,7 +39,7 @@ def unit_of(task: DesignTask) -> float:
     return want.arm
 
 
-def is_whole(design: Design) -> bool:
+def is_whole(design: TaskDesign) -> bool:
     """Whether one pass of the design's linkage leads from its first input to its last, asked anew."""
     inputs = design.candidate.claim.inputs
     between = np.linspace(inputs.min(), inputs.max(), BETWEEN)
@@ -61,7 +61,7 @@ def main(families: list[str]) -> int:
     """Prints a row for each task, and the sums."""
     print(f"{'task':50} {'off':>4} {'error':>9} {'optimality':>10} {'time':>6}  refused")
     sums = {}
-    for family in families or ["path", "function", "poses"]:
+    for family in families or ["path", "function", "poses", "cusp"]:
         found, defective, number = 0, 0, 0
         for made in tasks(family):
             begin = time.perf_counter()

@@ -209,8 +209,25 @@ def _made(kind: str, share: float, random: np.random.Generator, family: str, how
     return Made(title, share, DesignTask(start, free, (want,), placement=placement))
 
 
+def cusps(seed: int = 1) -> Iterator[Made]:
+    """An RSUR's untimed path with a cusp between points, fixed and placed freely."""
+    draft = Draft.of_linkage(sb.load("rsur")).with_point("Q", 2, (300.0, 120.0, 80.0))
+    path = draft.linkage.motion(16).circuits[0].point("Q").position
+    names = ["ball.x", "ball.z", "cross.y", "Q.x", "Q.y", "Q.z"]
+    for share in SHARES:
+        for placement in ("fixed", "free"):
+            random = np.random.default_rng(seed)
+            start = off(draft, names, share, random)
+            places = path if placement == "fixed" else path @ turned(random).T + random.uniform(-100, 100, 3)
+            task = DesignTask(start, bounds(start, names), (PathWant("Q", places),), placement=placement)
+            yield Made(f"RSUR, path with a cusp, {placement}", share, task)
+
+
 def tasks(family: str, seed: int = 0) -> Iterator[Made]:
-    """The twenty tasks of a family ("path", "function", "poses"): each kind from a start 5 % and 20 % off."""
+    """The tasks of a family ("path", "function", "poses"; "cusp"): each kind from a start 5 % and 20 % off."""
+    if family == "cusp":
+        yield from cusps()
+        return
     kinds = {"path": PATHS, "function": FUNCTIONS, "poses": POSES}[family]
     for number, how in enumerate(kinds):
         for place, share in enumerate(SHARES):

@@ -1,6 +1,6 @@
 """The Rust core: arrays in, values of arrays out. Columns are by their number."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, final
 
 import numpy as np
@@ -25,8 +25,10 @@ __all__ = [
     "RssrBatch",
     "__version__",
     "classify_rssr",
+    "driven",
     "measure_loops",
     "measure_rssr",
+    "piecewise",
     "reactions",
     "simd_level",
 ]
@@ -354,3 +356,13 @@ def measure_loops(
 ) -> LoopBatch: ...
 def measure_rssr(dimensions: _Floats, input: str, speed: _Floats, threads: int) -> RssrBatch: ...
 def simd_level() -> str: ...
+def piecewise(edges: _Floats, series: _Floats, places: _Floats, on: _Integers | None = None) -> _Floats: ...
+def driven(
+    edges: _Floats,
+    quantities: _Floats,
+    lap: float | None,
+    begin: tuple[float, float, float, float],
+    errors: tuple[float, float],
+    bounds: tuple[float, float],
+    motor: tuple[bool, _Floats, _Floats] | Callable[[float, float], float] | None = None,
+) -> tuple[_Floats, _Floats, tuple[float, float], bool, bool]: ...

@@ -3,11 +3,13 @@
 //! No input or output, no printing, no clock, no global state. Angles are radians; lengths are in whatever unit the caller
 //! uses, the same in and out.
 
+pub mod driven;
 pub mod error;
 pub mod loops;
 mod number;
 pub mod outcome;
 pub mod parallel;
+pub mod piecewise;
 mod random;
 pub mod rigid;
 pub mod rssr;

@@ -1,5 +1,6 @@
 //! The only crate that knows Python: arrays in, values of arrays out, the interpreter free while the core works.
 
+mod along;
 mod batches;
 mod forces;
 mod loops;
@@ -62,6 +63,8 @@ fn simd_level() -> &'static str {
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::along::{driven, piecewise};
     #[pymodule_export]
     use super::batches::{LoopBatch, RawMeasures, RssrBatch, classify_rssr, measure_loops, measure_rssr};
     #[pymodule_export]

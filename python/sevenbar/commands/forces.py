@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -56,6 +57,21 @@ def forces(
             help="(highest - lowest) / mean speed that a flywheel shall keep, as in 0.01.",
         ),
     ] = None,
+    counterweights: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="LINKS",
+            help="Links, as in 1,3, for which counterweights are found, by least squares of the shaking.",
+        ),
+    ] = None,
+    radius: Annotated[
+        float | None,
+        typer.Option(
+            parser=number_of("--radius", "100"),
+            metavar="NUMBER",
+            help="How far from their joints counterweights are [length unit], which gives their masses.",
+        ),
+    ] = None,
     joint: Annotated[
         list[str] | None,
         typer.Option(help="A joint whose reactions are drawn; may be repeated; all of them."),
@@ -96,6 +112,13 @@ def forces(
         raise RequestError(
             "--unevenness: a flywheel is found for a constant speed; give --speed in place of --law"
         )
+    links = [_link(name) for name in words(counterweights or [])]
+    if radius is not None and not links:
+        raise RequestError("--radius: it is that of counterweights; give --counterweights, as in 1,3")
+    if links and (at_rest or law is not None):
+        raise RequestError(
+            "--counterweights: they are found for a constant speed; leave out --law and --speed 0"
+        )
     report = forces_report(formats, look, names)
     check_out(report, out, force=force)
     motion = loaded.motion(
@@ -111,9 +134,17 @@ def forces(
     passed = _pass(chosen, branch, one=law is not None)
     if passed is not None:
         found = found.on(found.branch == passed)
-    deliver(
-        CircuitForces.of(motion, chosen, found, unevenness=unevenness), report, out, json=json, force=force
-    )
+    result = CircuitForces.of(motion, chosen, found, unevenness=unevenness)
+    if links:
+        result = replace(result, balance=chosen.counterweights(links, radius=radius))
+    deliver(result, report, out, json=json, force=force)
+
+
+def _link(text: str) -> int:
+    """The number of a link."""
+    if not text.isdecimal():
+        raise RequestError(f"--counterweights: {shown(text)} is not a link; give their numbers, as in 1,3")
+    return int(text)
 
 
 def _unit_at_rest(speed: str | None) -> str | None:

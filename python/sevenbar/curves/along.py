@@ -16,8 +16,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial import Chebyshev, chebyshev
 
+from sevenbar._core import piecewise
 from sevenbar.arrays import Floats
 from sevenbar.curves.stationary import real_roots
 
@@ -34,6 +36,9 @@ class Along:
 
     edges: Floats
     series: Floats
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "series", np.ascontiguousarray(self.series))
 
     @property
     def length(self) -> float:
@@ -62,20 +67,11 @@ class Along:
 
     def at(self, s: Floats) -> Floats:
         """The quantities (j, k) at places (j,); beyond the ends the polynomials of these go on."""
-        places = np.asarray(s, dtype=np.float64)
-        piece = np.clip(np.searchsorted(self.edges, places, "right") - 1, 0, len(self.series) - 1)
-        return self.on(piece, places)
+        return piecewise(self.edges, self.series, np.asarray(s, dtype=np.float64))
 
-    def on(self, piece: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> Floats:
+    def on(self, piece: npt.NDArray[np.int64], s: Floats) -> Floats:
         """The quantities (j, k) by the polynomials of given pieces (j,) at places (j,)."""
-        start, end = self.edges[piece], self.edges[piece + 1]
-        x = ((2 * s - start - end) / (end - start))[:, None]
-        own = self.series[piece]
-        # Clenshaw's sum
-        twice, one, two = 2 * x, np.zeros_like(own[:, 0]), np.zeros_like(own[:, 0])
-        for k in range(own.shape[1] - 1, 0, -1):
-            one, two = own[:, k] + twice * one - two, one
-        return np.asarray(own[:, 0] + x * one - two)
+        return piecewise(self.edges, self.series, s, piece)
 
     def stationary(self, column: int) -> Floats:
         """Places (j,) where one quantity has slope zero, or may turn at an edge, in order."""

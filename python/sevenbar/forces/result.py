@@ -109,6 +109,8 @@ class Forces(Drawable):
     heading: str
     #: Whether the linkage is held still on every row: statics, without inertia and damping.
     at_rest: bool = False
+    #: Whether the circuit passes change points, where torque and reactions have no values of their own.
+    through_change_points: bool = False
     #: The same at any inputs (m,) of the cycle, where it is periodic.
     between: Callable[[Floats], Forces] | None = field(default=None, repr=False)
 
@@ -142,7 +144,9 @@ class Forces(Drawable):
         """Peaks of torque and power with their places, means, fluctuation of energy, bearing loads.
 
         With an `unevenness`, (highest less lowest speed) / mean speed, also the flywheel for it. `None` for
-        rows without a torque, as of a circuit that rocks at constant speed: there it has no bound.
+        rows without a torque, as of a circuit that rocks at constant speed: there it has no bound. Of a
+        circuit that passes change points the series through its rows goes across these; forces in joints
+        that grow without bound there are NaN. Of loads that set in or end on such a circuit `None`, too.
 
             >>> import sevenbar as sb
             >>> circuit = sb.load("rssr").motion().circuits[0]
@@ -159,12 +163,16 @@ class Forces(Drawable):
                 "sizing: the rows are passes one after the other; give one, as in "
                 "forces.on(forces.branch == 0).sizing()"
             )
+        breaks = () if period is None else self.loading.breaks(turns=round(abs(period) / math.tau))
+        if self.through_change_points and len(breaks):
+            return None
         return sizing(
             self,
             period=period,
             speed=float(self.speed[0]) if period is not None else None,
-            evaluate=self.between,
-            breaks=() if period is None else self.loading.breaks(turns=round(abs(period) / math.tau)),
+            evaluate=None if self.through_change_points else self.between,
+            breaks=breaks,
+            gaps=self.status == "change-point" if self.through_change_points else None,
             unevenness=unevenness,
         )
 

@@ -18,10 +18,11 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from sevenbar.arrays import Booleans, Floats, finite_number
 from sevenbar.curves.curve import Curve, Peak, greatest, mean
-from sevenbar.curves.cycle_series import cycle_series
+from sevenbar.curves.cycle_series import CycleSeries, cycle_series, filled
 from sevenbar.curves.pieces import pieces
 from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.errors import RequestError, shown
@@ -36,6 +37,13 @@ PARTS: Mapping[str, tuple[int, ...]] = {
     "tilting": (0, 1),
     "turning": (2,),
 }
+
+
+#: A force has a bound at change points where its last waves are below this part of its greatest value.
+ACROSS = 1e-6
+
+#: A moment or force below this part of the others of its kind is rounding.
+ROUNDING = 1e-9
 
 
 class Wrenches(Protocol):
@@ -90,7 +98,7 @@ class Rows(Protocol):
 class Burden:
     """The size of a force [N] or moment [N m] over a cycle: its peak, and `(mean size^3)^(1/3)` by time.
 
-    NaN where equilibrium does not determine it.
+    NaN where equilibrium does not determine it, or it grows without bound at a change point.
     """
 
     peak: Peak
@@ -103,6 +111,8 @@ class Bearing(Printed):
 
     `force` [N] is the whole force, `radial` its part square to the axis, `axial` that along it; `tilting`
     [N m] the moment about x and y, `turning` that about the axis, which a guide bears and a drive gives.
+    `in_plane` [N] is the force without the one component that equilibrium leaves open: of a planar loop the
+    force in its plane of motion. NaN where none or more of them are open.
     `direction` (n,) [rad] is that of the radial force from x towards y, row by row, and `size` (n,) [N].
     """
 
@@ -111,6 +121,7 @@ class Bearing(Printed):
     axial: Burden
     tilting: Burden
     turning: Burden
+    in_plane: Burden
     direction: Floats
     size: Floats
 
@@ -152,13 +163,15 @@ def sizing(
     speed: float | None = None,
     evaluate: Callable[[Floats], Rows] | None = None,
     breaks: Sequence[float] = (),
+    gaps: npt.NDArray[np.bool_] | None = None,
     unevenness: float | None = None,
 ) -> Sizing | None:
     """The sizing of a cycle; `None` where a row has no torque.
 
     Of a circuit whose input goes round at constant `speed` [rad/s], `period` [rad] is its way till it closes,
     negative for a negative speed, and the n rows are at equal steps; `evaluate` gives rows at any inputs, and
-    `breaks` are inputs where loads set in or end. Of a law's rows `period` is `None`.
+    `breaks` are inputs where loads set in or end. Of a law's rows `period` is `None`. `gaps` (n,) are rows
+    without values, which the series through the others goes across.
 
     Raises `RequestError` for an unevenness that is not > 0, and for breaks without `evaluate`.
     """
@@ -168,6 +181,11 @@ def sizing(
     known = np.array(
         [True, *np.concatenate([*(rows.reactions[name].determinate for name in names), []])], dtype=bool
     )
+    if gaps is not None and gaps.any():
+        table = filled(table, gaps)
+    if gaps is not None and np.isfinite(table[:, 0]).all():
+        # what grows without bound at a change point has no series that ends
+        known[1:] &= np.repeat([_bounded(part) for part in _wrench_parts(table, known)], 3)
     if not len(table) or not np.isfinite(table[:, known]).all():
         return None
     if len(breaks) and period is not None and evaluate is None:
@@ -233,9 +251,10 @@ def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:
 
 def _bearing(every: Curve, units: Floats, known: Booleans, wrenches: Wrenches, start: int) -> Bearing:
     burdens = {}
-    for name, part in PARTS.items():
+    forces = tuple(i for i in PARTS["force"] if known[start + i])
+    for name, part in {**PARTS, "in_plane": forces if len(forces) == 2 else PARTS["force"]}.items():
         columns = tuple(start + i for i in part)
-        if not known[list(columns)].all():
+        if not known[list(columns)].all() or (name == "in_plane" and len(part) == 3):
             burdens[name] = Burden(Peak(math.nan, math.nan), math.nan)
             continue
         unit = float(units[columns[0]])
@@ -247,6 +266,25 @@ def _bearing(every: Curve, units: Floats, known: Booleans, wrenches: Wrenches, s
         )
     x, y = wrenches.force[:, 0], wrenches.force[:, 1]
     return Bearing(**burdens, direction=np.arctan2(y, x), size=np.hypot(x, y))
+
+
+def _wrench_parts(table: Floats, known: npt.NDArray[np.bool_]) -> list[Floats]:
+    """Moment and force (n, k) of joint after joint, of each what is known, without what is rounding."""
+    sizes = np.where(known, np.abs(np.where(known, table, 0.0)), 0.0)[:, 1:]
+    # of most rows: some may have no bound
+    typical = np.median(sizes, axis=0).reshape(-1, 2, 3).max(axis=(0, 2), initial=0.0)
+    found = []
+    for k in range(sizes.shape[1] // 3):
+        own = slice(1 + 3 * k, 4 + 3 * k)
+        part = table[:, own][:, known[own]]
+        heard = np.abs(part).max(initial=0.0) > ROUNDING * typical[k % 2]
+        found.append(part if heard else part[:, :0])
+    return found
+
+
+def _bounded(part: Floats) -> bool:
+    """Whether the series of quantities (n, k) round a cycle ends."""
+    return not part.size or CycleSeries(part, 0.0, math.tau).tail <= ACROSS
 
 
 def _table(rows: Rows, names: tuple[str, ...]) -> Floats:

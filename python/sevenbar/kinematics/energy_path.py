@@ -81,10 +81,10 @@ class EnergyBuilder:
         path, length = self.path, self.path.length
         breaks = self.breaks()
         edges = np.union1d(path.poses.edges, breaks)
-        keep = np.append(np.diff(edges) > SAME * length, True)
-        keep[0] = True
-        edges = edges[keep]
-        edges[-1] = length
+        edges = edges[np.diff(edges, prepend=-np.inf) > SAME * length]
+        edges[0], edges[-1] = 0.0, length
+        # a break that rounding has beside an edge lies on it
+        breaks = np.unique(edges[np.abs(edges[:, None] - breaks).argmin(axis=0)])
         todo = np.column_stack([edges[:-1], edges[1:]])
         done: list[tuple[float, float, Floats]] = []
         width = 5 + len(self.smooth)

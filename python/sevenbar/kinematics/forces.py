@@ -205,6 +205,7 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
         driver=linkage.columns[circuit.input_column],
         heading=linkage.heading,
         at_rest=at_rest,
+        through_change_points=circuit.motion_type == "change-point",
         between=partial(_between, solver, circuit, at_rest),
     )
 

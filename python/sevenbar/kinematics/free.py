@@ -308,16 +308,15 @@ def _motor(
     # the speed of a slide is that of metres here
     unit = 1.0 if course.turns else 1 / LENGTHS[course.linkage.length_unit]
     if by_time is not None:
-        moments, torques = _curve("torque_by_time", by_time, "times")
-        return 0.0, lambda t, v: float(np.interp(t, moments, torques))  # noqa: ARG005
+        return 0.0, Motor(_curve("torque_by_time", by_time, "times"), by_time=True)
     if torque is None:
         return 0.0, None
     if callable(torque):
         asked = torque
-        return 0.0, lambda t, v: float(asked(v * unit))  # noqa: ARG005
+        return 0.0, Motor(function=lambda speed: float(asked(speed * unit)))
     if isinstance(torque, (tuple, list)):
         speeds, torques = _curve("torque", torque, "speeds")
-        return 0.0, lambda t, v: float(np.interp(v * unit, speeds, torques))  # noqa: ARG005
+        return 0.0, Motor((speeds / unit, torques))
     return finite_number("torque", torque), None
 
 
@@ -340,7 +339,7 @@ def _rates(
         force = -slope - damping * v - by[:, MASS] * v**2 / 2
         if motor is not None:
             by_s = own.quantities.at(inside)[:, INPUT]
-            force = force + [motor(t, x * r) * x for t, x, r in zip(times, by_s, v, strict=True)]
+            force = force + motor.at(times, by_s * v) * by_s
         a = force / mass
         curvature = by[:, 1] + lap * by[:, 4]
         by_place = -(curvature + by[:, DAMPING] * v + second[:, MASS] * v**2 / 2 + a * by[:, MASS]) / mass

@@ -202,6 +202,17 @@ JOINT_EXTENTS: dict[str, tuple[Quantity, Callable[[Circuit, str], float | None],
 JOINT_MEASURES: dict[str, tuple[Quantity, Callable[[Bearing], float], str]] = {
     "peak_force": ("force", lambda b: b.force.peak.value, "greatest force in joint {}"),
     "mean_cube_force": ("force", lambda b: b.force.mean_cube, "cubic mean of the force in joint {}"),
+    # of planar loops, whose forces along the axes are open
+    "peak_force_in_plane": (
+        "force",
+        lambda b: b.in_plane.peak.value,
+        "greatest force in joint {} in the plane of motion",
+    ),
+    "mean_cube_force_in_plane": (
+        "force",
+        lambda b: b.in_plane.mean_cube,
+        "cubic mean of the force in joint {} in the plane of motion",
+    ),
     "peak_tilting": ("moment", lambda b: b.tilting.peak.value, "greatest tilting moment in joint {}"),
 }
 

@@ -106,11 +106,14 @@ def _(found: Sizing) -> str:
     def at(peak: Peak | None) -> str:
         return "" if peak is None else f"{number(peak.value)} at {peak.input:.6g}"
 
-    most = [
-        f"{name} {number(bearing.force.peak.value)} N"
-        for name, bearing in found.bearings.items()
-        if math.isfinite(bearing.force.peak.value)
-    ]
+    most, in_plane = (
+        [
+            f"{name} {number(burden.peak.value)} N"
+            for name, bearing in found.bearings.items()
+            if math.isfinite((burden := getattr(bearing, part)).peak.value)
+        ]
+        for part in ("force", "in_plane")
+    )
     return lines(
         "Sizing of a drive",
         [
@@ -126,6 +129,7 @@ def _(found: Sizing) -> str:
                 else f"{number(found.flywheel)} kg m^2 for an unevenness of {found.unevenness:g}",
             ),
             ("peak forces", ", ".join(most)),
+            *([("in the plane", ", ".join(in_plane))] if in_plane else []),
             ("found", found_text(found)),
         ],
     )
@@ -137,12 +141,14 @@ def _(bearing: Bearing) -> str:
     for part, unit in LISTED.items():
         burden: Burden = getattr(bearing, part)
         said = OPEN
+        if part == "in_plane" and not math.isfinite(burden.peak.value):
+            continue
         if math.isfinite(burden.peak.value):
             said = (
                 f"peak {number(burden.peak.value)} {unit} at {burden.peak.input:.6g}, "
                 f"cubic mean {number(burden.mean_cube)} {unit}"
             )
-        facts.append((part, said))
+        facts.append((part.replace("_", " "), said))
     return lines("Loads of a bearing", facts)
 
 
@@ -167,6 +173,11 @@ def _(found: Shaking) -> str:
 
 @text_of.register(Balance)
 def _(found: Balance) -> str:
+    return lines("Counterweights", balance_facts(found))
+
+
+def balance_facts(found: Balance) -> list[tuple[str, str]]:
+    """The counterweights link by link, what they leave of the shaking, and how they were found."""
     unit = "N"
     facts = [(f"link {one.link}", _weight(one)) for one in found.counterweights]
     facts.append(
@@ -177,7 +188,7 @@ def _(found: Balance) -> str:
     )
     facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
     facts.append(("idle", "; ".join(found.idle)))
-    return lines("Counterweights", facts)
+    return facts
 
 
 def _weight(one: Counterweight) -> str:

@@ -14,7 +14,7 @@ from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking, shaking_of
-from sevenbar.forces.sizing import Sizing
+from sevenbar.forces.sizing import Bearing, Sizing
 from sevenbar.reporting.shown import Shown
 from sevenbar.text.words import retold, say
 
@@ -22,7 +22,7 @@ from sevenbar.text.words import retold, say
 ROUNDING = 1e-9
 
 #: The parts of a bearing's load that are listed, with their units.
-LISTED = {"force": "N", "radial": "N", "axial": "N", "tilting": "N m", "turning": "N m"}
+LISTED = {"force": "N", "radial": "N", "axial": "N", "tilting": "N m", "turning": "N m", "in_plane": "N"}
 
 #: What a cell says of a part that rigid bodies leave open.
 OPEN = "open"
@@ -172,6 +172,11 @@ def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]
 def no_peak(forces: Forces) -> str:
     """Why no peaks are found; empty where there are."""
     lost = ~np.isfinite(forces.torque)
+    if forces.through_change_points and forces.periodic and forces.loading.breaks(turns=1):
+        return say(
+            "no peak: loads that set in or end are not sized on a circuit that passes change points; "
+            "see the rows"
+        )
     if not lost.any():
         return ""
     dead = np.unique(forces.status[lost])
@@ -300,6 +305,33 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
     if alone := known_alone(forces):
         facts.append(("", say("known alone, greatest of the rows: {forces}", forces=say(", ").join(alone))))
     return facts
+
+
+def unbounded_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
+    """Joints whose forces have no bound at the circuit's change points."""
+    if found is None or not forces.through_change_points:
+        return []
+    lost = [
+        name
+        for name, reaction in forces.reactions.items()
+        if reaction.determinate.any() and not _any_known(found.bearings[name])
+    ]
+    if not lost:
+        return []
+    return [
+        (
+            say("no bound"),
+            say(
+                "forces in {joints} grow without bound at the change points, where a link in line with its "
+                "neighbour cannot drive it; the torque does not",
+                joints=", ".join(lost),
+            ),
+        )
+    ]
+
+
+def _any_known(bearing: Bearing) -> bool:
+    return any(math.isfinite(getattr(bearing, part).peak.value) for part in LISTED)
 
 
 def known_alone(forces: Forces) -> list[str]:

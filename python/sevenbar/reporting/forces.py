@@ -14,6 +14,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sevenbar.curves.curve import Peak
+from sevenbar.forces.counterweights import Balance
 from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking
 from sevenbar.forces.sizing import Burden, Sizing
@@ -39,6 +40,7 @@ from sevenbar.reporting.force_words import (
     shaking_facts,
     shaking_found,
     spin_facts,
+    unbounded_facts,
 )
 from sevenbar.reporting.page import Facts, drive_text, number_table
 from sevenbar.reporting.shown import rows_text
@@ -57,6 +59,7 @@ class CircuitForces:
     forces: Forces
     sizing: Sizing | None
     shaking: Shaking | None
+    balance: Balance | None = None
 
     @classmethod
     def of(
@@ -133,6 +136,7 @@ def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     facts += shaking_facts(forces, found.shaking)
     facts += spin_facts(forces)
     facts += open_facts(forces)
+    facts += unbounded_facts(forces, found.sizing)
     facts.append((say("found"), found_text(found.sizing, law=found.motion.law is not None)))
     facts.append((say("checks"), check_text(forces)))
     facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
@@ -147,8 +151,21 @@ def text(found: CircuitForces) -> RenderableType:
         strong = label == drive_label(forces)
         facts.add(label, said, style="bold" if strong else "")
     parts: list[RenderableType] = [Text(found.motion.linkage.heading, style="bold underline"), facts.grid]
+    if found.balance is not None:
+        # a reader of its own, which knows these pages
+        from sevenbar.reporting.force_results import balance_facts
+
+        facts.add(say("counterweights"), say("least squares of the shaking over the cycle"))
+        for label, said in balance_facts(found.balance):
+            facts.add(label, said)
     if found.sizing is not None:
-        head, rows = bearing_rows(forces, found.sizing)
+        planar = getattr(found.motion.linkage, "plane", None) is not None
+        head, rows = bearing_rows(forces, found.sizing, planar=planar)
+        without = ""
+        if head[1] == say(IN_PLANE):
+            without = say("; in plane: the force in the plane of motion, the whole is open")
+        elif head[1] == say(KNOWN):
+            without = say("; known: the force without the component that is open")
         parts += [
             Text(),
             number_table(head, rows),
@@ -156,23 +173,37 @@ def text(found: CircuitForces) -> RenderableType:
                 say(
                     "peaks of what the link before puts on the link after; radial square to the joint's "
                     "axis, axial along it, tilting moment square to it, turning about it"
-                ),
+                )
+                + without,
                 style="dim",
             ),
         ]
     return Group(*parts)
 
 
-def bearing_rows(forces: Forces, found: Sizing) -> tuple[list[str], list[list[str]]]:
-    """The table of joints: what each bears at most, and the force's place and cubic mean."""
+#: The head of the column of whole forces.
+WHOLE = "force\n[N]"
+
+#: The same where one component of them is open.
+IN_PLANE, KNOWN = "in plane\n[N]", "known\n[N]"
+
+
+def bearing_rows(forces: Forces, found: Sizing, *, planar: bool = False) -> tuple[list[str], list[list[str]]]:
+    """The table of joints: what each bears at most, and the force's place and cubic mean.
+
+    Where no joint's whole force is determined, but that in the `planar` loop's plane is, it has the latter.
+    """
     place = Places(forces)
+    whole = any(math.isfinite(one.force.peak.value) for one in found.bearings.values())
+    partly = not whole and any(math.isfinite(one.in_plane.peak.value) for one in found.bearings.values())
+    first = (IN_PLANE if planar else KNOWN) if partly else WHOLE
     head = [
-        say("joint"), say("force\n[N]"), "@", say("cubic mean\n[N]"), say("radial\n[N]"), say("axial\n[N]"),
+        say("joint"), say(first), "@", say("cubic mean\n[N]"), say("radial\n[N]"), say("axial\n[N]"),
         say("tilting\n[N m]"), say("turning\n[N m]"),
     ]  # fmt: skip
     rows = []
     for name, bearing in found.bearings.items():
-        force = bearing.force
+        force = bearing.in_plane if partly else bearing.force
         known = math.isfinite(force.peak.value)
         cells = [
             name,
@@ -226,12 +257,30 @@ def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:
         six = np.concatenate([reaction.moment, reaction.force], axis=1)
         for i in (3, 4, 5, 0, 1, 2):
             found[f"{name}_{COMPONENTS[i]}_{units[i]}"] = six[:, i]
+        known = reaction.determinate[3:]
+        if known.sum() == 2:
+            found[f"{name}_F_in_plane_N"] = np.linalg.norm(reaction.force[:, known], axis=1)
     if not forces.at_rest:
         for i in (3, 4, 5, 0, 1, 2):
             found[f"shaking_{COMPONENTS[i]}_{units[i]}"] = forces.shaking[:, i]
     for link, moment in forces.spin.items():
         found[f"{link.replace(' ', '')}_spin_moment_Nm"] = moment
     return found
+
+
+def _weights(found: Balance) -> dict[str, Any]:
+    """Counterweights: mass times radius [kg length] in a direction, and the shaking [N] before and after."""
+    weights = [
+        {
+            "link": one.link,
+            "pivot": list(one.pivot),
+            "product": one.product,
+            "direction": one.direction.tolist(),
+            "mass": one.mass,
+        }
+        for one in found.counterweights
+    ]
+    return {"weights": weights, "before": found.before, "after": found.after, "measure": found.measure}
 
 
 def as_dict(found: CircuitForces) -> dict[str, Any]:
@@ -263,6 +312,7 @@ def as_dict(found: CircuitForces) -> dict[str, Any]:
         "rows": len(forces.status),
         "acting": _acting(forces),
         **numbers(found),
+        "counterweights": None if found.balance is None else _weights(found.balance),
         "not_determined": list(forces.indeterminate),
         "idle_spin": {link: greatest(moment) for link, moment in forces.spin.items()},
         "checks": check_values(forces),

@@ -7,12 +7,9 @@ the fixed line (RC), so does that on the moving line (RR): 2, 3, 4 equations for
     RC    3 poses: one dyad for each direction of the moving line, two numbers free; none for 4 poses
     RR    3 poses: 2 real dyads, which make a Bennett linkage (`bennett`)
 
-So five general poses give CCCC linkages, which have two freedoms, and none with an R joint. Chen and Roth
-counted so which binary links meet how many poses.
+So five general poses give CCCC linkages, which have two freedoms, and none with an R joint.
 
-Source: P. Chen and B. Roth, "Design equations for the finitely and infinitesimally separated position
-synthesis of binary links and combined link chains", J. Eng. Ind. 91 (1969), 209; docs/theory_design.md, (33)
-to (35).
+Source: docs/theory_design.md, (33) to (35).
 """
 
 from __future__ import annotations
@@ -24,7 +21,7 @@ from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import directions
 from sevenbar.design.exact.dyads import Dyad
-from sevenbar.design.exact.given import Displacements, poses_given
+from sevenbar.design.exact.given import Displacements, place_text, poses_given
 from sevenbar.design.exact.lines import line_dyad, places
 from sevenbar.design.exact.loops import all_loops, drawn, loop
 from sevenbar.design.exact.spherical import NOTHING, refuse_one_axis
@@ -111,8 +108,8 @@ def _refuse_special(task: Displacements) -> None:
     sides, right = np.concatenate(np.eye(3) - task.turns), np.concatenate(task.shifts)
     centre = np.linalg.lstsq(sides, right, rcond=None)[0]
     if np.abs(sides @ centre - right).max() < NOTHING:
-        x, y, z = centre * task.reach + task.origin
+        place = place_text(centre * task.reach + task.origin, task.reach)
         raise RequestError(
-            f"poses: all are turns about one point, ({x:.6g}, {y:.6g}, {z:.6g}), which spherical linkages "
+            f"poses: all are turns about one point, {place}, which spherical linkages "
             "take: give their rotations to spherical_orientations"
         )

@@ -98,6 +98,12 @@ def displacements(poses: Floats, least: int, most: int, *, what: str) -> Displac
     return Displacements(pose(turns, places - places[0]), places[0].copy(), reach)
 
 
+def place_text(values: Floats, size: float) -> str:
+    """A place or direction in a message: "(1.5, 0, -2)", rounding relative to a size as 0."""
+    kept = np.where(np.abs(values) < SAME_POSE * size, 0.0, values)
+    return "(" + ", ".join(f"{value:.6g}" for value in kept) + ")"
+
+
 def _numbers(name: str, values: npt.ArrayLike) -> Floats:
     try:
         given = np.array(values, dtype=np.float64)

@@ -24,7 +24,7 @@ from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, Complexes, solutions
 from sevenbar.design.exact.draws import anywhere, directions, on_curve
 from sevenbar.design.exact.dyads import Dyad, Line, turns_about
-from sevenbar.design.exact.given import Displacements, planar_given
+from sevenbar.design.exact.given import Displacements, place_text, planar_given
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.kinematics.rigid import axial, pose
@@ -167,8 +167,8 @@ def _refuse_special(task: Displacements) -> None:
     sides, right = np.concatenate(np.eye(2) - turns), np.concatenate(shifts)
     pole = np.linalg.lstsq(sides, right, rcond=None)[0]
     if np.abs(sides @ pole - right).max() < NOTHING:
-        x, y = pole * task.reach + task.origin[:2]
+        place = place_text(pole * task.reach + task.origin[:2], task.reach)
         raise RequestError(
-            f"poses: all are turns about one point, ({x:.6g}, {y:.6g}), and a hinge there takes them; "
+            f"poses: all are turns about one point, {place}, and a hinge there takes them; "
             "shift one of the poses"
         )

@@ -20,7 +20,7 @@ from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import anywhere, directions, on_curve
 from sevenbar.design.exact.dyads import Dyad, Line
-from sevenbar.design.exact.given import Displacements, orientations_given
+from sevenbar.design.exact.given import Displacements, orientations_given, place_text
 from sevenbar.design.exact.lines import link_motions
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
@@ -95,9 +95,9 @@ def refuse_one_axis(turns: Floats, what: str) -> None:
     if sizes[0] < NOTHING:
         raise RequestError(f"{what}: all have one orientation; turn one of them")
     if sizes[-1] < NOTHING * sizes[0]:
-        x, y, z = base[-1] * (1 if base[-1][np.abs(base[-1]).argmax()] > 0 else -1)
+        axis = place_text(base[-1] * np.sign(base[-1][np.abs(base[-1]).argmax()]), 1.0)
         raise RequestError(
-            f"{what}: all are turns about one direction, ({x:.6g}, {y:.6g}, {z:.6g}), as those of a plane; "
+            f"{what}: all are turns about one direction, {axis}, as those of a plane; "
             "turn one of them about another"
         )
 

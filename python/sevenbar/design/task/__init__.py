@@ -1,12 +1,11 @@
 """One design task, one engine for any loop: free numbers within bounds, what is wanted, what must hold."""
 
-from sevenbar.design.task.check import Design, Met
+from sevenbar.design.task.check import Met, TaskDesign
 from sevenbar.design.task.file.reader import read_task
 from sevenbar.design.task.front import ParetoFront, ParetoPoint, pareto
 from sevenbar.design.task.search import DesignsFound, designed
 from sevenbar.design.task.task import (
     Apart,
-    Cone,
     DesignTask,
     DwellWant,
     FigureMust,
@@ -14,7 +13,8 @@ from sevenbar.design.task.task import (
     FreeNumber,
     FunctionWant,
     InBox,
-    JointRange,
+    InCone,
+    InRange,
     Most,
     Must,
     PathWant,
@@ -25,8 +25,6 @@ from sevenbar.design.task.task import (
 
 __all__ = [
     "Apart",
-    "Cone",
-    "Design",
     "DesignTask",
     "DesignsFound",
     "DwellWant",
@@ -35,7 +33,8 @@ __all__ = [
     "FreeNumber",
     "FunctionWant",
     "InBox",
-    "JointRange",
+    "InCone",
+    "InRange",
     "Met",
     "Most",
     "Must",
@@ -44,6 +43,7 @@ __all__ = [
     "PathWant",
     "PoseWant",
     "StraightWant",
+    "TaskDesign",
     "Want",
     "designed",
     "pareto",

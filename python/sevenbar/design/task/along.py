@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.task.check import Design
+from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.task import (
@@ -40,7 +40,7 @@ class UsedWay:
 class DesignAlong:
     """A design of a task and what it does along each want."""
 
-    def __init__(self, task: DesignTask, design: Design) -> None:
+    def __init__(self, task: DesignTask, design: TaskDesign) -> None:
         self.task, self.design = task, design
         self.model = TaskModel(task)
         self.loop = self.model.loop

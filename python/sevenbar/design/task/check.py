@@ -25,7 +25,7 @@ from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
-from sevenbar.design.task.task import Apart, Cone, FigureMust, InBox, JointRange, Most
+from sevenbar.design.task.task import Apart, FigureMust, InBox, InCone, InRange, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
@@ -45,7 +45,7 @@ DENSE, MISSED = 361, 1e-4
 #: By how much a measure may miss its limit through rounding, relative to it.
 ROUNDING = 1e-6
 
-FAULTS: Mapping[type, Fault] = {JointRange: "range", Cone: "cone", InBox: "box", Apart: "distance"}
+FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,13 +58,13 @@ class Met:
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class TaskDesign:
     """A linkage that does what a task asks, with what the ordinary analysis says of it.
 
     `candidate` is that of the first want. `cost` is the root of the weighted mean squares, or the greatest
     weighted residual; `optimality` by how much the conditions of a local optimum are missed, relative;
-    `met` how well each want is met that is asked for at poses, `figures` the measures that are asked for;
-    `room` the least room of a must (infinite where there is none); `placing` where the linkage stands;
+    `met` how well each want is met at poses, `figures` the measures that are wanted or limited;
+    `room` the least room of a must (infinite where there is none); `placing` where the linkage is;
     `solution` what was solved for, with the inputs and own unknowns of each want.
     """
 
@@ -95,7 +95,7 @@ class _Way:
     errors: Floats
 
 
-def checked_design(model: TaskModel, solution: Solved) -> Design | Refusal:
+def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
     """The design with its errors found anew from what is written, or why it does not do what is asked."""
     draft = model.loop.drawn(solution.seed.values)
     try:
@@ -124,7 +124,7 @@ def checked_design(model: TaskModel, solution: Solved) -> Design | Refusal:
         )
         for one, w in zip(model.wanted, ways, strict=True)
     )
-    return Design(
+    return TaskDesign(
         candidate,
         solution.cost,
         solution.optimality,

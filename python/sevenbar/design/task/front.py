@@ -21,7 +21,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.course import SearchCourse
-from sevenbar.design.task.check import Design
+from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.contradictions import refuse_contradictions
 from sevenbar.design.task.search import STARTS, DesignsFound, designed
 from sevenbar.design.task.task import (
@@ -58,7 +58,7 @@ class ParetoPoint:
     """A design of a front and its two values: errors [rad, or length], measures as they are read."""
 
     values: tuple[float, float]
-    design: Design
+    design: TaskDesign
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,7 +191,7 @@ def _must(task: DesignTask, place: int, bound: float) -> Must:
     return FigureMust(want.name, float(want.value) - bound, float(want.value) + bound)
 
 
-def _value(task: DesignTask, place: int, design: Design) -> float:
+def _value(task: DesignTask, place: int, design: TaskDesign) -> float:
     """What a design makes of a want, the less the better: its greatest error, or its measure."""
     want = task.wants[place]
     if not isinstance(want, FigureWant):

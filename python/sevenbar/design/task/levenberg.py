@@ -29,7 +29,7 @@ STRAIGHT, SHARE, MOST_BENT = 10, 0.1, 0.4
 #: A fall of the squares, relative to them, after which it ends; and a step, relative to the unknowns.
 FALL, STEP = 1e-15, 1e-15
 
-#: An unknown whose column is shorter, relative to the longest, does nothing but for rounding.
+#: An unknown whose column is shorter, relative to the longest, does nothing; it is rounding.
 LEAST = 1e-8
 
 #: Squares that are rounding of residuals of unit size.

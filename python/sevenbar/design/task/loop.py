@@ -44,7 +44,7 @@ class Here:
 class TaskLoop:
     """The loop of a draft whose `free` numbers, by name, may change; `values` (k,) are theirs.
 
-    Points of which something is wanted are asked for once, before the first pose, and known by their number.
+    Points of which something is wanted are known by their number.
     A coupler that the draft leaves out follows unless it is one of the free numbers.
     """
 
@@ -57,7 +57,7 @@ class TaskLoop:
         self.output = self.linkage.columns.index(self.linkage.drive.output)
         #: The longest dimension [length], and what is 1 of each column: a radian, or the size.
         self.size, self.units = self.numbers.size, self.numbers.scales
-        #: What is 1 of each free number, beside a radian.
+        #: What is 1 of each free number, as a radian is of an angle.
         self.scales = self.numbers.units[self.free]
         self.coupler = Following.among(self.numbers.dimensions, self.free)
         self._points: dict[Carried, int] = {}
@@ -89,6 +89,7 @@ class TaskLoop:
         if carried not in self._points:
             self._points[carried] = len(self.numbers.points)
             self.numbers.points.append(carried)
+            self._loop = None
         return self._points[carried]
 
     def whole(self, values: Floats) -> Floats:

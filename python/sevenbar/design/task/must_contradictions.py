@@ -9,13 +9,13 @@ import numpy as np
 
 from sevenbar.design.task.task import (
     Apart,
-    Cone,
     DesignTask,
     FigureMust,
     FigureWant,
     FunctionWant,
     InBox,
-    JointRange,
+    InCone,
+    InRange,
     Most,
     Must,
     PathWant,
@@ -35,9 +35,9 @@ def of_must(task: DesignTask, must: Must) -> Flaws:
     """What is wrong with a must."""
     linkage = task.draft.linkage
     match must:
-        case JointRange():
+        case InRange():
             yield from _range(task, must)
-        case Cone():
+        case InCone():
             yield from _cone(linkage, must)
         case InBox():
             yield from _box(task, must)
@@ -75,7 +75,7 @@ def _transmits(linkage: Linkage) -> bool:
     return any(circuit.transmission is not None for circuit in linkage.motion(12).circuits)
 
 
-def _range(task: DesignTask, must: JointRange) -> Flaws:
+def _range(task: DesignTask, must: InRange) -> Flaws:
     linkage = task.draft.linkage
     try:
         column = linkage.column(must.column, "joint")
@@ -98,7 +98,7 @@ def _range(task: DesignTask, must: JointRange) -> Flaws:
             yield "range", f"want {i + 1} needs {name} outside it; widen it, or want less"
 
 
-def _cone(linkage: Linkage, must: Cone) -> Flaws:
+def _cone(linkage: Linkage, must: InCone) -> Flaws:
     kinds = {joint.name: joint.kind for joint in linkage.joints}
     bending = [name for name, kind in kinds.items() if kind in BENDING]
     if must.joint not in kinds:

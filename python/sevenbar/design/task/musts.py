@@ -9,7 +9,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.task import Apart, Cone, InBox, JointRange, Must
+from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must
 
 #: Rooms (n, r) at n poses, and their slopes (n, r, unknowns).
 Rooms = tuple[Floats, Floats]
@@ -25,9 +25,9 @@ def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callabl
     """
     found: list[tuple[int, Callable[[Here], Rooms]]] = []
     for place, must in enumerate(musts):
-        if isinstance(must, JointRange):
+        if isinstance(must, InRange):
             found.append((place, _range(loop, must)))
-        elif isinstance(must, Cone):
+        elif isinstance(must, InCone):
             found.append((place, _cone(loop, must)))
         elif isinstance(must, InBox):
             found.append((place, _box(loop, must)))
@@ -36,7 +36,7 @@ def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callabl
     return found
 
 
-def _range(loop: TaskLoop, must: JointRange) -> Callable[[Here], Rooms]:
+def _range(loop: TaskLoop, must: InRange) -> Callable[[Here], Rooms]:
     column = loop.linkage.columns.index(must.column)
     unit, turns = float(loop.units[column]), bool(loop.numbers.turns[column])
     middle = (must.low + must.high) / 2
@@ -55,7 +55,7 @@ def _range(loop: TaskLoop, must: JointRange) -> Callable[[Here], Rooms]:
     return rooms
 
 
-def _cone(loop: TaskLoop, must: Cone) -> Callable[[Here], Rooms]:
+def _cone(loop: TaskLoop, must: InCone) -> Callable[[Here], Rooms]:
     count = len(loop.linkage.joints)
     place = [joint.name for joint in loop.linkage.joints].index(must.joint)
     zero = (0.0, 0.0, 0.0)

@@ -16,7 +16,7 @@ PHASES = 36
 
 
 @dataclass(frozen=True, eq=False)
-class Pass:
+class InputPass:
     """Rows (m,) of a circuit along one pass; `closed`: round and round; `turns`: its input is an angle."""
 
     circuit: Circuit
@@ -86,14 +86,14 @@ class Pass:
             yield from (math.tau * k for k in (nearest - 1, nearest, nearest + 1))
 
 
-def passes(circuit: Circuit) -> Iterator[Pass]:
+def passes(circuit: Circuit) -> Iterator[InputPass]:
     """The passes of a circuit; rows without a pose are left out."""
     turns = bool(circuit.input_turns)
     good = np.isfinite(circuit.q).all(axis=1)
     if circuit.goes_round and good.all():
-        yield Pass(circuit, np.arange(len(circuit.q)), True, turns)
+        yield InputPass(circuit, np.arange(len(circuit.q)), True, turns)
         return
     for branch in np.unique(circuit.branch):
         rows = np.flatnonzero((circuit.branch == branch) & good)
         if len(rows) > 1:
-            yield Pass(circuit, rows, False, turns)
+            yield InputPass(circuit, rows, False, turns)

@@ -23,6 +23,7 @@ from sevenbar.design.synthesis.limits import INPUT_TURNS, transmission_room, tur
 from sevenbar.design.synthesis.path.match import STILL, Placing, placed
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
     FigureMust,
@@ -39,7 +40,7 @@ from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.straight import LineWanted
 from sevenbar.design.task.wants.wanted import Stations, Wanted
 
-#: A step after which a passive joint stands further away [rad, or of the size] has left its branch.
+#: A step after which a passive joint is further away [rad, or of the size] has left its branch.
 LONGEST_STEP = 1.2
 
 #: Poses of a want, with those between its stations, at which musts are held.
@@ -48,12 +49,9 @@ HELD = 73
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
 
-#: A turn [rad] below which the first terms of its series stand for the rest.
-SMALL = 1e-4
-
 
 @dataclass(frozen=True, eq=False)
-class Seed:
+class TaskSeed:
     """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
 
     `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
@@ -70,7 +68,7 @@ class Seed:
 
 
 @dataclass(frozen=True, eq=False)
-class Values:
+class TaskValues:
     """Residuals (r,) and rooms (c,) at unknowns z, with their slopes, and the placing."""
 
     left: Floats
@@ -90,7 +88,7 @@ class TaskModel:
             self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
         ]
         self.figure_wants = [want for want in task.wants if isinstance(want, FigureWant)]
-        #: The places among the task's wants of those that are asked for at poses.
+        #: The places among the task's wants of those at poses.
         self.sampled = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
         self.figure_musts = [must for must in task.musts if isinstance(must, FigureMust)]
         names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
@@ -118,10 +116,10 @@ class TaskModel:
         return bool(self.rooms or self.transmits)
 
 
-class Problem:
+class TaskProblem:
     """A task about a seed; `minimax` for the greatest residual, with the placing among the unknowns."""
 
-    def __init__(self, model: TaskModel, seed: Seed, *, minimax: bool = False) -> None:
+    def __init__(self, model: TaskModel, seed: TaskSeed, *, minimax: bool = False) -> None:
         self.model, self.loop = model, model.loop
         self._poses, self._anchor = seed.poses, seed.anchor
         self._period = seed.period
@@ -150,11 +148,11 @@ class Problem:
             self._poses = self._between(seed)
         places = [one.places.reshape(-1, 3) for _, one in self._places()]
         self._middle = np.concatenate(places).mean(axis=0) if places else np.zeros(3)
-        self._taken: tuple[bytes, Values | None] = b"", None
+        self._taken: tuple[bytes, TaskValues | None] = b"", None
         self._asked: tuple[bytes, Floats | None] | None = None
-        self._known: tuple[bytes, Values | None] | None = None
+        self._known: tuple[bytes, TaskValues | None] | None = None
 
-    # ---- the inputs at which the linkage is looked at
+    # ---- the inputs at which the linkage is seen
 
     def _all_stations(self) -> Stations:
         """Those of the wants, then those between them where something must hold there."""
@@ -180,7 +178,7 @@ class Problem:
             np.ones(width),
         )
 
-    def _between(self, seed: Seed) -> Floats:
+    def _between(self, seed: TaskSeed) -> Floats:
         """Poses of all stations, those between followed from the nearest."""
         inputs = self._stations.inputs(self.start)
         known = self.loop.closed(seed.values, inputs[: self._count], seed.poses)
@@ -226,12 +224,12 @@ class Problem:
             if len(poses):
                 self._anchor = poses[0]
 
-    def seed(self, z: Floats) -> Seed:
+    def seed(self, z: Floats) -> TaskSeed:
         """The start that z is."""
         found = self.at(z)
         self.take(z)
         placing = STILL if found is None else found.placing
-        return Seed(
+        return TaskSeed(
             self.values(z),
             self.own(z),
             self._poses[: self._count],
@@ -243,7 +241,7 @@ class Problem:
 
     # ---- what is left there
 
-    def at(self, z: Floats) -> Values | None:
+    def at(self, z: Floats) -> TaskValues | None:
         """Residuals and rooms at z; `None` where the linkage does not close on its branch."""
         key = z.tobytes()
         if key == self._taken[0]:
@@ -253,7 +251,7 @@ class Problem:
             self._known = key, self._at(z)
         return self._known[1]
 
-    def _at(self, z: Floats) -> Values | None:
+    def _at(self, z: Floats) -> TaskValues | None:
         poses = self.poses(z)
         if poses is None:
             return None
@@ -274,7 +272,7 @@ class Problem:
         room = np.concatenate([*rooms, figures[2]])
         room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
-        found = Values(
+        found = TaskValues(
             np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]]),
             np.concatenate([*(w * r for w, r in zip(weights, slopes, strict=True)), self._wide(figures[1])]),
             room,
@@ -309,7 +307,7 @@ class Problem:
     def _placed(
         self, z: Floats, parts: Sequence[tuple[Floats, Floats]], placing: Placing
     ) -> tuple[list[Floats], list[Floats]]:
-        """Residuals and slopes of every want, those of places where the linkage stands."""
+        """Residuals and slopes of every want, those of places as the linkage is placed."""
         left, slopes = [part[0] for part in parts], [part[1] for part in parts]
         own = self._places()
         for i, one in own:
@@ -339,7 +337,7 @@ class Problem:
         ]
         units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
         weight = np.concatenate(weights)[:, None]
-        moves = weight / np.concatenate(units)[:, None] * _rigid(every - every.mean(axis=0))
+        moves = weight / np.concatenate(units)[:, None] * rigid_moves(every - every.mean(axis=0))
         basis, sizes, _ = np.linalg.svd(moves, full_matrices=False)
         basis = basis[:, sizes > FLAT * sizes[0]]
         joined = weight * np.concatenate([slopes[i] for i, _ in own])
@@ -478,33 +476,3 @@ def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> li
                 )
             )
     return found
-
-
-def _rigid(places: Floats) -> Floats:
-    """The small rigid motions (3 n, 6) of places (n, 3): three shifts, three turns."""
-    moves = np.zeros((len(places), 3, 6))
-    moves[:, :, :3] = np.eye(3) * float(np.abs(places).max())
-    for axis, unit in enumerate(np.eye(3)):
-        moves[:, :, 3 + axis] = np.cross(unit, places)
-    return moves.reshape(-1, 6)
-
-
-def rotation_of_vector(turn: Floats) -> Floats:
-    """The rotation (3, 3) about an axis by its length [rad]."""
-    angle = float(np.linalg.norm(turn))
-    own = _crossed(turn)
-    half = 0.5 * np.sinc(angle / math.tau) ** 2
-    return np.asarray(np.eye(3) + np.sinc(angle / math.pi) * own + half * own @ own)
-
-
-def left_jacobian(turn: Floats) -> Floats:
-    """J (3, 3): rotations near that of a turn (3,) are a turn by `J d` of it, where the turn changes by d."""
-    angle = float(np.linalg.norm(turn))
-    third = 1 / 6 - angle**2 / 120 if angle < SMALL else (angle - math.sin(angle)) / angle**3
-    own = _crossed(turn)
-    return np.asarray(np.eye(3) + 0.5 * np.sinc(angle / math.tau) ** 2 * own + third * own @ own)
-
-
-def _crossed(vector: Floats) -> Floats:
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -14,7 +14,7 @@ from rich.text import Text
 from sevenbar.design.synthesis.candidates import Candidate
 from sevenbar.design.synthesis.files import design_files
 from sevenbar.design.task.along import DesignAlong
-from sevenbar.design.task.check import Design
+from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
@@ -102,7 +102,7 @@ class TaskDesigns:
         )
 
 
-def design_figures(task: DesignTask, design: Design) -> dict[str, float]:
+def design_figures(task: DesignTask, design: TaskDesign) -> dict[str, float]:
     """Numbers of a design besides those of its first want: names end in the unit."""
     figures = dict(design.candidate.claim.figures)
     along = DesignAlong(task, design)
@@ -145,7 +145,7 @@ def task_report(
             files |= figure_files(
                 f"{name}_want_{want + 1}", formats, partial(_of_want, place=place, number=number)
             )
-        if any(type(must).__name__ in ("JointRange", "Cone", "InBox", "Apart") for must in task.musts):
+        if any(type(must).__name__ in ("InRange", "InCone", "InBox", "Apart") for must in task.musts):
             files |= figure_files(f"{name}_musts", formats, partial(_of_musts, place=place))
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
 
@@ -210,12 +210,12 @@ def text(found: TaskDesigns) -> RenderableType:
     return Group(*parts)
 
 
-def _on_bound(design: Design, task: DesignTask) -> bool:
+def _on_bound(design: TaskDesign, task: DesignTask) -> bool:
     gap = ON_BOUND * (task.high - task.low)
     return bool(((design.values <= task.low + gap) | (design.values >= task.high - gap)).any())
 
 
-def _bounded(design: Design, place: int, low: float, high: float) -> str:
+def _bounded(design: TaskDesign, place: int, low: float, high: float) -> str:
     value, gap = float(design.values[place]), ON_BOUND * (high - low)
     return f"{value:.5g}{'*' if value <= low + gap or value >= high - gap else ''}"
 
@@ -294,7 +294,7 @@ def _sampled(task: DesignTask) -> list[int]:
     return [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
 
 
-def _rooms(task: DesignTask, design: Design) -> list[Mapping[str, Any]]:
+def _rooms(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
     """The least room of each must about poses, over all wants."""
     along = DesignAlong(task, design)
     least: dict[int, float] = {}

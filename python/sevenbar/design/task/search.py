@@ -1,4 +1,4 @@
-"""The search for designs: many starts are looked at, the promising ones solved, each of them checked."""
+"""The search for designs: many starts are tried, the promising ones solved, each of them checked."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.synthesis.candidates import Refusal, likeness, tally
-from sevenbar.design.task.check import Design, checked_design
-from sevenbar.design.task.problem import Seed, TaskModel
+from sevenbar.design.task.check import TaskDesign, checked_design
+from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.solve import LOOK, Solved, solved
 from sevenbar.design.task.starts import apart, seeds, seeds_at
 from sevenbar.design.task.task import DesignTask
@@ -20,8 +20,8 @@ from sevenbar.text.progress import Progress, silent
 #: Starts by default.
 STARTS = 256
 
-#: Of the starts so many for each design wanted are looked at closer, and of these so many solved at most.
-LOOKED_AT, TAKEN = 8, 3
+#: Of the starts so many for each design wanted are tried closer, and of these so many solved at most.
+TRIED, TAKEN = 8, 3
 
 #: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
@@ -39,7 +39,7 @@ class DesignsFound:
     """
 
     task: DesignTask
-    designs: tuple[Design, ...]
+    designs: tuple[TaskDesign, ...]
     refusals: tuple[Refusal, ...]
     starts: int
     unfinished: str
@@ -80,8 +80,8 @@ def designed(
         True
     """
     model = TaskModel(task)
-    course = SearchCourse(starts + 1 + len(given) + (LOOKED_AT + TAKEN) * count, progress)
-    kept: list[Design] = []
+    course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
+    kept: list[TaskDesign] = []
     refusals: list[Refusal] = []
     unfinished, found = "", 0
     try:
@@ -99,21 +99,21 @@ def designed(
 
 def _search(
     model: TaskModel,
-    begun: Sequence[Seed],
+    begun: Sequence[TaskSeed],
     count: int,
     course: SearchCourse,
-    kept: list[Design],
+    kept: list[TaskDesign],
     refusals: list[Refusal],
 ) -> None:
-    looked: list[Solved] = []
-    for one in apart(model, begun, LOOKED_AT * count):
-        look = _looked(model, one)
+    tried: list[Solved] = []
+    for one in apart(model, begun, TRIED * count):
+        look = _first_look(model, one)
         if look is not None:
-            looked.append(look)
-        nearest = min((look.cost for look in looked), default=None)
+            tried.append(look)
+        nearest = min((look.cost for look in tried), default=None)
         course.step("" if nearest is None else f"nearest: {nearest:.3g}")
-    looked.sort(key=lambda look: (look.room < -0.01, look.cost))
-    for i, look in enumerate(looked):
+    tried.sort(key=lambda look: (look.room < -0.01, look.cost))
+    for i, look in enumerate(tried):
         if len(distinct_designs(kept)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
         solution = solved(model, look.seed)
@@ -129,7 +129,7 @@ def _search(
         course.step(f"best: {kept[0].cost:.3g}" if kept else "", done=int(course.done < course.total))
 
 
-def _looked(model: TaskModel, one: Seed) -> Solved | None:
+def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:
     """A first look at a start; free inputs are matched anew once, where they may have left their places."""
     look = solved(model, one, LOOK, whole=False)
     if look is None or look.cost < EXACT or not any(want.stations.free for want in model.wanted):
@@ -139,9 +139,9 @@ def _looked(model: TaskModel, one: Seed) -> Solved | None:
     return look if other is None or other.cost > look.cost else other
 
 
-def distinct_designs(designs: Sequence[Design]) -> list[Design]:
+def distinct_designs(designs: Sequence[TaskDesign]) -> list[TaskDesign]:
     """The designs that differ, the first of those that are alike."""
-    kept: list[Design] = []
+    kept: list[TaskDesign] = []
     for one in designs:
         own = likeness(one.draft, scale_free=False)
         others = (likeness(other.draft, scale_free=False) for other in kept)
@@ -150,7 +150,7 @@ def distinct_designs(designs: Sequence[Design]) -> list[Design]:
     return kept
 
 
-def _named(task: DesignTask, designs: Sequence[Design]) -> list[Design]:
+def _named(task: DesignTask, designs: Sequence[TaskDesign]) -> list[TaskDesign]:
     """The designs with the names `title, design 1`, .. in their order."""
     title = task.draft.linkage.name
     return [

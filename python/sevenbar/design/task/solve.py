@@ -6,7 +6,7 @@ optimum (Karush, Kuhn and Tucker),
     grad f = sum y grad c,    y >= 0,    c >= 0,    y c = 0                                              (1)
 
 with c the rooms and the bounds, and f half the sum of squares, or for the greatest residual t itself with
-rooms t - h of every height h. What (1) is missed by tells how good a local optimum was found.
+rooms t - h of every height h. What (1) is missed by shows how good a local optimum was found.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
 from sevenbar.design.task.levenberg import nearest_least
-from sevenbar.design.task.problem import Problem, Seed, TaskModel, Values
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
 from sevenbar.design.task.wants.places import PlacesWanted
 
 #: Evaluations of a first look, and of a design that is kept.
@@ -30,7 +30,7 @@ LOOK, WHOLE = 40, 1000
 #: How much the first steps are held back, relative to the unknowns' sizes; and where that failed.
 FIRST = (1e-3, 1.0)
 
-#: Weights of a missed room beside the residuals, in rounds; and the room kept since a penalty is never met.
+#: Weights of a missed room, in rounds; and the room kept since a penalty is never met.
 WEIGHTS, KEPT = (1.0, 10.0, 100.0), 1e-5
 
 #: A room that is missed by less is kept.
@@ -69,7 +69,7 @@ class Solved:
     `cost` is the root of the weighted mean squares, or the greatest weighted residual.
     """
 
-    seed: Seed
+    seed: TaskSeed
     inputs: tuple[Floats, ...]
     cost: float
     optimality: float
@@ -91,7 +91,9 @@ class Conditions:
     unit: float
 
 
-def solved(model: TaskModel, seed: Seed, evaluations: int = WHOLE, *, whole: bool = True) -> Solved | None:
+def solved(
+    model: TaskModel, seed: TaskSeed, evaluations: int = WHOLE, *, whole: bool = True
+) -> Solved | None:
     """The nearest optimum of a seed; `None` where its linkage does not close. `whole`: to the last digit."""
     found = _least_squares(model, seed, evaluations, FIRST[0])
     if whole and (found is None or found[0].size(found[1]) > EXACT):
@@ -106,7 +108,7 @@ def solved(model: TaskModel, seed: Seed, evaluations: int = WHOLE, *, whole: boo
         return _as_solved(problem, z, math.nan, minimax=False)
     minimax = model.task.goal == "minimax"
     if minimax:
-        problem = Problem(model, problem.seed(z), minimax=True)
+        problem = TaskProblem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
     elif problem.size(z) > EXACT:
         z = _descended(problem, _programmed(problem, z))
@@ -114,7 +116,7 @@ def solved(model: TaskModel, seed: Seed, evaluations: int = WHOLE, *, whole: boo
     return _as_solved(problem, z, missed, minimax=minimax)
 
 
-def _as_solved(problem: Problem, z: Floats, missed: float, *, minimax: bool) -> Solved | None:
+def _as_solved(problem: TaskProblem, z: Floats, missed: float, *, minimax: bool) -> Solved | None:
     here = problem.at(z)
     if here is None:
         return None
@@ -124,17 +126,17 @@ def _as_solved(problem: Problem, z: Floats, missed: float, *, minimax: bool) -> 
 
 
 def _least_squares(
-    model: TaskModel, seed: Seed, evaluations: int, first: float
-) -> tuple[Problem, Floats] | None:
+    model: TaskModel, seed: TaskSeed, evaluations: int, first: float
+) -> tuple[TaskProblem, Floats] | None:
     """The problem about its least squares, missed rooms as penalties, and the unknowns there."""
-    problem = Problem(model, seed)
+    problem = TaskProblem(model, seed)
     z = np.clip(problem.start, problem.low, problem.high)
     here = problem.at(problem.start)
     if here is None:
         return None
     for weight in WEIGHTS if len(here.room) else WEIGHTS[:1]:
 
-        def residuals(z: Floats, problem: Problem = problem, weight: float = weight) -> Squares | None:
+        def residuals(z: Floats, problem: TaskProblem = problem, weight: float = weight) -> Squares | None:
             here = problem.at(z)
             if here is None:
                 return None
@@ -162,7 +164,7 @@ def _least_squares(
 # ---- the greatest residual
 
 
-def _heights(problem: Problem, here: Values) -> tuple[Floats, Floats]:
+def _heights(problem: TaskProblem, here: TaskValues) -> tuple[Floats, Floats]:
     """Weighted sizes (h,) of single residuals, and their slopes: distances of places, others both ways."""
     heights, slopes = [], []
     count = 0
@@ -183,7 +185,7 @@ def _heights(problem: Problem, here: Values) -> tuple[Floats, Floats]:
     return np.concatenate(heights), np.concatenate(slopes)
 
 
-def _bounds(problem: Problem, z: Floats) -> tuple[Floats, Floats]:
+def _bounds(problem: TaskProblem, z: Floats) -> tuple[Floats, Floats]:
     """Rooms to the bounds that there are, and their slopes."""
     one = np.eye(len(z))
     low, high = np.isfinite(problem.low), np.isfinite(problem.high)
@@ -193,7 +195,7 @@ def _bounds(problem: Problem, z: Floats) -> tuple[Floats, Floats]:
     )
 
 
-def _lowered(problem: Problem) -> Floats:
+def _lowered(problem: TaskProblem) -> Floats:
     def heights(z: Floats) -> MinimaxValues | None:
         here = problem.at(z)
         if here is None:
@@ -207,7 +209,7 @@ def _lowered(problem: Problem) -> Floats:
     return lowered(heights, np.clip(problem.start, problem.low, problem.high), worth=1e-9)
 
 
-def _programmed(problem: Problem, z: Floats) -> Floats:
+def _programmed(problem: TaskProblem, z: Floats) -> Floats:
     """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same."""
     from scipy.optimize import minimize
 
@@ -216,7 +218,7 @@ def _programmed(problem: Problem, z: Floats) -> Floats:
     unit = float(here.left @ here.left)
     last = [here]
 
-    def at(z: Floats) -> Values | None:
+    def at(z: Floats) -> TaskValues | None:
         found = problem.at(z)
         if found is not None:
             last[0] = found
@@ -253,7 +255,7 @@ def _programmed(problem: Problem, z: Floats) -> Floats:
     return np.asarray(found.x) if better else z
 
 
-def _descended(problem: Problem, z: Floats) -> Floats:
+def _descended(problem: TaskProblem, z: Floats) -> Floats:
     """The unknowns after Newton's method within a reach, by which narrow valleys are gone down to their end.
 
     Steps solve `min g s + s H s / 2, |s| <= reach` over the unknowns that no bound stops; H by differences of
@@ -305,7 +307,7 @@ def _within(gradient: Floats, curved: Floats, reach: float) -> Floats:
     return np.asarray(-ways @ (pull / (bends + high)))
 
 
-def _lack(here: Values) -> float:
+def _lack(here: TaskValues) -> float:
     """What rooms lack, none where it is rounding."""
     lack = -float(here.room.min(initial=0.0))
     return lack if lack > ROUNDING else 0.0
@@ -314,7 +316,7 @@ def _lack(here: Values) -> float:
 # ---- the conditions of an optimum
 
 
-def _conditions(problem: Problem, x: Floats, *, minimax: bool) -> Conditions | None:
+def _conditions(problem: TaskProblem, x: Floats, *, minimax: bool) -> Conditions | None:
     """At unknowns x: z, and for the greatest residual t behind them."""
     z = x[:-1] if minimax else x
     here = problem.at(z)
@@ -350,7 +352,7 @@ def _multipliers(at: Conditions) -> tuple[Integers, Floats, float]:
     return active, y, max(float(rest), missed, slack)
 
 
-def settled(problem: Problem, z: Floats, *, minimax: bool) -> tuple[Floats, float]:
+def settled(problem: TaskProblem, z: Floats, *, minimax: bool) -> tuple[Floats, float]:
     """The unknowns after Newton's method on (1), where it makes them better; and what (1) is missed by."""
     x = z
     if minimax:
@@ -393,7 +395,7 @@ def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
 
 
 def _curved(
-    problem: Problem, x: Floats, at: Conditions, active: Integers, y: Floats, *, minimax: bool
+    problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y: Floats, *, minimax: bool
 ) -> Floats | None:
     """The second derivatives of f less those of the rooms by their multipliers."""
 

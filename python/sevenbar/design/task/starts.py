@@ -10,8 +10,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.synthesis.path.match import STILL, Placing
-from sevenbar.design.task.passes import Pass, passes
-from sevenbar.design.task.problem import Seed, TaskModel
+from sevenbar.design.task.passes import InputPass, passes
+from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.design.task.wants.wanted import Begun
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
@@ -29,12 +29,12 @@ SAME, SAME_POSE = 0.02, 0.2
 
 def seeds(
     model: TaskModel, count: int, seed: int, step: Callable[[], None], given: Sequence[Floats] = ()
-) -> list[Seed]:
+) -> list[TaskSeed]:
     """How the task may begin, best first: numbers `given`, the description's own, `count` within the bounds.
 
     A linkage gives some for each of its circuits. `step` is called after each linkage.
     """
-    found: list[Seed] = []
+    found: list[TaskSeed] = []
     for values in _numbers(model, count, seed, given):
         found += seeds_at(model, values)
         step()
@@ -64,13 +64,13 @@ def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -
             yield np.clip(moved, low, high)
 
 
-def seeds_at(model: TaskModel, values: Floats) -> list[Seed]:
+def seeds_at(model: TaskModel, values: Floats) -> list[TaskSeed]:
     """How the task may begin with a linkage of these numbers (k,)."""
     try:
         motion = model.loop.drawn(values).linkage.motion(SAMPLES)
     except (DescriptionError, RequestError, NotCoveredError):
         return []
-    found: list[Seed] = []
+    found: list[TaskSeed] = []
     for circuit in motion.circuits:
         if not model.wanted:
             found += _of_figures(model, values, circuit)
@@ -80,16 +80,16 @@ def seeds_at(model: TaskModel, values: Floats) -> list[Seed]:
     return found
 
 
-def _of_figures(model: TaskModel, values: Floats, circuit: Circuit) -> list[Seed]:
+def _of_figures(model: TaskModel, values: Floats, circuit: Circuit) -> list[TaskSeed]:
     """A start of figures alone: any row of the circuit that is a pose."""
     good = np.flatnonzero(np.isfinite(circuit.q).all(axis=1))
     if not good.size:
         return []
-    seed = Seed(values, (), np.empty((0, circuit.q.shape[1])), circuit.q[good[0]], 0.0)
+    seed = TaskSeed(values, (), np.empty((0, circuit.q.shape[1])), circuit.q[good[0]], 0.0)
     return _with_figures(model, seed)
 
 
-def _with_figures(model: TaskModel, seed: Seed) -> list[Seed]:
+def _with_figures(model: TaskModel, seed: TaskSeed) -> list[TaskSeed]:
     if not model.figure_wants:
         return [seed]
     read = model.figures.at(seed.values, seed.anchor, slopes=False)
@@ -101,12 +101,12 @@ def _with_figures(model: TaskModel, seed: Seed) -> list[Seed]:
     return [replace(seed, error=seed.error + off)]
 
 
-def _on_pass(model: TaskModel, values: Floats, one: Pass) -> list[Seed]:
+def _on_pass(model: TaskModel, values: Floats, one: InputPass) -> list[TaskSeed]:
     """The wants on one pass, each at its best; the first one, which places the linkage, in all its ways."""
     scaled = model.task.placement == "free with scale"
     order = sorted(range(len(model.wanted)), key=lambda i: not hasattr(model.wanted[i], "places"))
     firsts = model.wanted[order[0]].begun(one, None if model.placed else STILL, scaled=scaled)
-    found: list[Seed] = []
+    found: list[TaskSeed] = []
     for first in firsts:
         placing = first.placing or STILL
         begun = {order[0]: first}
@@ -121,18 +121,18 @@ def _on_pass(model: TaskModel, values: Floats, one: Pass) -> list[Seed]:
 
 
 def _seed(
-    model: TaskModel, values: Floats, one: Pass, begun: Sequence[Begun], placing: Placing
-) -> list[Seed]:
+    model: TaskModel, values: Floats, one: InputPass, begun: Sequence[Begun], placing: Placing
+) -> list[TaskSeed]:
     rows = np.concatenate([own.rows for own in begun])
     q = one.circuit.q[one.rows[rows]]
     error = sum(want.weight**2 * own.error for want, own in zip(model.wanted, begun, strict=True))
-    seed = Seed(
+    seed = TaskSeed(
         values, tuple(own.u for own in begun), model.loop.poses(values, q), q[0], error, placing, one.period
     )
     return _with_figures(model, _scaled(model, seed) if placing.scale != 1.0 else seed)
 
 
-def _scaled(model: TaskModel, seed: Seed) -> Seed:
+def _scaled(model: TaskModel, seed: TaskSeed) -> TaskSeed:
     """The seed with its lengths, all of which are free, in the scale of its placing, within the bounds."""
     loop, scale = model.loop, seed.placing.scale
     kinds = [loop.numbers.dimensions[i].kind for i in loop.free]
@@ -149,9 +149,9 @@ def _scaled(model: TaskModel, seed: Seed) -> Seed:
     return replace(seed, values=values, own=own, poses=poses, anchor=anchor, placing=placing)
 
 
-def apart(model: TaskModel, found: Sequence[Seed], count: int) -> list[Seed]:
+def apart(model: TaskModel, found: Sequence[TaskSeed], count: int) -> list[TaskSeed]:
     """The first `count` of the seeds that are not alike."""
-    kept: list[Seed] = []
+    kept: list[TaskSeed] = []
     width = model.task.high - model.task.low
     for one in found:
         if len(kept) >= count:
@@ -167,6 +167,6 @@ def apart(model: TaskModel, found: Sequence[Seed], count: int) -> list[Seed]:
     return kept
 
 
-def _alike(one: Seed, other: Seed) -> bool:
+def _alike(one: TaskSeed, other: TaskSeed) -> bool:
     """Whether the poses of two seeds are nearly the same."""
     return all(np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True))

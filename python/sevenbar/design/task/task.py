@@ -105,10 +105,10 @@ class FigureWant:
 
 @dataclass(frozen=True)
 class DwellWant:
-    """The output stands still while the input goes over a range (low, high) [rad, or length].
+    """The output rests while the input goes over a range (low, high) [rad, or length].
 
     It stays at `level`, a free one where that is `None`. Residuals: what it is off at `samples` inputs
-    [rad, or relative to the size]. A tolerated deviation is a `Most` beside it.
+    [rad, or relative to the size]. A tolerated deviation is a `Most` as well.
     """
 
     range: tuple[float, float]
@@ -122,8 +122,8 @@ class StraightWant:
     """A named point moves along a straight line, a free one, while the input goes over a range (low, high).
 
     `length` is how far it goes at least [length], which residuals, its distances from the line at `samples`
-    inputs, are relative to; without one they are relative to the linkage's size, and a point that stands
-    still is straight.
+    inputs, are relative to; without one they are relative to the linkage's size, and a point that rests
+    is straight.
     """
 
     point: str
@@ -139,7 +139,7 @@ Want = SampledWant | FigureWant
 
 
 @dataclass(frozen=True)
-class JointRange:
+class InRange:
     """A column's value stays within `low` and `high` [rad, or length] at all poses that are used."""
 
     column: str
@@ -148,7 +148,7 @@ class JointRange:
 
 
 @dataclass(frozen=True)
-class Cone:
+class InCone:
     """The angle of a ball or a U joint from its seat stays below `angle` [rad] at all poses that are used.
 
     The angle is that between two directions: `seat` (3,), of the link before the joint, and `stud` (3,), of
@@ -196,7 +196,7 @@ class Most:
     most: float
 
 
-Must = JointRange | Cone | InBox | Apart | FigureMust | Most
+Must = InRange | InCone | InBox | Apart | FigureMust | Most
 
 
 @dataclass(frozen=True, eq=False)

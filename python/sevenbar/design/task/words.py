@@ -9,14 +9,14 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.task.task import (
     Apart,
-    Cone,
     DesignTask,
     DwellWant,
     FigureMust,
     FigureWant,
     FunctionWant,
     InBox,
-    JointRange,
+    InCone,
+    InRange,
     Most,
     Must,
     PathWant,
@@ -93,9 +93,9 @@ def must_words(must: Must, linkage: Linkage) -> str:
     """What must hold, in a line."""
     unit = linkage.length_unit
     match must:
-        case JointRange():
+        case InRange():
             return f"{must.column} within {_ends(np.array([must.low, must.high]), linkage, must.column)}"
-        case Cone():
+        case InCone():
             return f"{must.joint} within a cone of {math.degrees(must.angle):g} deg"
         case InBox():
             sides = ", ".join(f"{low:g}:{high:g}" for low, high in zip(must.low, must.high, strict=True))

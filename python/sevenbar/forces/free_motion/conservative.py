@@ -263,7 +263,7 @@ class _Seeker:
         course = self.course
         first, last = np.sort(course.laps(np.array([place, aim])))
         laps = np.arange(first - 1, last + 2) if course.closed else np.zeros(1)
-        marks = np.unique(np.concatenate([course.marks(float(lap)) for lap in laps]))
+        marks = course.marks(laps)
         inside = marks[(way * (marks - place) > 1e-13 * course.length) & (way * (aim - marks) > 0)]
         ordered = np.append(inside[::way], aim)
         if not course.closed and abs(ordered[-1] - aim) == 0:

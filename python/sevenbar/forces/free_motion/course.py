@@ -19,10 +19,14 @@ from numpy.polynomial import legendre
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
+from sevenbar.curves.stationary import nodes
 
 #: Points of Gauss's rule for the rise of U over a short way, and how short, in pieces.
 GAUSS = 20
 SHORT = 0.5
+
+#: Nodes of a piece for integrals over it.
+TERMS = 20
 
 #: The columns of `EnergyCourse.quantities`.
 MASS, SLOPE, DAMPING, INPUT, WINDING = range(5)
@@ -66,6 +70,12 @@ class EnergyCourse:
         return Along(self.quantities.edges, series)
 
     @cached_property
+    def pushing(self) -> Floats:
+        """The series (pieces, terms, 6) of `quantities` and of m'."""
+        by_place = np.pad(self.quantities.slope.series[:, :, :1], ((0, 0), (0, 1), (0, 0)))
+        return np.concatenate([self.quantities.series, by_place], axis=2)
+
+    @cached_property
     def _gains(self) -> tuple[float, float]:
         """What U gains on the first lap, and by how much more on each next one."""
         last = self._all.series[-1].sum(axis=0)
@@ -95,9 +105,37 @@ class EnergyCourse:
         s = np.asarray(s, dtype=np.float64)
         lap = self.laps(s)
         own = self._all.at(s - lap * self.length)
-        gain, more = self.gain, self._gains[1] if self.winds else 0.0
-        energy = self.start + own[:, 5] + lap * own[:, 6] + lap * gain + more * lap * (lap - 1) / 2
+        energy = self._energy(own[:, 5], own[:, 6], lap)
         return own[:, MASS], own[:, SLOPE] + lap * own[:, WINDING], energy, own[:, DAMPING]
+
+    def _energy(self, first: Floats, wound: Floats, lap: Floats) -> Floats:
+        """U on laps from its value on the first and what winding adds."""
+        more = self._gains[1] if self.winds else 0.0
+        return self.start + first + lap * wound + lap * self.gain + more * lap * (lap - 1) / 2
+
+    @cached_property
+    def _nodes(self) -> Floats:
+        """m, U and winding (pieces, terms, 3) at the nodes of the first lap's pieces."""
+        edges = self.quantities.edges
+        middle, half = (edges[:-1] + edges[1:]) / 2, np.diff(edges) / 2
+        grid = middle[:, None] + half[:, None] * nodes(TERMS)
+        own = self._all.on(np.repeat(np.arange(len(middle)), TERMS), grid.ravel())
+        return own.reshape(*grid.shape, -1)[:, :, [MASS, 5, 6]]
+
+    def at_nodes(self, pieces: npt.NDArray[np.int64], laps: Floats) -> tuple[Floats, Floats]:
+        """M and U (j, terms) at the nodes of pieces (j,) on laps (j,)."""
+        own = self._nodes[pieces]
+        return own[:, :, 0], self._energy(own[:, :, 1], own[:, :, 2], laps[:, None])
+
+    def whole_pieces(
+        self, starts: Floats, ends: Floats
+    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+        """The pieces (j,) on which stretches (j,) lie, and whether these are all of them."""
+        edges, middle = self.quantities.edges, (starts + ends) / 2
+        before = self.laps(middle) * self.length
+        piece = np.clip(np.searchsorted(edges, middle - before, "right") - 1, 0, len(edges) - 2)
+        off = np.abs(starts - before - edges[piece]) + np.abs(ends - before - edges[piece + 1])
+        return piece, off <= 1e-13 * np.maximum(self.length, np.abs(middle))
 
     @cached_property
     def _slopes(self) -> Along:
@@ -167,10 +205,13 @@ class EnergyCourse:
         zeros = own.crossings(0, 0.0, places)
         return np.unique(np.concatenate([*found, zeros]))
 
-    def marks(self, lap: float) -> Floats:
-        """Places on a lap, its edges among them, between which U rises or falls all the way."""
-        own = self._marked(lap) if self.winds and lap else self._first_marks
-        return own + lap * self.length
+    def marks(self, laps: Floats) -> Floats:
+        """Places on laps (j,), edges among them, between which U rises or falls all the way, in order."""
+        if self.winds:
+            found = [self._marked(lap) if lap else self._first_marks for lap in laps.tolist()]
+        else:
+            found = [self._first_marks] * len(laps)
+        return np.unique(np.concatenate(found) + np.repeat(laps, [len(own) for own in found]) * self.length)
 
 
 _GAUSS = legendre.leggauss(GAUSS)

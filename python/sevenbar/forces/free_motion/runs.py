@@ -21,10 +21,7 @@ from numpy.polynomial import chebyshev
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.stationary import coefficients, nodes
-from sevenbar.forces.free_motion.course import SHORT, EnergyCourse
-
-#: Nodes of a panel.
-TERMS = 20
+from sevenbar.forces.free_motion.course import SHORT, TERMS, EnergyCourse
 
 #: A panel is fine enough where its last terms are below this part of the first.
 RESOLVED = 1e-14
@@ -50,7 +47,7 @@ class Run:
     """A motion from `low` up to `high`, or back; its panels in order, and times from `low` on.
 
     `kind`, `starts`, `ends`, `first`, `last` (m,): what a panel does, its places, and from which w to
-    which w this piece of it goes; `times` (m + 1,) [s]; `series` (m, terms) of dt/dw.
+    which w this piece of it goes; `times` (m + 1,) [s]; `rates` (m, terms) are dt/dw at the nodes.
     """
 
     low: float
@@ -60,7 +57,7 @@ class Run:
     ends: Floats
     first: Floats
     last: Floats
-    series: Floats
+    rates: Floats
     tail: float
 
     @property
@@ -69,14 +66,15 @@ class Run:
         return float(self.times[-1])
 
     @cached_property
-    def _integral(self) -> Floats:
-        half = (self.last - self.first) / 2
-        return np.asarray(chebyshev.chebint(self.series, lbnd=-1, axis=1) * half[:, None])
-
-    @cached_property
     def times(self) -> Floats:
         """When each panel begins, and the end [s]."""
-        return np.concatenate([[0.0], np.cumsum(self._integral.sum(axis=1))])
+        return np.concatenate([[0.0], np.cumsum(self.rates @ _WEIGHTS * (self.last - self.first) / 2)])
+
+    def _series(self, panels: npt.NDArray[np.int64]) -> tuple[Floats, Floats]:
+        """Series (j, terms) of dt/dw on panels (j,), and of the time from their beginnings on."""
+        series = self.rates[panels] @ _SERIES.T
+        half = ((self.last - self.first) / 2)[panels]
+        return series, np.asarray(chebyshev.chebint(series, lbnd=-1, axis=1) * half[:, None])
 
     def time_at(self, s: float) -> float:
         """When a place is passed [s]."""
@@ -86,7 +84,9 @@ class Run:
         share = min(max(share, 0.0), 1.0)
         w = {LOW: share**0.5, PLAIN: share, HIGH: 1 - (1 - share) ** 0.5}[int(self.kind[i])]
         x = (2 * w - self.first[i] - self.last[i]) / (self.last[i] - self.first[i])
-        return float(self.times[i] + chebyshev.chebval(min(max(x, -1.0), 1.0), self._integral[i]))
+        return float(
+            self.times[i] + chebyshev.chebval(min(max(x, -1.0), 1.0), self._series(np.array([i]))[1][0])
+        )
 
     def at(self, t: Floats) -> tuple[Floats, Floats]:
         """Places and speeds s' (j,) of the motion upwards at times (j,) [s] from `low` on."""
@@ -94,7 +94,7 @@ class Run:
         i = np.clip(np.searchsorted(self.times, t, "right") - 1, 0, len(self.kind) - 1)
         wanted = t - self.times[i]
         half = (self.last - self.first)[i] / 2
-        integral, series = self._integral[i], self.series[i]
+        series, integral = self._series(i)
         low, high = np.full(t.shape, -1.0), np.ones(t.shape)
         x = 2 * wanted / (self.times[i + 1] - self.times[i]) - 1
         x = np.clip(x, -1.0, 1.0)
@@ -154,23 +154,23 @@ def run_between(
     for halving in range(HALVINGS + 1):
         w = (first + last)[:, None] / 2 + (last - first)[:, None] / 2 * nodes(TERMS)
         rates, noise = _rates(course, kind, starts, ends, w, reference)
-        series = coefficients(rates.T).T
-        worst = np.abs(series[:, -2:]).max(axis=1) / np.abs(series[:, 0])
+        ends_of = np.abs(rates @ _SERIES[[0, -2, -1]].T)
+        worst = ends_of[:, 1:].max(axis=1) / ends_of[:, 0]
         rough = worst > np.maximum(resolved, noise) if halving < HALVINGS else np.zeros(len(kind), dtype=bool)
         # no finer than places are known
         rough &= (last - first) * (ends - starts) > 1e-14 * course.length
         tail = max(tail, float(worst[~rough].max(initial=0.0)))
-        done.append((kind[~rough], starts[~rough], ends[~rough], first[~rough], last[~rough], series[~rough]))
+        done.append((kind[~rough], starts[~rough], ends[~rough], first[~rough], last[~rough], rates[~rough]))
         if not rough.any():
             break
         middle = (first + last)[rough] / 2
         kind, starts, ends = (np.repeat(part[rough], 2) for part in (kind, starts, ends))
         first = np.stack([first[rough], middle], axis=1).ravel()
         last = np.stack([middle, last[rough]], axis=1).ravel()
-    kind, starts, ends, first, last, series = (np.concatenate(part) for part in zip(*done, strict=True))
+    kind, starts, ends, first, last, rates = (np.concatenate(part) for part in zip(*done, strict=True))
     order = np.lexsort((first, starts))
     return Run(
-        low, high, kind[order], starts[order], ends[order], first[order], last[order], series[order], tail
+        low, high, kind[order], starts[order], ends[order], first[order], last[order], rates[order], tail
     )
 
 
@@ -183,30 +183,48 @@ def _rates(
     reference: tuple[float, float],
 ) -> tuple[Floats, Floats]:
     """dt/dw (m, terms) on panels (m,) at w (m, terms), and what part of it rounding may be (m,)."""
-    place, by_w = _place(kind[:, None], starts[:, None], ends[:, None], w)
-    mass = course.at(place.ravel())[0].reshape(w.shape)
-    kinetic = np.empty(w.shape)
-    plain = kind == PLAIN
+    rates, noise = np.empty(w.shape), np.empty(len(kind))
+    piece, whole = course.whole_pieces(starts, ends)
     origin, there = reference
-    noise = np.empty(w.shape)
-    kinetic[plain] = there - course.rise(origin, place[plain].ravel()).reshape(-1, w.shape[1])
-    away = np.abs(place[plain] - origin)
-    near = away < SHORT * course.shortest
-    noise[plain] = DIGITS * (np.where(near, course.steepest * away, course.highest) + there)
-    for own, edge, sign in ((kind == LOW, starts, -1.0), (kind == HIGH, ends, 1.0)):
-        if own.any():
+    apart = SHORT * course.shortest
+    far = (starts > origin + apart) | (ends < origin - apart)
+    whole &= (kind == PLAIN) & (w[:, 0] > 1 - 1 / TERMS**2) & (w[:, -1] < 1 / TERMS**2) & far
+    if whole.any():
+        mass, energy = course.at_nodes(piece[whole], course.laps((starts + ends)[whole] / 2))
+        kinetic = there + float(course.at(np.array([origin]))[2][0]) - energy
+        rates[whole], noise[whole] = _slowness(mass, kinetic, DIGITS * (course.highest + there))
+        rates[whole] *= (ends - starts)[whole, None]
+    plain = np.flatnonzero((kind == PLAIN) & ~whole)
+    if plain.size:
+        place, by_w = _place(kind[plain, None], starts[plain, None], ends[plain, None], w[plain])
+        mass = course.at(place.ravel())[0].reshape(place.shape)
+        kinetic = there - course.rise(origin, place.ravel()).reshape(place.shape)
+        away = np.abs(place - origin)
+        small = DIGITS * (np.where(away < apart, course.steepest * away, course.highest) + there)
+        rates[plain], noise[plain] = _slowness(mass, kinetic, small)
+        rates[plain] *= by_w
+    for which, edge, sign in ((LOW, starts, -1.0), (HIGH, ends, 1.0)):
+        own = np.flatnonzero(kind == which)
+        if own.size:
+            place, _ = _place(kind[own, None], starts[own, None], ends[own, None], w[own])
+            mass = course.at(place.ravel())[0].reshape(place.shape)
             at = np.repeat(edge[own], w.shape[1])
-            mean = course.mean_slope(place[own].ravel(), at).reshape(-1, w.shape[1])
-            kinetic[own] = sign * mean
-            noise[own] = DIGITS * course.steepest
-    way = (ends - starts)[:, None]
+            mean = sign * course.mean_slope(place.ravel(), at).reshape(place.shape)
+            # at a turning point the square root of the way cancels
+            rates[own], noise[own] = _slowness(mass, mean, DIGITS * course.steepest)
+            rates[own] *= 2 * np.sqrt(ends - starts)[own, None]
+    return rates, noise
+
+
+def _slowness(mass: Floats, kinetic: Floats, small: Floats | float) -> tuple[Floats, Floats]:
+    """sqrt(m / (2 T)) (m, terms), and what part of T rounding may be (m,)."""
     kinetic = np.maximum(kinetic, np.finfo(float).tiny)
-    mass = np.maximum(mass, 0.0)
-    # at a turning point the square root of the way cancels
-    rates = np.where(
-        plain[:, None], by_w * np.sqrt(mass / (2 * kinetic)), 2 * np.sqrt(way * mass / (2 * kinetic))
-    )
-    return rates, (noise / kinetic).max(axis=1)
+    return np.sqrt(np.maximum(mass, 0.0) / (2 * kinetic)), (small / kinetic).max(axis=1)
+
+
+#: From values at the nodes to a series, and to the integral from -1 to 1.
+_SERIES = coefficients(np.eye(TERMS))
+_WEIGHTS = chebyshev.chebint(_SERIES, lbnd=-1).sum(axis=0)
 
 
 def _inner_marks(course: EnergyCourse, low: float, high: float) -> Floats:

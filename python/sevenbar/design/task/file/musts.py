@@ -19,12 +19,12 @@ from sevenbar.design.task.file.units import figure_value, reading, reading_span
 from sevenbar.design.task.file.values import Given
 from sevenbar.design.task.task import (
     Apart,
-    Cone,
     DwellWant,
     FigureMust,
     FunctionWant,
     InBox,
-    JointRange,
+    InCone,
+    InRange,
     Most,
     Must,
     PathWant,
@@ -44,9 +44,9 @@ def must_of(form: MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:
     match form:
         case RangeMust():
             column = linkage.column(form.joint, "joint")
-            return JointRange(linkage.columns[column], *reading_span("range", form.range, linkage, column))
+            return InRange(linkage.columns[column], *reading_span("range", form.range, linkage, column))
         case ConeMust():
-            return Cone(form.joint, form.angle, form.seat, form.stud)
+            return InCone(form.joint, form.angle, form.seat, form.stud)
         case BoxMust():
             return InBox(form.low, form.high, _everything(linkage) if form.names is None else form.names)
         case ApartMust():

@@ -14,7 +14,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.measures import gradient, measures_named
 from sevenbar.kinematics.motion import Motion
 
-#: Inputs of a turn at which circuits are asked for their measures: these are found between rows.
+#: Inputs of a turn at which circuits are measured: these are found between rows.
 SAMPLES = 72
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].

@@ -7,7 +7,7 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.synthesis.path.match import Placing
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.passes import Pass
+from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.task import DwellWant, FunctionWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
 from sevenbar.kinematics.circuits import Circuit
@@ -50,7 +50,7 @@ class ReadingsWanted:
 
     def begun(
         self,
-        one: Pass,
+        one: InputPass,
         placing: Placing | None,
         *,
         scaled: bool,  # noqa: ARG002

@@ -15,7 +15,7 @@ from sevenbar.design.synthesis.path.match import (
     placed,
 )
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.passes import Pass
+from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.task import PathWant, PoseWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
 from sevenbar.kinematics.circuits import Circuit
@@ -58,13 +58,13 @@ class PlacesWanted:
         found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
         return found.reshape(-1, 3), by.reshape(-1, 3, by.shape[-1])
 
-    def curve(self, one: Pass) -> Floats:
+    def curve(self, one: InputPass) -> Floats:
         """The points along a pass (rows, p, 3)."""
         if self._name is not None:
             return one.named(self._name)[:, None]
         return np.stack([one.places(self.link, end) for end in self._ends], axis=1)  # type: ignore[arg-type]
 
-    def begun(self, one: Pass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+    def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
         """By the inputs of its timing, or by the best order-keeping match."""
         curve = self.curve(one)
         if not np.isfinite(curve).all() or (self.closed and not one.closed):
@@ -75,7 +75,7 @@ class PlacesWanted:
             return self._poses(one, curve, placing)
         return self._path(one, curve[:, 0], placing, scaled=scaled)
 
-    def _timed(self, one: Pass, curve: Floats, placing: Placing | None) -> list[Begun]:
+    def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         assert self.timing is not None
         found: list[Begun] = []
         for phase in one.phases(self.timing, free=self.phase):
@@ -91,7 +91,7 @@ class PlacesWanted:
         error = float(((own.put(found) - wanted) ** 2).sum()) / self.count / self.unit**2
         return Begun(u, rows, error, own)
 
-    def _path(self, one: Pass, curve: Floats, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+    def _path(self, one: InputPass, curve: Floats, placing: Placing | None, *, scaled: bool) -> list[Begun]:
         wanted = self.places[:, 0]
         own = curve if placing is None else placing.put(curve)
         ways = {"curve_closed": one.closed, "closed": self.closed}
@@ -106,7 +106,7 @@ class PlacesWanted:
             Begun(one.unwound(rows), rows, error, put) for rows in (match.rows, other) if rows is not None
         ]
 
-    def _poses(self, one: Pass, curve: Floats, placing: Placing | None) -> list[Begun]:
+    def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         """In order, the linkage placed so that some row takes the first pose."""
         n = len(self.places)
         tried = [placing] if placing is not None else self._firsts(curve)
@@ -133,6 +133,6 @@ class PlacesWanted:
         placing: Placing,
     ) -> Floats:
         """The distances (n p,) on rows of an analysis [length]."""
-        one = Pass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
+        one = InputPass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
         off = placing.put(self.curve(one)) - self.places
         return np.asarray(np.linalg.norm(off, axis=2).ravel())

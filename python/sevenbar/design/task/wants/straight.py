@@ -7,7 +7,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.synthesis.path.match import Placing
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.passes import Pass
+from sevenbar.design.task.passes import InputPass
 from sevenbar.design.task.task import StraightWant
 from sevenbar.design.task.wants.wanted import Begun, Stations
 from sevenbar.kinematics.circuits import Circuit
@@ -54,7 +54,7 @@ class LineWanted:
 
     def begun(
         self,
-        one: Pass,
+        one: InputPass,
         placing: Placing | None,
         *,
         scaled: bool,  # noqa: ARG002

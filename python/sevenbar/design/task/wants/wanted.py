@@ -1,4 +1,4 @@
-"""What every want is to the search: inputs at which it looks at the linkage, and what is left there."""
+"""What every want is to the search: inputs at which it sees the linkage, and what is left there."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.design.synthesis.path.match import Placing
 from sevenbar.design.task.loop import Here
-from sevenbar.design.task.passes import Pass
+from sevenbar.design.task.passes import InputPass
 from sevenbar.kinematics.circuits import Circuit
 
 
@@ -53,7 +53,7 @@ class Wanted(Protocol):
     def count(self) -> int:
         """The number of residuals."""
 
-    def begun(self, one: Pass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+    def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
         """How it may begin on a pass, best first; `placing` is `None` where it may stand anywhere."""
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
