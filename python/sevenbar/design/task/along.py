@@ -48,7 +48,7 @@ class DesignAlong:
 
     @property
     def wants(self) -> list[tuple[int, Want, Wanted]]:
-        """The wants that are looked at along the way, each with its place among all."""
+        """The wants with poses along a way, each with its place among all."""
         own = [(i, want) for i, want in enumerate(self.task.wants) if not isinstance(want, FigureWant)]
         return [(i, want, one) for (i, want), one in zip(own, self.model.wanted, strict=True)]
 

@@ -105,7 +105,7 @@ class PathPage:
 
     @property
     def lines(self) -> list[tuple[Floats, dict[str, Any]]]:
-        """The lines of every view with their looks."""
+        """The lines of every view, each as it is drawn."""
         rest = [] if self.whole is None else [(self.whole, WHOLE)]
         axes = [
             (np.stack([frame[0], end]), {"color": colour, "lw": 1.2, "zorder": 2})
