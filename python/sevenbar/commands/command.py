@@ -80,7 +80,7 @@ EXAMPLES = {
     "inertia": ("sevenbar design inertia seven_r --mass P=2.5 -o torque",),
     "task": (
         "sevenbar design task examples/design/steering_task.toml -o steering",
-        "sevenbar design examples/design/nozzle_task.toml --designs 3 --json",
+        "sevenbar design task examples/design/nozzle_task.toml --designs 3 --json",
     ),
     "function": ("sevenbar design function --y 'x^2' --x 0:1 -o parabola",),
 }
