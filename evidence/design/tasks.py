@@ -224,7 +224,7 @@ def cusps(seed: int = 1) -> Iterator[Made]:
 
 
 def tasks(family: str, seed: int = 0) -> Iterator[Made]:
-    """The tasks of a family ("path", "function", "poses"; "cusp"): each kind from a start 5 % and 20 % off."""
+    """The tasks of a family (path, function, poses, cusp): each kind from a start 5 % and 20 % off."""
     if family == "cusp":
         yield from cusps()
         return
