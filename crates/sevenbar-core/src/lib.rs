@@ -12,6 +12,7 @@ mod random;
 pub mod rigid;
 pub mod rssr;
 pub mod simd;
+pub mod survey;
 pub mod taylor;
 mod trigonometric;
 mod twofold;

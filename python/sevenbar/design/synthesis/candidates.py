@@ -42,7 +42,17 @@ LIMIT_ROUNDING = 1e-9
 #: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
 
-Fault = Literal["assembly", "circuit", "dead centre", "order", "error", "transmission", "size", "motion type"]
+Fault = Literal[
+    "assembly",
+    "circuit",
+    "dead centre",
+    "order",
+    "error",
+    "transmission",
+    "size",
+    "motion type",
+    "ball angle",
+]
 
 
 @dataclass(frozen=True, eq=False)
