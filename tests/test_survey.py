@@ -226,7 +226,7 @@ def test_a_journal_cut_anywhere_is_gone_on_with(tmp_path, monkeypatch):
 
 
 def test_a_survey_that_was_killed_goes_on(tmp_path):
-    words = ["design", "survey", "--output-range", "0:23.75deg", "--count", "3e6", "--threads", "1", "--json"]
+    words = ["design", "survey", "--output-range", "0:23.75deg", "--count", "1.2e6", "--threads", "1", "--json"]
     run = subprocess.Popen(
         [sys.executable, "-m", "sevenbar.commands.cli", *words, "--journal", str(tmp_path / "a")],
         stdout=subprocess.DEVNULL,
@@ -235,17 +235,17 @@ def test_a_survey_that_was_killed_goes_on(tmp_path):
     )
     journal = tmp_path / "a" / JOURNAL
     begin = time.monotonic()
-    while not (journal.exists() and journal.read_bytes().count(b"\n") >= 2):
+    while not (journal.exists() and journal.read_bytes().count(b"\n") >= 1):
         assert run.poll() is None
         assert time.monotonic() - begin < 120
         time.sleep(0.05)
     run.send_signal(signal.SIGKILL)
     run.wait()
     lines = journal.read_bytes().count(b"\n")
-    assert 2 <= lines < 12
+    assert 1 <= lines < 5
     kept = journal.read_bytes()
     kept = kept[: kept.rfind(b"\n") + 1]
-    task = SurveyTask(FLAP, count=3 * 10**6)
+    task = SurveyTask(FLAP, count=1_200_000)
     again = survey(task, designs_wanted=0, out=tmp_path / "a", resume=True, threads=2)
     assert journal.read_bytes().startswith(kept)
     assert again.tally.line() == survey(task, designs_wanted=0, threads=2).tally.line()
@@ -290,7 +290,7 @@ def test_designs_are_better_than_what_was_drawn_and_keep_what_must_hold():
 def test_a_swing_and_a_travel_are_met_exactly():
     for want in (FLAP, SwingWish(math.radians(60), 1.2)):
         task = SurveyTask(want, count=40000, tolerance=math.radians(4))
-        found = survey(task, designs_wanted=3, threads=1)
+        found = survey(task, designs_wanted=1, threads=1)
         assert found.candidates[0].error_greatest < 1e-9
         assert found.candidates[0].transmission_lowest > math.radians(40)
 
@@ -312,11 +312,11 @@ def test_that_none_does_it_is_an_answer_with_what_comes_nearest():
 
 
 def test_a_survey_is_printed_written_and_given_as_json(tmp_path):
-    words = ["design", "survey", "--output-range", "0:23.75deg", "--count", "2e4", "--ball-angle", "15deg"]
+    words = ["design", "survey", "--output-range", "0:23.75deg", "--count", "2e3", "--ball-angle", "30deg"]
     words += ["--bound", "angle=90deg", "--designs", "2", "--threads", "1"]
     run = sevenbar(*words, "--out", tmp_path / "out")
     assert run.returncode == 0, run.stderr
-    for part in ("90 deg in, 23.75 deg out", "ball angles <= 15 deg", "of 20 000 do it", "at 90 deg"):
+    for part in ("90 deg in, 23.75 deg out", "ball angles <= 30 deg", "of 2 000 do it", "at 90 deg"):
         assert part in run.stdout
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {"design_1.toml", "design_2.toml", "summary.csv", "summary.json"}

@@ -56,7 +56,7 @@ def survey_figures(numbers: Floats) -> SurveyFigures:
     """The figures of RSSRs (n, 7) with the numbers `NUMBERS`: the crank turns about z, its ball N above 0.
 
     The rocker turns about (sin, 0, cos) of the angle, M along it from (0, D, 0).
-    Source: docs/theory_many.md, (12) to (14).
+    Source: docs/theory_many.md, (21) and (22).
     """
     flat = np.ascontiguousarray(numbers, np.float64).reshape(-1)
     codes, limits, swing, time_ratio, transmission = _core.survey_figures(flat)

@@ -102,11 +102,12 @@ mod tests {
         let (mut block, mut start) = ([[0.0; BLOCK]; 8], [0.0; BLOCK]);
         for first in [0, 1, 77, 99_999_936] {
             draw.block::<false>(first, &mut block, &mut start);
-            for i in 0..BLOCK {
-                let numbers = draw.numbers(first + i as u64);
-                assert!((0..6).all(|k| block[k][i] == numbers[k]));
-                assert!((block[6][i] - numbers[6].sin()).abs() < 1e-15);
-                assert!((block[7][i] - numbers[6].cos()).abs() < 1e-15);
+            for (i, index) in (first..first + BLOCK as u64).enumerate() {
+                let row = block.map(|lane| lane[i]);
+                let numbers = draw.numbers(index);
+                assert_eq!(row[..6], numbers[..6]);
+                assert!((row[6] - numbers[6].sin()).abs() < 1e-15);
+                assert!((row[7] - numbers[6].cos()).abs() < 1e-15);
             }
         }
     }

@@ -3,7 +3,7 @@
 //! The axes stand at any angle: the crank turns about z and carries its ball round (0, 0, N); the rocker turns about
 //! `(sin, 0, cos)` of the angle, M along it from (0, D, 0). At a right angle this is the paper's layout.
 //!
-//! Source: docs/theory_many.md, (12) to (15).
+//! Source: docs/theory_many.md, (21) to (23).
 
 mod cascade;
 mod cone;

@@ -9,6 +9,7 @@ that ends worse than it began, or whose new form fails the check, stays as it wa
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -45,6 +46,9 @@ MOST_NEWTON, MET = 8, 1e-13
 
 #: By how much a limit may be missed through rounding [rad].
 ROUNDING = 1e-9
+
+#: How many of the best are polished for each design that is wanted.
+POLISHED_EACH = 4
 
 #: The seats of both balls, three numbers each.
 SEATS = 6
@@ -302,14 +306,13 @@ def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, di
     if isinstance(want, SwingWish):
         return np.array([np.ptp(angles) - want.angle]), {}
     if isinstance(want, Travel):
-        off = float(angles[-1]) - want.output
+        miss = float(angles[-1]) - want.output
         back = np.diff(angles) * math.copysign(1.0, want.output) < -ROUNDING
-        return np.array([math.inf if back.any() else off]), {"travel_deg": math.degrees(float(angles[-1]))}
+        return np.array([math.inf if back.any() else miss]), {"travel_deg": math.degrees(float(angles[-1]))}
     if want.function is None:
-        at, outputs = want.input - want.input[0], want.output
+        off = np.interp(want.input - want.input[0], dense, angles) - want.output
     else:
-        at, outputs = dense, want.function(want.input[0] + dense)
-    off = np.interp(at, dense, angles) - outputs if want.function is None else angles - outputs
+        off = angles - np.asarray(want.function(want.input[0] + dense))
     zero = float(off.max() + off.min()) / 2
     return off - zero, {"output_zero_deg": math.degrees(zero)}
 
@@ -334,22 +337,23 @@ def designs(
     task: SurveyTask, tally: Tally, count: int, progress: Progress
 ) -> tuple[list[Candidate], list[Refusal], int]:
     """The best of a survey as designs, what was refused of them, and how many became better by polishing."""
-    best = tally.best if count else ()
+    best = tally.best[: POLISHED_EACH * count]
     found: list[Candidate] = []
     refused: list[Refusal] = []
     better = 0
     rows = drawn_numbers(task, [kept.index for kept in best])
-    for done, (kept, numbers) in enumerate(zip(best, rows, strict=True)):
-        progress(done, len(best), f"polishing, {len(found)} checked")
-        drawn = np.append(numbers, kept.start)
-        new = judged(task, Polish(task, numbers, kept).polished(), kept)
-        old = judged(task, drawn, kept) if isinstance(new, Refusal) else None
-        result = new if old is None else old
-        better += old is None
-        if isinstance(result, Refusal):
-            refused.append(result)
-        else:
-            found.append(result)
+    # a second Ctrl+C, or one while polishing: what is there is given
+    with suppress(KeyboardInterrupt):
+        for done, (kept, numbers) in enumerate(zip(best, rows, strict=True)):
+            progress(done, len(best), f"polishing, {len(found)} checked")
+            new = judged(task, Polish(task, numbers, kept).polished(), kept)
+            better += not isinstance(new, Refusal)
+            if isinstance(new, Refusal):
+                new = judged(task, np.append(numbers, kept.start), kept)
+            if isinstance(new, Refusal):
+                refused.append(new)
+            else:
+                found.append(new)
     order = sorted(found, key=lambda candidate: rank_of(task, candidate))
     return renamed(distinct(order, scale_free=True, count=count), task.want.title), refused, better
 

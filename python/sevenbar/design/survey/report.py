@@ -59,7 +59,7 @@ def text(count: int, found: SurveyResult) -> RenderableType:
         facts.add("" if place else "refused", f"{verdict}: {number} ({100 * number / total:.3g} %)")
     for place, (verdict, words) in enumerate(found.nearest.items()):
         facts.add("" if place else "nearest", f"{verdict}: {words}")
-    facts.add("polished", f"{found.polished} of {len(found.tally.best)}")
+    facts.add("polished", f"{found.polished} of the best")
     if found.refusals:
         facts.add("of the best", f"{tally(found.refusals)} refused after polishing")
     parts: list[RenderableType] = [Text("Survey of RSSRs", style="bold underline"), facts.grid]

@@ -7,7 +7,7 @@ With A and B the balls and v = B - A, both at an input a and the output b, the c
 and every other quantity q(p, b) follows the numbers p by q_p + q_b b_p. The sine of the transmission angle is
 |G_b| / (L2 L3). Numbers are M, N, L1, L2, L3, D, the angle between the axes and the start of the input (8,).
 
-Source: docs/theory_many.md, (12); docs/theory_design.md, (26).
+Source: docs/theory_many.md, (21) and (23).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Poses:
     """The poses of a linkage at inputs (k,) from its start on, each quantity with its slopes (.., 8).
 
     `output` (k,) [rad] on a branch, continued; `square` (k,): squared sine of the transmission angle;
-    `crank`, `rocker` (k, 3): the coupler's direction from either ball in the frame of its side link, outwards,
+    `crank`, `rocker` (k, 3): the coupler's direction from either ball in that of its side link, outwards,
     the way the ball moves, along the axis; `still` (k,): G_a / (L1 L2), zero where the output turns back.
     """
 
