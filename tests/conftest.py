@@ -1,4 +1,4 @@
-"""What tests in a browser are given: Chromium, its pages, the studio."""
+"""What tests are given: a Chinese font; Chromium, its pages, the studio."""
 
 from contextlib import ExitStack
 from itertools import count
@@ -7,6 +7,7 @@ import pytest
 
 import browser
 from served import Studio
+from sevenbar.drawing import fonts
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -16,6 +17,13 @@ def pytest_collection_modifyitems(items):
         if "chromium" in item.fixturenames:
             item.add_marker("browser")
             item.add_marker("slow")
+
+
+@pytest.fixture(scope="session")
+def chinese_font():
+    """A font in which figures can have Chinese labels; without one the test is skipped."""
+    if fonts._installed() is None:
+        pytest.skip("no font with Chinese characters is installed")
 
 
 @pytest.fixture(scope="session")

@@ -42,6 +42,6 @@ def distance(motion: sb.Motion, q: np.ndarray, other: np.ndarray) -> float:
     linkage = motion.linkage
     columns = kept(linkage)
     step = (q - other)[columns]
-    turns = np.array([linkage.column_kinds[i] == "turn" for i in columns])
+    turns = np.array([linkage.turns(i) for i in columns])
     turned = np.remainder(step + np.pi, 2 * np.pi) - np.pi
     return float(np.linalg.norm(np.where(turns, turned, step / motion.circuits[0].size)))

@@ -75,7 +75,7 @@ def test_velocities_and_accelerations_tell_dimensions_without_angles():
 def test_the_scale_is_not_told_by_angles_and_one_length_is_held():
     inputs, angle = measured_rssr(replace(SKEW, L1=252.0))
     found = calibrate(SKEW.linkage(), table(input=inputs, angle=angle))
-    held = [p for p in found.parameters if p.status == "untold"]
+    held = [p for p in found.parameters if p.status == "unidentified"]
     assert [(p.name, p.value) for p in held] == [("M", 700.0)]
     assert set(held[0].undone_by) == {"N", "L1", "L2", "L3", "D"}
     # the curve is explained, so all lengths are right but for one factor, which is 1 here
@@ -85,7 +85,7 @@ def test_the_scale_is_not_told_by_angles_and_one_length_is_held():
 def test_without_d_crank_and_rocker_side_scale_on_their_own():
     inputs, angle = measured_rssr(replace(PAPER, L1=251.0, L3=548.0))
     found = calibrate(sb.load("rssr"), table(input=inputs, angle=angle), hold=["D"])
-    held = {p.name: set(p.undone_by) for p in found.parameters if p.status == "untold"}
+    held = {p.name: set(p.undone_by) for p in found.parameters if p.status == "unidentified"}
     # |A - B| is kept where L1 and N, or L3 and M, grow in proportion and L2 follows
     assert held == {"M": {"L2", "L3"}, "N": {"L1", "L2"}}
     assert found.parameter("L1").value == pytest.approx(251.0, rel=1e-8)
@@ -97,15 +97,15 @@ def test_a_dimension_that_noise_hides_is_held_too():
     inputs, angle = measured_rssr(replace(PAPER, L1=251.0, D=2.0), count=60)
     found = calibrate(sb.load("rssr"), table(input=inputs, angle=angle + 2e-3 * rng.normal(size=60)))
     # D near zero tells the two scales apart in principle, but not through this noise
-    assert {p.name for p in found.parameters if p.status == "untold"} == {"M", "N"}
+    assert {p.name for p in found.parameters if p.status == "unidentified"} == {"M", "N"}
 
 
 def test_what_is_told_is_freed_again_once_it_is_known():
     truth = replace(PAPER, D=150.0, L1=252.0)
     inputs, angle = measured_rssr(truth)
-    # at the nominal D = 0 two directions are untold, at the true one only the scale
+    # at the nominal D = 0 two directions are unidentified, at the true one only the scale
     found = calibrate(replace(PAPER, D=0.0).linkage(), table(input=inputs, angle=angle))
-    assert {p.name for p in found.parameters if p.status == "untold"} == {"M"}
+    assert {p.name for p in found.parameters if p.status == "unidentified"} == {"M"}
     assert values(found) == pytest.approx(vars(truth), rel=1e-7)
 
 
@@ -113,7 +113,7 @@ def test_a_7r_tells_many_dimensions_and_names_those_that_axes_in_parallel_hide()
     linkage = sb.load("seven_r")
     circuit = linkage.motion(90).circuits[0]
     found = calibrate(linkage, table(input=circuit.input, angle=circuit.output), free=["offset_*"])
-    held = {p.name: set(p.undone_by) for p in found.parameters if p.status == "untold"}
+    held = {p.name: set(p.undone_by) for p in found.parameters if p.status == "unidentified"}
     # axes 3, 4 and 5 are parallel: a slide along one is a slide along any
     assert held["offset_3"] == {"offset_5"}
     assert held["offset_4"] == {"offset_5"}
@@ -163,7 +163,7 @@ def test_a_planar_four_bar_tells_lengths_and_holds_what_would_open_it():
         f"{word}_{i}" for word in ("offset", "twist") for i in range(1, 5)
     }
     # one length is the scale; the one that is held, 100, is here the true one
-    assert [name for name, word in status.items() if word == "untold"] == ["length_2"]
+    assert [name for name, word in status.items() if word == "unidentified"] == ["length_2"]
     lengths = [values(found)[f"length_{i}"] for i in range(1, 5)]
     assert lengths == pytest.approx([41.0, 100.0, 79.0, 92.0], rel=1e-8)
 
@@ -173,7 +173,7 @@ def test_what_the_output_of_the_paper_s_7r_does_not_depend_on_is_held():
     circuit = linkage.motion(60).circuits[0]
     found = calibrate(linkage, table(input=circuit.input, angle=circuit.output), free=["length_?"])
     # links 2 to 5 lie across the three parallel axes, and only lengths along these tie the output
-    alone = {p.name for p in found.parameters if p.status == "untold" and not p.undone_by}
+    alone = {p.name for p in found.parameters if p.status == "unidentified" and not p.undone_by}
     assert alone == {"length_2", "length_3", "length_4", "length_5"}
 
 
@@ -381,8 +381,8 @@ def test_what_no_curve_tells_of_a_drawing_is_held():
     found = calibrate(linkage, table(input=inputs, angle=output), free=["crank.*"])
     status = {p.name: p.status for p in found.parameters if p.name.startswith("crank.")}
     # along its axis, and by the length of its direction, the crank's line moves nothing
-    assert sum(word == "untold" for word in status.values()) >= 2
-    assert status["crank.z"] == "untold" or status["crank.axis_z"] == "untold"
+    assert sum(word == "unidentified" for word in status.values()) >= 2
+    assert status["crank.z"] == "unidentified" or status["crank.axis_z"] == "unidentified"
 
 
 def test_an_output_that_spins_idly_is_told():

@@ -12,7 +12,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.design.tolerance.sensitivities import NEAR
-from sevenbar.kinematics.circuits import SPIN_UNDEFINED, STATUSES
+from sevenbar.kinematics.circuit_values import SPIN_UNDEFINED, STATUSES
 from sevenbar.kinematics.joints import KINDS
 
 PAGE = (Path(__file__).parent.parent / "docs" / "conventions.md").read_text(encoding="utf-8")

@@ -44,7 +44,7 @@ def test_the_model_starts_closed_in_the_pose_asked_for_and_runs(name, tmp_path):
     metre = {"mm": 1e-3, "in": 0.0254}[motion.linkage.length_unit]
     for column, kind in ((circuit.input_column, "input"), (circuit.output_column, "output")):
         label = motion.linkage.columns[column]
-        scale = metre if motion.linkage.column_kinds[column] == "slide" else 1.0
+        scale = 1.0 if motion.linkage.turns(column) else metre
         found = data.qpos[model.joint(label).qposadr[0]] / scale
         apart = found - circuit.q[row, column]
         assert abs((apart + np.pi) % (2 * np.pi) - np.pi) < 1e-6, kind

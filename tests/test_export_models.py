@@ -45,7 +45,7 @@ def posed(name, tmp_path, to):
 
 
 def joint_values(linkage, circuit, row, scale):
-    factors = np.where([kind == "slide" for kind in linkage.column_kinds], scale, 1.0)
+    factors = np.where(linkage.turning, 1.0, scale)
     return dict(zip(linkage.columns, circuit.q[row] * factors, strict=True))
 
 
@@ -216,7 +216,7 @@ def test_adams_drives_the_input_from_the_pose_and_measures_input_and_output(name
         markers = [marker.strip() for marker in function[3:-1].split(",")]
         between = np.linalg.inv(model.markers[markers[1]]) @ model.markers[markers[0]]
         if function.startswith("AZ"):
-            assert linkage.column_kinds[index] == "turn"
+            assert linkage.turns(index)
             angle = math.atan2(between[1, 0], between[0, 0]) - circuit.q[row, index]
             assert abs(math.remainder(angle, math.tau)) < 1e-9
         else:

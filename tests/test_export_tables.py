@@ -89,7 +89,7 @@ def test_numpy_matlab_and_json_hold_the_same_arrays(motion, tmp_path, units, inc
     assert whole["units"]["angle"] == "rad"
     assert whole["speed"] == pytest.approx(2 * inch, rel=1e-15)
     assert list(arrays["columns"]) == list(matlab["columns"]) == list(motion.linkage.columns)
-    scale = np.where([kind == "slide" for kind in motion.linkage.column_kinds], inch, 1.0)
+    scale = np.where(motion.linkage.turning, 1.0, inch)
     circuits = np.atleast_1d(matlab["circuits"])
     assert len(circuits) == len(whole["circuits"]) == len(motion.circuits) > 0
     for circuit, structure, plain in zip(motion, circuits, whole["circuits"], strict=True):

@@ -25,7 +25,7 @@ OPEN = sb.from_axes(
 def courses(t):
     """Smooth joint values (n, columns) at times t, balls away from their singular turns; two derivatives."""
     count = len(OPEN.columns)
-    size = np.where([kind == "turn" for kind in OPEN.column_kinds], 0.7, 3.0)
+    size = np.where(OPEN.turning, 0.7, 3.0)
     rate = 1.0 + 0.2 * np.arange(count)
     phase = 0.5 * np.arange(count)
     angle = rate * t[:, None] + phase
@@ -164,9 +164,9 @@ def test_sevenbar_s_own_links_give_sevenbar_s_own_joint_values(name):
     )
     found = joint_values(linkage, bodies)
     known = np.isfinite(found.dq)
-    scale = np.where([kind == "turn" for kind in linkage.column_kinds], 1.0, circuit.size)
+    scale = np.where(linkage.turning, 1.0, circuit.size)
     whole = 2 * np.pi * np.round((circuit.q[rows] - found.q) / (2 * np.pi))
-    whole[:, [kind == "slide" for kind in linkage.column_kinds]] = 0
+    whole[:, ~linkage.turning] = 0
     assert np.abs((found.q + whole - circuit.q[rows]) / scale).max() < 1e-9
     fast = max(1.0, np.abs(circuit.dq[rows]).max() ** 2, np.abs(circuit.ddq[rows]).max())
     assert np.abs(((found.dq - circuit.dq[rows]) / scale)[known]).max() < 1e-8 * fast

@@ -21,14 +21,9 @@ from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import linear_estimate
 from sevenbar.design.tolerance.samples import monte_carlo
 from sevenbar.design.tolerance.sensitivities import sensitivities
-from sevenbar.drawing import fonts
 from sevenbar.drawing.asked import drawn_as
 from sevenbar.text.words import language
 from test_lettering import collisions
-
-needs_font = pytest.mark.skipif(
-    fonts._installed() is None, reason="no font with Chinese characters is installed"
-)
 
 TOLERANCES = {
     "rssr": {"*": 0.5},
@@ -115,7 +110,7 @@ def test_no_text_of_a_design_s_figure_lies_on_another_or_leaves_the_page(name, s
         assert collisions(FIGURES[name][0](), monkeypatch) == []
 
 
-@needs_font
+@pytest.mark.usefixtures("chinese_font")
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.slow if slow else ()) for name, (_, slow) in FIGURES.items()],

@@ -86,7 +86,7 @@ def test_a_calibration_is_printed_written_and_told_as_json(tmp_path):
     real |= {"input_offset": bench_curve.INPUT_ZERO, "output_offset": bench_curve.OUTPUT_ZERO}
     for name, value in real.items():
         assert found[name]["low"] <= value <= found[name]["high"]
-    assert (found["D"]["status"], found["M"]["status"], found["M"]["low"]) == ("fixed", "untold", None)
+    assert (found["D"]["status"], found["M"]["status"], found["M"]["low"]) == ("fixed", "unidentified", None)
     assert report["noise"]["angle"] == pytest.approx(bench_curve.NOISE, rel=0.15)
     linkage = sb.load(tmp_path / "calibrated.toml")
     assert linkage.dimensions["L1"] == found["L1"]["value"]

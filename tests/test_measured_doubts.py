@@ -335,7 +335,7 @@ def test_exact_rows_of_the_design_itself_are_settled_at_once_whatever_is_free():
         [p.nominal for p in found.parameters], abs=1e-9
     )
     # three axes are parallel: lengths across them turn nothing, and of slides along them only the sum counts
-    held = {p.name: set(p.undone_by) for p in found.parameters if p.status == "untold"}
+    held = {p.name: set(p.undone_by) for p in found.parameters if p.status == "unidentified"}
     assert {name for name, others in held.items() if not others} == {f"length_{i}" for i in range(2, 6)}
     assert held["offset_3"] == held["offset_4"] == {"offset_5"}
 

@@ -73,7 +73,7 @@ def test_a_law_s_torque_lets_a_crank_feel_its_own_mass():
 
 def test_a_sliding_input_takes_a_force():
     linkage = sb.load("rscr")
-    (column,) = [c for c, kind in zip(linkage.columns, linkage.column_kinds, strict=True) if kind == "slide"]
+    (column,) = [c for c in linkage.columns if not linkage.turns(c)]
     low, high = linkage.motion(input=column).circuits[0].input_range
     t = np.linspace(0, 1, 201)
     middle, swing = (low + high) / 2, 0.3 * (high - low)

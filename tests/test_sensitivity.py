@@ -330,7 +330,7 @@ def test_what_opens_a_loop_does_not_depend_on_its_unit_of_length():
 def test_the_derivative_by_all_lengths_together_is_nothing(name):
     linkage = sb.load(name)
     loop, q, column = poses(linkage, linkage.drive.joint, linkage.drive.output)
-    if linkage.column_kinds[column] == "slide":
+    if not linkage.turns(column):
         column = linkage.columns.index(linkage.drive.joint) - 1
     lengths = np.where([d.kind == "length" for d in loop.numbers.dimensions], loop.p, 0.0)
     column = next(k for k in range(len(linkage.columns)) if k != loop.input and loop.numbers.turns[k])

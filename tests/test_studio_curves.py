@@ -51,10 +51,7 @@ def test_every_vertex_is_a_row_of_the_circuit_to_a_tenth_of_a_pixel(name: str) -
         # a pass ends where the next one starts, and the last where the first starts
         _, first = np.unique(np.round(vertices, 6), axis=0, return_index=True)
         rows = vertices[np.sort(first)][: len(circuit.time)]
-        sliding = {
-            c: motion.linkage.column_kinds[motion.linkage.columns.index(c)] == "slide"
-            for c in (motion.input, motion.output)
-        }
+        sliding = {c: not motion.linkage.turns(c) for c in (motion.input, motion.output)}
         inputs = circuit.input if sliding[motion.input] else np.degrees(circuit.input)
         outputs = circuit.output if sliding[motion.output] else np.degrees(circuit.output)
         np.testing.assert_allclose(value_at(below, rows[:, 0]), inputs, rtol=0, atol=0.1 * pixels(below))
@@ -215,7 +212,7 @@ def test_limits_stand_at_the_inputs_where_the_motion_ends(name: str) -> None:
             if (e.findtext(f"{SVG}title") or "").startswith("input limit")
         ]
         places = np.array([float(re.match(r"M([-\d.]+)", e.get("d", ""))[1]) for e in lines])  # type: ignore[index]
-        sliding = motion.linkage.column_kinds[motion.linkage.columns.index(motion.input)] == "slide"
+        sliding = not motion.linkage.turns(motion.input)
         ends = np.array([end for circuit in motion for end in circuit.input_range or ()])
         wanted = ends if sliding else np.degrees(ends)
         for end in wanted:

@@ -76,7 +76,7 @@ def looked_at(session):
     joints = view.circuit.q[view.path.rows[row]]
     modes = linkage.assembly_modes(float(joints[view.circuit.input_column]), input=view.motion.input)
     kept = [i for i, name in enumerate(linkage.columns) if name in linkage.drivable()]
-    turns = np.array([linkage.column_kinds[i] == "turn" for i in kept])
+    turns = np.array([linkage.turns(i) for i in kept])
     gaps = modes.q[:, kept] - joints[kept]
     gaps = np.where(turns, np.remainder(gaps + np.pi, 2 * np.pi) - np.pi, gaps / view.circuit.size)
     # at a dead centre, or a change point, two modes are one: to half the digits

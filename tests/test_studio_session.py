@@ -285,8 +285,7 @@ def test_another_joint_drives_and_the_pose_stays() -> None:
             view = session.view
             assert (view.linkage.drive.joint, view.motion.input) == (joint, joint)
             assert view.linkage.drive.output != joint
-            kind = view.linkage.column_kinds[view.circuit.input_column]
-            unit = "rad/s" if kind == "turn" else f"{view.linkage.length_unit}/s"
+            unit = f"{view.linkage.unit_of(view.motion.input)}/s"
             (speed,) = [d for d in session.draft.dimensions if d.label == "speed"]
             assert speed.unit == unit
             assert session.draft.toml()

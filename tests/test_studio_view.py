@@ -31,7 +31,7 @@ def test_the_modes_of_every_input_are_the_assembly_modes(name: str) -> None:
         index = linkage.columns.index(column)
         motion = linkage.motion(360, input=column)
         ends = [end for circuit in motion for end in (circuit.input.min(), circuit.input.max())]
-        turn = linkage.column_kinds[index] == "turn"
+        turn = linkage.turns(index)
         gap = 1e-6 * (1.0 if turn else motion.circuits[0].size)
         worst = []
         for value in rng.uniform(min(ends), max(ends), 9):

@@ -15,7 +15,7 @@ import pytest
 
 import sevenbar as sb
 from commands import mistake, sevenbar
-from sevenbar.design.survey import SurveyTask, SwingWish, Tally, Travel, survey
+from sevenbar.design.survey import SurveyTally, SurveyTask, SwingWish, Travel, survey
 from sevenbar.design.survey.journal import JOURNAL
 from sevenbar.design.survey.polish import ball_angle, draft_of
 from sevenbar.design.survey.skew_closure import L2, poses, reach
@@ -39,7 +39,7 @@ def drawn(count: int, seed: int = 0):
 
 
 def pose_of(numbers):
-    """The numbers with an input at which the linkage closes, as far from its limits as 720 inputs tell."""
+    """The numbers with an input at which the linkage closes, as far from its limits as any of 720."""
     inputs = np.arange(720) * math.tau / 720
     w = reach(np.append(numbers, 0.0), inputs)[3]
     return np.append(numbers, inputs[w.argmax()]) if w.max() > 0 else None
@@ -125,7 +125,7 @@ def test_near_a_change_point_types_are_those_of_the_ordinary_analysis(way):
 @pytest.mark.parametrize("want", [FLAP, parabola()])
 def test_what_is_kept_does_what_is_said_of_it(want):
     task = SurveyTask(want, count=20000, tolerance=math.radians(2), ball_angle=math.radians(30))
-    tally = Tally.of(task.core().tally(0, task.count))
+    tally = SurveyTally.of(task.core().tally(0, task.count))
     kept = [*tally.best[:20], *tally.nearest.values()]
     assert len(kept) > 20
     inputs, wanted = task.readings
@@ -146,7 +146,7 @@ def test_no_start_of_a_dense_scan_is_much_better_than_the_one_that_was_found():
     core, (inputs, wanted) = task.core(), task.readings
     checked = 0
     for index, numbers in enumerate(drawn_numbers(task, range(60))):
-        tally = Tally.of(core.tally(index, 1))
+        tally = SurveyTally.of(core.tally(index, 1))
         entry = [*tally.best, *tally.nearest.values()]
         best = math.inf
         for start in np.arange(180) * math.tau / 180:
@@ -181,14 +181,14 @@ def test_the_smallest_cone_is_that_of_a_search_over_seats():
 def test_the_answer_is_the_same_in_any_parts_and_any_order(want, rank):
     task = SurveyTask(want, count=30000, tolerance=math.radians(4), rank=rank)
     core = task.core()
-    whole = Tally.of(core.tally(0, 30000))
+    whole = SurveyTally.of(core.tally(0, 30000))
     sizes = [1, 4095, 10000, 15904]
     firsts = np.cumsum([0, *sizes[:-1]])
-    parts = [Tally.of(core.tally(int(f), n)) for f, n in zip(firsts, sizes, strict=True)]
+    parts = [SurveyTally.of(core.tally(int(f), n)) for f, n in zip(firsts, sizes, strict=True)]
     assert reduce(add, parts) == reduce(add, parts[::-1])
     # a ball angle that was not measured is NaN, which equals nothing
     assert reduce(add, parts).line() == whole.line()
-    assert Tally.of_dict(json.loads(whole.line())).line() == whole.line()
+    assert SurveyTally.of_dict(json.loads(whole.line())).line() == whole.line()
     assert whole.count == 30000
     assert whole.found > 0
 
@@ -226,7 +226,17 @@ def test_a_journal_cut_anywhere_is_gone_on_with(tmp_path, monkeypatch):
 
 
 def test_a_survey_that_was_killed_goes_on(tmp_path):
-    words = ["design", "survey", "--output-range", "0:23.75deg", "--count", "1.2e6", "--threads", "1", "--json"]
+    words = [
+        "design",
+        "survey",
+        "--output-range",
+        "0:23.75deg",
+        "--count",
+        "1.2e6",
+        "--threads",
+        "1",
+        "--json",
+    ]
     run = subprocess.Popen(
         [sys.executable, "-m", "sevenbar.commands.cli", *words, "--journal", str(tmp_path / "a")],
         stdout=subprocess.DEVNULL,
@@ -270,7 +280,7 @@ def test_workers_of_a_cluster_give_the_same_answer(tmp_path):
 
 def test_designs_are_better_than_what_was_drawn_and_keep_what_must_hold():
     task = SurveyTask(parabola(), count=30000, tolerance=math.radians(5), ball_angle=math.radians(40))
-    tally = Tally.of(task.core().tally(0, task.count))
+    tally = SurveyTally.of(task.core().tally(0, task.count))
     found = survey(task, designs_wanted=5, threads=1)
     assert found.tally.line() == tally.line()
     assert found.candidates[0].error_greatest < tally.best[0].error / 5

@@ -15,7 +15,7 @@ from sevenbar.export import pose
 from sevenbar.export.adams import write_cmd
 from sevenbar.export.layout import arrange
 from sevenbar.kinematics.batches import loop_motions
-from sevenbar.kinematics.circuits import Law
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.measures import MEASURES, rows_of
 from sevenbar.kinematics.poses import walk
 from sevenbar.reporting import report

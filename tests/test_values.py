@@ -18,7 +18,8 @@ from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.function.wish import wish_of_function
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
 from sevenbar.text.expression import function_of
 

@@ -34,14 +34,14 @@ MADE = ("accuracy.md", "benchmarks.md", "hard-use.md", "changelog.md")
 
 #: How often each word may still be in the sources. A smaller number is always right; none may grow.
 ALLOWED = {
-    "told": 119,
+    "told": 88,
     "comes to": 23,
     "misfit": 57,
     "established": 0,
     "stands": 89,
     "beside": 162,
     "but for": 4,
-    "parts of": 85,
+    "parts of": 38,
     "looks": 99,
     "hard use": 8,
     "asks of": 40,

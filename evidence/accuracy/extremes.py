@@ -21,7 +21,7 @@ STEPS = (1e-4, 1e-6)
 #: Second derivatives by the input below this part of the input's pace are no bend.
 FLAT = 1e-9
 
-#: Vertices farther [rad] than this are none of the extreme that was told.
+#: Vertices farther [rad] than this are none of the extreme that was reported.
 FAR = 1e-3
 
 #: Asked for in a value, relative to the greater of both extremes, or of the input's pace.
@@ -92,7 +92,7 @@ def exact_extreme(
                 return here, 0.0
             shift = float(step * (before - after) / (2 * bend))
             if abs(shift) > FAR:
-                # no extreme is near: how far the parabola points is told, not followed
+                # no extreme is near: how far the parabola points is reported, not followed
                 return here, abs(shift)
             x += shift
         return rate(x), abs(x - float(q[column]))

@@ -102,7 +102,7 @@ def dead_centres(results: Results) -> Figure:
         ]
         for order, quantity in enumerate(QUANTITIES):
             for axes, measure, least in ((left, "errors", LEAST), (right, "bounds", 1e-6)):
-                # a bound is told for rates
+                # a bound is given for rates
                 if axes is left or order:
                     curves = [
                         (

@@ -136,7 +136,7 @@ def errors_by_step() -> dict[str, object]:
 
 
 def measured() -> dict[str, object]:
-    """All that the page tells of differences."""
+    """All that the page states of differences."""
     linkage = sb.load("seven_r")
     return {
         "by_samples": {str(samples): errors_of_differences(linkage, samples) for samples in SAMPLES},

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: The shares of the errors that are told, by their names on the page.
+#: The shares of the errors that are reported, by their names on the page.
 SHARES = {"median": 0.5, "90 %": 0.9, "99 %": 0.99, "greatest": 1.0}
 
 #: Half the distance of 1 to the next double: what one rounding may come to.
@@ -39,7 +39,7 @@ def quantiles(errors: Sequence[float] | np.ndarray) -> dict[str, float]:
 class Row:
     """One row that was compared: where it is, and its errors.
 
-    `input` [rad, or length], `condition` as the circuit tells it, `errors` of position, velocity,
+    `input` [rad, or length], `condition` as the circuit has it, `errors` of position, velocity,
     acceleration and jerk, by what they are of ("joints", "points"); `apart` how far the next dead centre of
     the input is, in the input's unit (infinite where there is none).
     """

@@ -17,7 +17,7 @@ SHORTEST = 2e-3
 #: How many times longer a first call than the shortest timing tells that one call will do.
 FIRST = 20
 
-#: Ends of the spread that is told, relative to the rounds: one in ten lies outside on either side.
+#: Ends of the spread that is reported, relative to the rounds: one in ten lies outside on either side.
 LOW, HIGH = 0.1, 0.9
 
 Clock = Callable[[], float]

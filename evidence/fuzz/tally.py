@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Any
 
-#: Families of messages that are told apart; a file's own words in one would make no end of them.
+#: Families of messages that are distinguished; a file's own words in one would make no end of them.
 MOST_KEYS = 300
 
 #: Findings of one kind that are kept; the others are counted.

@@ -26,7 +26,7 @@ from evidence.fuzz.toml import written
 from sevenbar.description.forms import from_description
 from sevenbar.errors import AngleUnitWarning, SevenbarError
 
-#: Tells which case is at hand: its number, -1 for a whole batch, `None` between two.
+#: States which case is at hand: its number, -1 for a whole batch, `None` between two.
 Mark = Callable[[int | None], None]
 
 

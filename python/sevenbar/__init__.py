@@ -17,9 +17,11 @@ from sevenbar import errors
 from sevenbar._core import __version__
 from sevenbar.description.files import load, loads
 from sevenbar.description.forms import from_axes, from_dh, rssr
-from sevenbar.kinematics.circuits import Circuit, DeadCentre, Extremes, Law, Trace
+from sevenbar.kinematics.circuit_values import DeadCentre, Extremes, Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Drive, Joint, Point
 from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.link_bodies import DRAWN_IN
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import ChangePoint, Count, Modes, Motion, OpenRange, Output, Search
@@ -51,11 +53,13 @@ if TYPE_CHECKING:
     from sevenbar.forces.loading import Load, Loading, Spring
     from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
     from sevenbar.kinematics.screw_axes import ScrewAxes
+    from sevenbar.kinematics.stops import Cone
 
 __all__ = [
     "Body",
     "ChangePoint",
     "Circuit",
+    "Cone",
     "Count",
     "DeadCentre",
     "Drive",
@@ -122,6 +126,7 @@ _ON_DEMAND = {
 #: Names that many programs do without, and the modules that have them.
 _NAMES_ON_DEMAND = {
     "Body": "sevenbar.forces.bodies",
+    "Cone": "sevenbar.kinematics.stops",
     "Equilibrium": "sevenbar.forces.free_motion.equilibria",
     "FreeMotion": "sevenbar.forces.free_motion.result",
     "InstantCentre": "sevenbar.kinematics.instant_centres",

@@ -364,7 +364,7 @@ _Entries = tuple[_Integers, _Integers, _Floats]
 
 @final
 class RawTally:
-    """What the linkages of some indices came to."""
+    """The tally of the linkages of some indices."""
 
     @property
     def verdicts(self) -> list[int]: ...

@@ -16,6 +16,15 @@ from sevenbar.errors import RequestError, shown
 #: An array of real numbers; each docstring says of what shape and unit.
 Floats = npt.NDArray[np.float64]
 
+#: An array of whole numbers: indices, counts.
+Integers = npt.NDArray[np.int64]
+
+#: An array of truth values.
+Booleans = npt.NDArray[np.bool_]
+
+#: An array of words, such as the status of each row.
+Words = npt.NDArray[np.str_]
+
 
 def finite_array(name: str, values: npt.ArrayLike) -> Floats:
     """A one-dimensional array of finite numbers, or `RequestError` naming the first that is none."""
@@ -55,6 +64,16 @@ def real_array(name: str, values: npt.ArrayLike) -> Floats:
     if given.ndim > 1:
         raise RequestError(f"{name}: an array of shape {given.shape} does not fit; give one dimension")
     return array.reshape(-1)
+
+
+def counted(words: Words) -> dict[str, int]:
+    """How often each word is there, by the words in order of the alphabet.
+
+    >>> counted(np.array(["ok", "dead-centre", "ok"]))
+    {'dead-centre': 1, 'ok': 2}
+    """
+    found, counts = np.unique(words, return_counts=True)
+    return {str(word): int(count) for word, count in zip(found, counts, strict=True)}
 
 
 def short_way(angles: npt.ArrayLike) -> Floats:

@@ -83,7 +83,7 @@ pub(crate) fn sin_cos<const FUSED: bool>(angle: f64) -> (f64, f64) {
     )
 }
 
-/// The same for numbers side by side, whose bits are out of reach: quarter turns are told apart by arithmetic.
+/// The same for numbers side by side, whose bits are out of reach: quarter turns are distinguished by arithmetic.
 #[inline(always)]
 pub(crate) fn sin_cos_side_by_side<N: Number>(angle: N) -> (N, N) {
     let (rounder, half, one) = (N::splat(ROUNDER), N::splat(0.5), N::splat(1.0));

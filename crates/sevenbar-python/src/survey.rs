@@ -22,7 +22,7 @@ type Entries<'py> = (
 /// Counts of a measure, and the width of their cells.
 type Spread = (f64, Vec<u64>);
 
-/// What the linkages of some indices came to.
+/// The tally of the linkages of some indices.
 #[pyclass(frozen, module = "sevenbar._core")]
 pub(crate) struct RawTally(Tally);
 

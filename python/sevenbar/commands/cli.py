@@ -22,7 +22,6 @@ from sevenbar.commands.deliver import check_out, deliver, tell_written, write_fi
 from sevenbar.commands.given import (
     check_law,
     film_of,
-    input_column,
     input_value,
     law_of,
     look_of,
@@ -158,6 +157,9 @@ def analyze(
     circuit: Annotated[
         int | None, typer.Option(help="The circuit that is drawn and filmed; the first by default.")
     ] = None,
+    ranges: Annotated[
+        bool, typer.Option("--ranges", help="Tables of the ranges of all joints, and the bends of balls.")
+    ] = False,
     view: FigureView = None,
     size: FigureSize = None,
     style: FigureStyle = None,
@@ -199,7 +201,7 @@ def analyze(
         chosen_circuit(motion, circuit)
     # more rows than that are no better to look at
     seen = motion if motion.samples <= MOST_DRAWN or read is not None else moved(MOST_DRAWN)
-    report = motion_report(formats, lambda _: seen, circuit=circuit, look=look)
+    report = motion_report(formats, lambda _: seen, circuit=circuit, look=look, ranges=ranges)
     elsewhere: dict[Path, Callable[[Path], object]] = {}
     if animate is not None:
         film = _film(seen, animate, out, circuit, look, film_look, force=force)
@@ -270,7 +272,7 @@ def modes(
     from sevenbar.reporting.report import modes_report
 
     loaded = opened(linkage, agree)
-    column = input_column(loaded, input_joint)
+    column = loaded.input_column(input_joint, "--input")
     check_targets([] if out is None else [out], force=force)
     value = input_value("--at", at, loaded, input_joint)
     found = loaded.assembly_modes(value, input=loaded.columns[column])

@@ -94,7 +94,7 @@ _DRAWING = (
 SHARED = {
     "--view": ("modes", "path", "point"),
     "--style": _DRAWING,
-    "--lang": ("analyze", "plot", "forces", *_DRAWING),
+    "--lang": ("analyze", "plot", "forces", "free", "sweep", *_DRAWING),
 }
 
 
@@ -126,7 +126,7 @@ def _shared(
     lang: Annotated[
         str | None,
         typer.Option(
-            help="Language of the figures, and of the report of a motion: en (the default) or zh.",
+            help="Language of the report and the figures: en (the default) or zh.",
             callback=_say_language,
             expose_value=False,
         ),

@@ -17,7 +17,7 @@ from sevenbar.text.units import amount, examples_of, sizes_of
 if TYPE_CHECKING:
     from sevenbar.description.draft import Draft
     from sevenbar.design.synthesis.limits import Limits
-    from sevenbar.kinematics.circuits import Law
+    from sevenbar.kinematics.law import Law
     from sevenbar.reporting.figures import FigureLook
 
 
@@ -50,14 +50,9 @@ def law_of(law: Path | None, linkage: sb.Linkage, input_joint: str | None) -> La
     return None if law is None else sb.load_law(law, linkage, input=input_joint)
 
 
-def input_column(linkage: sb.Linkage, input_joint: str | None) -> int:
-    """The column of the joint of --input, the file's by default."""
-    return linkage.column(linkage.drive.joint if input_joint is None else input_joint, "--input")
-
-
 def input_value(option: str, text: str, linkage: sb.Linkage, input_joint: str | None) -> float:
     """A value [rad, or length] of the joint of --input."""
-    return joint_value(text, option, linkage, input_column(linkage, input_joint))
+    return joint_value(text, option, linkage, linkage.input_column(input_joint, "--input"))
 
 
 def point_of(name: str | None, link: int | None, at: str | None) -> str | tuple[int, Place] | None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sevenbar.design.survey.task import SwingWish, Travel
     from sevenbar.design.synthesis.function.wish import Wish
 
-#: What a bound looks like, in messages.
+#: An example of a bound, in messages.
 EXAMPLE = "as in L1=0.2:1, D=0 or angle=60:120deg"
 
 

@@ -18,6 +18,7 @@ from sevenbar.commands.options import Agree, Follow, InputJoint, Json, OutputJoi
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
+from sevenbar.text.words import say
 
 if TYPE_CHECKING:
     from sevenbar.description.held import HeldDimensions
@@ -102,7 +103,7 @@ def sweep(
             plan, out=out, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
             progress=progress,
         )  # fmt: skip
-    deliver(found, Report(partial(_text, plan.held), _as_dict), json=json)
+    deliver(found, Report(partial(_text, plan.held), _as_dict, spoken=True), json=json)
     if out is not None and not json:
         parts = found.description["parts"]
         typer.echo(
@@ -114,30 +115,37 @@ def _as_dict(found: Sweep) -> dict[str, Any]:
     return {**found.description, "totals": asdict(found.totals)}
 
 
+#: The heads of the table of ranges.
+RANGE_HEADS = ("measure", "lowest", "linkage", "highest", "linkage", "rows")
+
+
 def _text(held: HeldDimensions, found: Sweep) -> RenderableType:
     """Counts by words, ranges of numbers, of all linkages."""
     totals = found.totals
     sampling = found.description["sampling"]
-    seed = "" if sampling["seed"] is None else f", seed {sampling['seed']}"
-    linkages, rows = _counted(totals.linkages, "linkage"), _counted(totals.rows, "row")
-    parts: list[RenderableType] = [
-        Text.assemble((linkages, "bold"), f" ({sampling['method']}{seed}), {rows}"),
-    ]
+    how = say(sampling["method"])
+    if sampling["seed"] is not None:
+        how = say("{method}, seed {seed}", method=how, seed=sampling["seed"])
+    linkages = say("{count} linkage{s}", count=totals.linkages, s="s" * (totals.linkages != 1))
+    rows = say("{count} row{s}", count=totals.rows, s="s" * (totals.rows != 1))
+    parts: list[RenderableType] = [Text.assemble((linkages, "bold"), f" ({how}){say(', ')}{rows}")]
     if held.text:
-        parts.append(Text.assemble(("held", "dim"), f"  {held.text}"))
+        parts.append(Text.assemble((say("held"), "dim"), f"  {held.text}"))
     if totals.invalid:
-        parts.append(Text(f"no linkage at all: {totals.invalid} (their rows say why, in status)"))
+        parts.append(
+            Text(say("no linkage at all: {count} (their rows say why, in status)", count=totals.invalid))
+        )
     for name, counts in totals.words.items():
-        table = Table("", "count", "share", box=None, pad_edge=False)
-        table.columns[0].header = name.replace("_", " ")
+        table = Table("", say("count"), say("share"), box=None, pad_edge=False)
+        table.columns[0].header = say(name.replace("_", " "))
         whole = sum(counts.values())
         for column in table.columns[1:]:
             column.justify = "right"
         for word, number in sorted(counts.items(), key=lambda pair: (-pair[1], pair[0])):
-            table.add_row(word, str(number), f"{100 * number / whole:.3g} %")
+            table.add_row(say(word), str(number), f"{100 * number / whole:.3g} %")
         parts += [Text(), table]
     if totals.ranges:
-        table = Table("measure", "lowest", "linkage", "highest", "linkage", "rows", box=None, pad_edge=False)
+        table = Table(*map(say, RANGE_HEADS), box=None, pad_edge=False)
         for column in table.columns[1:]:
             column.justify = "right"
         for name, extent in totals.ranges.items():

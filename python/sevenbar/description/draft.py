@@ -15,9 +15,9 @@ from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
+from sevenbar.kinematics.factors import Place
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.word import Place
 
 #: Characters of a line from which rows of a load's table are written one below the other.
 LONGEST_ROWS = 110

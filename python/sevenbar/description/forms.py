@@ -13,13 +13,15 @@ import numpy.typing as npt
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.loads import loading_of
 from sevenbar.description.proportions import disproportions
+from sevenbar.description.stop_values import stops_of
 from sevenbar.errors import DescriptionError, Problem, RequestError, bare, ends_here, shown, suggestion
+from sevenbar.kinematics.factors import Place, Values, between
 from sevenbar.kinematics.geometry import Drive, Form, Joint, Point
 from sevenbar.kinematics.joint_text import check_own_unit
 from sevenbar.kinematics.joints import KINDS
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import unit
-from sevenbar.kinematics.word import Place, Values, between, word_of
+from sevenbar.kinematics.word import word_of
 from sevenbar.text.grid import listed
 from sevenbar.text.table import name_and_unit
 from sevenbar.text.units import LENGTHS, measured_unit
@@ -317,6 +319,7 @@ def from_description(raw: Mapping[str, Any], source: str = "") -> Linkage:
             length_unit=form.length_unit,
             columns=form.first_columns,
         ),
+        stops=stops_of(form.stop, form.rod, form.first_columns),
     )
 
 

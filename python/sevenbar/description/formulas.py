@@ -9,6 +9,7 @@ from typing import Any
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.load_values import load_kinds, spring_kinds
 from sevenbar.description.schema import context_of
+from sevenbar.description.stop_schema import stop_kinds
 from sevenbar.description.values import NumberKind, value_in_file
 from sevenbar.errors import RequestError
 
@@ -22,10 +23,12 @@ KINDS_OF_NUMBERS: Mapping[str, Mapping[str, NumberKind]] = {
     "body": {"mass": "mass", "centre": "length", "inertia": "inertia"},
     "load": load_kinds({}, {}),
     "spring": spring_kinds({}, {}) | {"free": "angle"},
+    "stop": stop_kinds({}, {}),
+    "rod": {"radius": "length"},
 }
 
 #: Tables in which the kind of a number depends on how a joint moves.
-_KINDS_IN = {"load": load_kinds, "spring": spring_kinds}
+_KINDS_IN = {"load": load_kinds, "spring": spring_kinds, "stop": stop_kinds}
 
 
 def with_numbers(raw: Mapping[str, Any], source: str = "") -> Mapping[str, Any]:

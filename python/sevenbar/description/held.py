@@ -8,6 +8,7 @@ from typing import Any
 
 from sevenbar.description.draft import Draft
 from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.text.words import say
 
 #: Dimensions that a line names; the others are counted.
 MOST_NAMED = 8
@@ -34,10 +35,11 @@ class HeldDimensions:
         """The dimensions in a line; empty where all change."""
         given = [d.name for d in self.stay if d.name not in self.left_out]
         rest = len(given) - MOST_NAMED
-        given = [*given[:MOST_NAMED], *([f"{rest} more"] if rest > 0 else [])]
-        named = [*given, *(_with_value(d) for d in self.stay if d.name in self.left_out)]
-        lines = [", ".join(named), *(_with_value(d, " follows") for d in self.follow)]
-        return "; ".join(line for line in lines if line)
+        given = [*given[:MOST_NAMED], *([say("{count} more", count=rest)] if rest > 0 else [])]
+        named = [*given, *(_with_value(d.name, d) for d in self.stay if d.name in self.left_out)]
+        follow = (say("{dimension} follows", dimension=d.name) for d in self.follow)
+        lines = [", ".join(named), *map(_with_value, follow, self.follow)]
+        return say("; ").join(line for line in lines if line)
 
     @property
     def left_to_the_program(self) -> bool:
@@ -67,5 +69,6 @@ def held_of(draft: Draft, moved: Collection[str]) -> HeldDimensions:
     )
 
 
-def _with_value(dimension: Dimension, does: str = "") -> str:
-    return f"{dimension.name}{does} ({dimension.value:.6g} {dimension.unit} in the design)"
+def _with_value(what: str, dimension: Dimension) -> str:
+    value = f"{dimension.value:.6g} {dimension.unit}"
+    return say("{what} ({value} in the design)", what=what, value=value)

@@ -11,7 +11,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import MissingExtraError, ends_here
-from sevenbar.kinematics.circuits import Law
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.linkage import MOST_SAMPLES, Linkage
 from sevenbar.text.table import TextTable, read_table
 
@@ -49,7 +49,7 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
         >>> law.q.round(6).tolist()
         [0.0, 0.785398]
     """
-    column = linkage.column(linkage.drive.joint if input is None else input, "input")
+    column = linkage.input_column(input)
     table = read_table(Path(path), "an input law")
     if len(table.rows) > MOST_SAMPLES:
         raise table.wrong(f"has more than {MOST_SAMPLES} rows; give every tenth of them, say")
@@ -64,7 +64,7 @@ def load_law(path: str | os.PathLike[str], linkage: Linkage, *, input: str | Non
     sizes = {q: 1.0 if unit is None else unit.size_in(linkage.length_unit) for q, unit in units.items()}
     numbers = {quantity: written[quantity] * size for quantity, size in sizes.items()}
     t = numbers.pop("time")
-    if linkage.column_kinds[column] == "turn":
+    if linkage.turns(column):
         _refuse_jumps(table, numbers, places["value"])
     _refuse_other_rates(table, t, numbers, places)
     return Law.of(t, *_completed(table, t, [numbers[q] for q in QUANTITIES if q in numbers]))
@@ -85,7 +85,7 @@ def _places(table: TextTable, linkage: Linkage, column: int) -> dict[str, int]:
                 i for i, (head, unit) in enumerate(heads) if not unit and head.lower() in ("t", "time")
             ]
         if len(fitting) > 1:
-            what = {"value": "angle" if kind == "turn" else "position"}.get(quantity, quantity)
+            what = {"value": "angle" if linkage.turns(column) else "position"}.get(quantity, quantity)
             own = {word.lower() for word in (name, owners[column], "input", what, "time", "t")}
             named = [place for place in fitting if heads[place][0].lower() in own]
             if len(named) != 1:
@@ -97,12 +97,12 @@ def _places(table: TextTable, linkage: Linkage, column: int) -> dict[str, int]:
             fitting = named
         if fitting:
             found[quantity] = fitting[0]
-    _refuse_what_is_missing(table, found, name, kind)
+    _refuse_what_is_missing(table, found, name, turns=linkage.turns(column))
     return found
 
 
-def _refuse_what_is_missing(table: TextTable, found: Mapping[str, int], name: str, kind: str) -> None:
-    value, moves, unit = ("an angle", "turns", "deg") if kind == "turn" else ("a position", "slides", "mm")
+def _refuse_what_is_missing(table: TextTable, found: Mapping[str, int], name: str, *, turns: bool) -> None:
+    value, moves, unit = ("an angle", "turns", "deg") if turns else ("a position", "slides", "mm")
     if "time" not in found or "value" not in found:
         what = f"with {value} of {name}, which {moves}" if "time" in found else "for the time"
         raise table.wrong(f"no column {what}; {table.header}; name them as in 'time [s],{name} [{unit}]'")

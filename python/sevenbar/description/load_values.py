@@ -56,21 +56,23 @@ def _vector(value: object, info: ValidationInfo, kind: NumberKind) -> tuple[floa
     return three(value, info, kind)
 
 
+def _in_radians(value: object, info: ValidationInfo, kind: NumberKind) -> float:
+    """A number in the file's own unit, an angle in radians."""
+    size = ANGLES[(info.context or {}).get("angle_unit", "rad")] if kind == "angle" else 1.0
+    return number_for(value, info, kind) * size
+
+
 def _of_spring(value: object, info: ValidationInfo, key: str) -> float:
     """A number of a spring, an angle in radians; `joint` is read before it."""
     context = info.context or {}
     table = {"joint": joint} if (joint := info.data.get("joint")) is not None else {}
-    kind = spring_kinds(table, context)[key]
-    size = ANGLES[context.get("angle_unit", "rad")] if kind == "angle" else 1.0
-    return number_for(value, info, kind) * size
+    return _in_radians(value, info, spring_kinds(table, context)[key])
 
 
 def _of_input(value: object, info: ValidationInfo) -> float:
     """A value of the input, an angle in radians."""
     context = info.context or {}
-    kind = load_kinds({}, context)["between"]
-    size = ANGLES[context.get("angle_unit", "rad")] if kind == "angle" else 1.0
-    return number_for(value, info, kind) * size
+    return _in_radians(value, info, load_kinds({}, context)["between"])
 
 
 def _between(value: object, info: ValidationInfo) -> tuple[float, float]:

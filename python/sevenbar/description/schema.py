@@ -22,6 +22,7 @@ from sevenbar.description.contradictions import contradictions, grounds
 from sevenbar.description.load_contradictions import load_contradictions
 from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
 from sevenbar.description.load_tables import folder_of
+from sevenbar.description.stop_schema import RodForm, StopForm, stop_contradictions
 from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import (
     EXAMPLE_OF_AXES,
@@ -200,6 +201,8 @@ class LinkageForm(TableForm):
     body: Annotated[tuple[BodyForm, ...], key("masses on links")] = ()
     load: Annotated[tuple[LoadForm, ...], key("forces and torques on links")] = ()
     spring: Annotated[tuple[SpringForm, ...], key("springs and dampers")] = ()
+    stop: Annotated[tuple[StopForm, ...], key("how far joints may go")] = ()
+    rod: Annotated[tuple[RodForm, ...], key("how thick links are")] = ()
 
     @property
     def joints(self) -> tuple[tuple[str, str], ...]:
@@ -267,7 +270,9 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
             if place in ground_places or place[:2] not in ground_places
         ]
     if isinstance(raw, Mapping) and context is not None:
-        problems += contradictions(raw) + load_contradictions(raw, joints_of(raw), context)
+        joints = joints_of(raw)
+        problems += contradictions(raw) + load_contradictions(raw, joints, context)
+        problems += stop_contradictions(raw, joints, context)
     if problems:
         raise DescriptionError(problems, source)
     return form
@@ -357,6 +362,8 @@ TABLES: dict[str, type[TableForm]] = {
     "body": BodyForm,
     "load": LoadForm,
     "spring": SpringForm,
+    "stop": StopForm,
+    "rod": RodForm,
 }
 
 

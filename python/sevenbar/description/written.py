@@ -28,6 +28,11 @@ class Written(NamedTuple):
         return bool(self.kind) and KINDS[self.kind].is_ball
 
     @property
+    def bends(self) -> bool:
+        """Whether it is known to turn about more than one axis through one place."""
+        return bool(self.kind) and KINDS[self.kind].bends
+
+    @property
     def columns(self) -> dict[str, str]:
         """What each of its freedoms does, by the name of its column."""
         freedoms = KINDS[self.kind].freedoms if self.kind else ("turn",)

@@ -45,7 +45,7 @@ def read_curve(
     place = _input(table, input_joint)
     if place is not None:
         kind = linkage.column_kinds[linkage.columns.index(input_joint)]
-        example = unit if kind == "slide" else "deg"
+        example = "deg" if linkage.turns(input_joint) else unit
         size = table.size(place, (kind, 0), unit, what="input", example=example)
         inputs = numbers[place] = table.numbers(place) * size
     table.refuse_gaps(numbers, "leave the row out")

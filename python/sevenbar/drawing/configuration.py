@@ -150,9 +150,8 @@ def modes_overview(
     count = len(modes)
     if count == 0:
         raise RequestError("modes: the loop closes at no mode, so there is nothing to draw")
-    first = linkage.column(linkage.drive.joint if input is None else input, "input")
-    second = linkage.other_column(first) if output is None else linkage.column(output, "output")
-    slide = linkage.column_kinds[first] == "slide"
+    first, second = linkage.end_columns(input, output)
+    slide = not linkage.turns(first)
     value = f"{modes.input:.6g} {linkage.length_unit}" if slide else f"{math.degrees(modes.input):.6g}°"
     ends = linkage.columns[first], linkage.columns[second]
     poses = skeleton_of(linkage, frames_of(linkage, modes.q))

@@ -39,7 +39,7 @@ CUT = {"velocity": 4.0, "acceleration": 9.0}
 
 def slides(motion: Motion, column: str) -> bool:
     """Whether a column of the linkage is a length, and not an angle."""
-    return motion.linkage.column_kinds[motion.linkage.columns.index(column)] == "slide"
+    return not motion.linkage.turns(column)
 
 
 def shown_value(motion: Motion, column: str, values: Any) -> Any:

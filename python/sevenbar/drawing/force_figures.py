@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import given_axes, headline, key_below, new_figure, tidy
+from sevenbar.drawing.figure import new_figure
 from sevenbar.drawing.force_panels import (
     AXES,
     ROUNDING,
@@ -22,17 +22,16 @@ from sevenbar.drawing.force_panels import (
     digits,
     first_dot,
     greatest_of,
-    grid_of,
     hodograph,
     input_axis,
+    joint_panels,
     mark_peak,
-    outer_labels,
     reach_of,
-    stack,
     title_of_forces,
 )
 from sevenbar.drawing.names import shown_name
-from sevenbar.drawing.style import INK, LINE_STYLES, OTHER, QUIET, page_size, stroke, styled
+from sevenbar.drawing.panels import panels_of
+from sevenbar.drawing.style import INK, LINE_STYLES, OTHER, QUIET, stroke, styled
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.result import COMPONENTS, Forces, Reaction
 from sevenbar.forces.sizing import Sizing
@@ -63,30 +62,24 @@ def torque(
     count = 1 if forces.at_rest else 2
     found = sizing or sizing_of(forces)
     with styled(style):
-        figure, panels = stack(count, ax, figsize, style, 2.3)
+        what = "torque, then power" if count > 1 else "or none"
+        page = panels_of(count, ax, what, (6.4, 2.3 * count + 1.0), figsize=figsize, style=style)
+        panels, handles = page.axes, []
         word = say("input force") if forces.slides else say("input torque")
         curve(panels[0], forces, forces.torque, WHOLE, shade=True)
         panels[0].set_ylabel(f"{word} [{forces.unit}]")
         if found is not None:
             # on the side of the peak
             rms = math.copysign(found.rms_torque, found.peak_torque.value)
-            panels[0].axhline(rms, color=QUIET, lw=0.9 * stroke(), ls=(0, (4, 2)))
+            look: dict[str, Any] = {"color": QUIET, "lw": 0.9 * stroke(), "ls": (0, (4, 2))}
+            value = f"{digits(found.rms_torque)} {forces.unit}"
+            handles = [panels[0].axhline(rms, label=say("rms {value}", value=value), **look)]
         if count > 1:
             curve(panels[1], forces, forces.power, OTHER, shade=True)
             panels[1].set_ylabel(say("power [W]"))
         input_axis(panels, forces)
-        if ax is None:
-            headline(
-                figure,
-                title,
-                title_of_forces(forces, say("{torque} and power", torque=word) if count > 1 else word),
-            )
-            if legend and found is not None:
-                line = Line2D([], [], color=QUIET, lw=0.9 * stroke(), ls=(0, (4, 2)))
-                value = f"{digits(found.rms_torque)} {forces.unit}"
-                line.set_label(say("rms {value}", value=value))
-                key_below(figure, [line])
-            tidy(figure)
+        whole = say("{torque} and power", torque=word) if count > 1 else word
+        page.finish(title, title_of_forces(forces, whole), handles if legend else [])
         if found is not None:
             mark_peak(panels[0], forces, found.peak_torque.input, found.peak_torque.value, forces.unit, WHOLE)
             if count > 1:
@@ -94,7 +87,7 @@ def torque(
                 if found.braking_power is not None:
                     low = found.braking_power
                     mark_peak(panels[1], forces, low.input, low.value, "W", OTHER)
-    return figure
+    return page.figure
 
 
 def reactions(
@@ -125,9 +118,9 @@ def reactions(
     letters = COMPONENTS[3:] if what == "force" else COMPONENTS[:3]
     scale = max((greatest_of(getattr(reaction, what)) for reaction in forces.reactions.values()), default=0.0)
     with styled(style):
-        figure, panels, across = grid_of(len(chosen), ax, figsize, style)
+        page = joint_panels(len(chosen), ax, figsize, style)
         whole = False
-        for axes, reaction in zip(panels, chosen, strict=True):
+        for axes, reaction in zip(page.axes, chosen, strict=True):
             values = getattr(reaction, what)
             known = np.isfinite(values).any(axis=0)
             for i in np.flatnonzero(known):
@@ -143,23 +136,18 @@ def reactions(
             axes.axhline(0, color=QUIET, lw=0.6 * stroke())
             axes.set_title(shown_name(reaction.joint, 28))
             axes.set_ylabel(say("force [N]") if what == "force" else say("moment [N m]"))
-        input_axis(panels, forces, most=5)
-        if ax is None:
-            outer_labels(panels, across)
-            which = say("forces in the joints") if what == "force" else say("moments in the joints")
-            headline(figure, title, title_of_forces(forces, which))
-            if legend:
-                made = [
-                    Line2D([], [], color=AXES[i], ls=LINE_STYLES[i], label=letters[i])
-                    for i in range(3)
-                    if any(np.isfinite(getattr(r, what)[:, i]).any() for r in chosen)
-                ]
-                if whole:
-                    made.append(Line2D([], [], color=INK, lw=1.0 * stroke(), label=say("size")))
-                if made:
-                    key_below(figure, made)
-            tidy(figure)
-    return figure
+        input_axis(page.axes, forces, most=5)
+        page.label_outer()
+        made = [
+            Line2D([], [], color=AXES[i], ls=LINE_STYLES[i], label=letters[i])
+            for i in range(3)
+            if any(np.isfinite(getattr(r, what)[:, i]).any() for r in chosen)
+        ]
+        if whole:
+            made.append(Line2D([], [], color=INK, lw=1.0 * stroke(), label=say("size")))
+        which = say("forces in the joints") if what == "force" else say("moments in the joints")
+        page.finish(title, title_of_forces(forces, which), made if legend else [])
+    return page.figure
 
 
 def drawn_bearings(forces: Forces, joints: Sequence[str] | None = None) -> list[Reaction]:
@@ -193,18 +181,15 @@ def bearings(
             "joints: these are balls, which have no axis, or their forces are not determined; nothing to draw"
         )
     with styled(style):
-        figure, panels, _ = grid_of(len(chosen), ax, figsize, style, square=True)
-        for axes, reaction in zip(panels, chosen, strict=True):
+        page = joint_panels(len(chosen), ax, figsize, style, square=True)
+        for axes, reaction in zip(page.axes, chosen, strict=True):
             hodograph(axes, forces, reaction.force[:, :2], WHOLE)
             axes.set_title(shown_name(reaction.joint, 28))
             axes.set_xlabel("Fx [N]")
             axes.set_ylabel("Fy [N]")
-        if ax is None:
-            headline(figure, title, title_of_forces(forces, say("forces square to the joints' axes")))
-            if legend:
-                key_below(figure, [first_dot(forces, WHOLE)])
-            tidy(figure)
-    return figure
+        heading = title_of_forces(forces, say("forces square to the joints' axes"))
+        page.finish(title, heading, [first_dot(forces, WHOLE)] if legend else [])
+    return page.figure
 
 
 def shaking(
@@ -229,14 +214,20 @@ def shaking(
     moves = [i for i in range(3) if greatest_of(force[:, i]) > 0]
     views = list(combinations(moves, 2))
     with styled(style):
-        if ax is None:
-            down = 2 if len(views) > 1 else 1
-            usual = (7.2, 3.1 * down + 0.6) if views else (6.4, 3.6)
-            figure = new_figure(*page_size(style, figsize, usual, wide=bool(views)), pads=(0.05, 0.06))
-            panels = list(figure.subplots(down, 2 if views else 1, squeeze=False).flat)
-        else:
-            panels = given_axes(ax, len(views) + 1, "one for each view and one for the size")
-            figure = panels[0].figure.figure
+        across = 2 if views else 1
+        down = math.ceil((len(views) + 1) / across)
+        usual = (7.2, 3.1 * down + 0.6) if views else (6.4, 3.6)
+        page = panels_of(
+            len(views) + 1,
+            ax,
+            "one for each view and one for the size",
+            usual,
+            across=across,
+            figsize=figsize,
+            style=style,
+            sharex=False,
+        )
+        panels = page.axes
         reach = reach_of(force, forces)
         for axes, (i, j) in zip(panels, views, strict=False):
             hodograph(axes, forces, force[:, [i, j]], WHOLE, reach=reach)
@@ -247,12 +238,9 @@ def shaking(
         size.set_ylabel(say("shaking force [N]"))
         input_axis([size], forces, most=5)
         size.set_ylim(bottom=0)
-        if ax is None:
-            headline(figure, title, title_of_forces(forces, say("shaking force on the ground")))
-            if legend and views:
-                key_below(figure, [first_dot(forces, WHOLE)])
-            tidy(figure)
-    return figure
+        heading = title_of_forces(forces, say("shaking force on the ground"))
+        page.finish(title, heading, [first_dot(forces, WHOLE)] if legend and views else [])
+    return page.figure
 
 
 def energies(
@@ -269,8 +257,8 @@ def energies(
     `ax`: axes to draw in, one. The rest is as for `configuration`.
     """
     with styled(style):
-        figure, panels = stack(1, ax, figsize, style, 3.2)
-        axes = panels[0]
+        page = panels_of(1, ax, "or none", (6.4, 4.2), figsize=figsize, style=style)
+        (axes,) = page.axes
         total = forces.kinetic + forces.potential
         drawn: list[tuple[str, Floats, str, Any]] = [
             (say("kinetic"), forces.kinetic, WHOLE, "-"),
@@ -282,13 +270,10 @@ def energies(
         for label, values, colour, line in drawn:
             curve(axes, forces, values, colour, style=line, label=label, zero=False)
         axes.set_ylabel(say("energy [J]"))
-        input_axis(panels, forces)
-        if ax is None:
-            headline(figure, title, title_of_forces(forces, say("energies")))
-            if legend:
-                key_below(figure, axes.get_legend_handles_labels()[0])
-            tidy(figure)
-    return figure
+        input_axis([axes], forces)
+        handles = axes.get_legend_handles_labels()[0] if legend else []
+        page.finish(title, title_of_forces(forces, say("energies")), handles)
+    return page.figure
 
 
 #: The figures of forces by their names.

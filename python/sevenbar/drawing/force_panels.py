@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import given_axes, new_figure
-from sevenbar.drawing.joint_curves import panels_across
 from sevenbar.drawing.names import quantity_label, short, shown_name
-from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, QUIET, letters, page_size, stroke
+from sevenbar.drawing.panels import Panels, panels_across, panels_of
+from sevenbar.drawing.style import CIRCUIT_COLOURS, COMPUTED, LINE_STYLES, QUIET, letters, stroke
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.result import Forces, Reaction
@@ -144,52 +142,16 @@ def input_axis(panels: Sequence[Axes], forces: Forces, *, most: int = 9) -> None
     panels[-1].set_xlabel(quantity_label(forces.driver, kind, unit))
 
 
-def stack(
-    count: int,
-    ax: Any,
-    figsize: Sequence[float] | None,
-    style: str | None,
-    height: float,
-) -> tuple[Figure, list[Axes]]:
-    """Panels one above the other, or those of the caller."""
-    if ax is not None:
-        panels = given_axes(ax, count, "torque, then power" if count > 1 else "or none")
-        figure: Figure = panels[0].figure.figure
-        return figure, panels
-    usual = 6.4, height * count + 1.0
-    figure = new_figure(*page_size(style, figsize, usual, wide=False), pads=(0.05, 0.06))
-    grid = figure.subplots(count, 1, sharex=True, squeeze=False)
-    return figure, list(grid.flat)
-
-
-def grid_of(
+def joint_panels(
     count: int, ax: Any, figsize: Sequence[float] | None, style: str | None, *, square: bool = False
-) -> tuple[Figure, list[Axes], int]:
-    """A grid of panels, or those of the caller; and how many are side by side."""
-    if ax is not None:
-        panels = given_axes(ax, count, "one for each joint")
-        figure: Figure = panels[0].figure.figure
-        return figure, panels, count
+) -> Panels:
+    """A panel for each joint, `square` ones for hodographs."""
     across = {1: 1, 2: 2, 4: 2}.get(count, 3) if square else panels_across(count)
     down = math.ceil(count / across)
-    usual = 3.2 * across + 0.4, (3.2 if square else 2.2) * down + 1.0
-    figure = new_figure(*page_size(style, figsize, usual, wide=across > 1), pads=(0.05, 0.06))
-    grid = figure.subplots(down, across, squeeze=False, sharex=not square)
-    panels = list(grid.flat)
-    for axes in panels[count:]:
-        axes.remove()
-    return figure, panels[:count], across
-
-
-def outer_labels(panels: Sequence[Axes], across: int) -> None:
-    """The input below the lowest panels alone, and the quantity at the left ones."""
-    label = panels[-1].get_xlabel()
-    for place, axes in enumerate(panels):
-        last = place + across >= len(panels)
-        axes.tick_params(labelbottom=last)
-        axes.set_xlabel(label if last else "")
-        if place % across:
-            axes.set_ylabel("")
+    page = 3.2 * across + 0.4, (3.2 if square else 2.2) * down + 1.0
+    return panels_of(
+        count, ax, "one for each joint", page, across=across, figsize=figsize, style=style, sharex=not square
+    )
 
 
 def chosen_reactions(forces: Forces, joints: Sequence[str] | None) -> list[Reaction]:

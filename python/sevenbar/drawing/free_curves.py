@@ -11,6 +11,7 @@ from sevenbar.drawing.figure import new_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, page_size, styled
 from sevenbar.forces.free_motion.result import FreeMotion
+from sevenbar.text.words import say
 
 
 def free_figure(
@@ -27,12 +28,16 @@ def free_figure(
         panels[0].plot(found.time, scale * found.input, color=colour)
         panels[0].set_ylabel(f"{name} [{unit}]")
         panels[1].plot(found.time, scale * found.speed, color=colour)
-        panels[1].set_ylabel(f"speed of {name} [{unit}/s]")
-        parts = (("kinetic", found.kinetic), ("potential", found.potential), ("together", found.energy))
+        panels[1].set_ylabel(say("speed of {joint} [{unit}]", joint=name, unit=f"{unit}/s"))
+        parts = (
+            (say("kinetic"), found.kinetic),
+            (say("potential"), found.potential),
+            (say("sum"), found.energy),
+        )
         for i, (word, values) in enumerate(parts):
             panels[2].plot(found.time, values, color=CIRCUIT_COLOURS[i], ls=LINE_STYLES[i], label=word)
-        panels[2].set_ylabel("energy [J]")
-        panels[2].set_xlabel("time [s]")
+        panels[2].set_ylabel(say("energy [J]"))
+        panels[2].set_xlabel(say("time [s]"))
         panels[2].legend(frameon=False)
-        figure.suptitle(f"{short(found.heading, 60)}\nfree motion")
+        figure.suptitle(f"{short(found.heading, 60)}\n{say('free motion')}")
     return figure

@@ -13,19 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.drawing.figure import (
-    column_label,
-    given_axes,
-    headline,
-    input_label,
-    key_below,
-    new_figure,
-    shown_value,
-    slides,
-    tidy,
-    title_of,
-)
-from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, page_size, stroke, styled
+from sevenbar.drawing.figure import column_label, input_label, shown_value, slides, title_of
+from sevenbar.drawing.panels import panels_across, panels_of
+from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.kinematics.circuits import Circuit
@@ -64,41 +54,17 @@ def joints(
     if not drawn:
         raise RequestError("columns: none given; leave it out to draw all")
     with styled(style):
-        if ax is not None:
-            panels = given_axes(ax, len(drawn), "one for each column")
-            figure: Figure = panels[0].figure.figure
-        else:
-            across = panels_across(len(drawn))
-            down = math.ceil(len(drawn) / across)
-            usual = 3.4 * across + 0.4, 2.0 * down + 1.0
-            figure = new_figure(*page_size(style, figsize, usual, wide=across > 1), pads=(0.05, 0.06))
-            grid = figure.subplots(down, across, sharex=True, squeeze=False)
-            panels = list(grid.flat)[: len(drawn)]
-            for axes in list(grid.flat)[len(drawn) :]:
-                axes.remove()
-        for axes, name in zip(panels, drawn, strict=True):
+        across = panels_across(len(drawn))
+        usual = 3.4 * across + 0.4, 2.0 * math.ceil(len(drawn) / across) + 1.0
+        page = panels_of(
+            len(drawn), ax, "one for each column", usual, across=across, figsize=figsize, style=style
+        )
+        for axes, name in zip(page.axes, drawn, strict=True):
             _panel(axes, motion, name)
-        if ax is not None:
-            return figure
-        for place, axes in enumerate(panels):
-            last = place + across >= len(drawn)
-            axes.tick_params(labelbottom=last)
-            axes.set_xlabel(input_label(motion) if last else "")
-        headline(figure, title, title_of(motion))
-        if legend:
-            lines = [
-                Line2D([], [], **_look(c, 0), label=say("circuit {number}", number=c.index)) for c in motion
-            ]
-            key_below(figure, lines)
-        tidy(figure)
-    return figure
-
-
-def panels_across(count: int) -> int:
-    """Columns of a grid of panels: few empty places, and as high as wide."""
-    return min(
-        (1, 2, 3, 4), key=lambda n: (-count % n) + abs(math.ceil(count / n) - 1.3 * n) + 9 * (n > count)
-    )
+        page.label_lowest()
+        lines = [Line2D([], [], **_look(c, 0), label=say("circuit {number}", number=c.index)) for c in motion]
+        page.finish(title, title_of(motion), lines if legend else [])
+    return page.figure
 
 
 def _panel(axes: Axes, motion: Motion, name: str) -> None:

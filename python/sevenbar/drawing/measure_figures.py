@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -14,17 +13,14 @@ from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import (
     circuits_text,
     given_axes,
-    headline,
     input_label,
-    key_below,
-    new_figure,
     shown_value,
     slides,
-    tidy,
     title_of,
     title_text,
 )
 from sevenbar.drawing.page import page_of_one, prepare_box
+from sevenbar.drawing.panels import coinciding, panels_of
 from sevenbar.drawing.scene import bars, put, shown_places, stage
 from sevenbar.drawing.skeleton import skeleton
 from sevenbar.drawing.space import ViewAxes, box_round
@@ -68,44 +64,31 @@ def transmission(
         'transmission angle [deg]'
     """
     chosen_circuit(motion, 0)
-    groups: list[tuple[list[int], Floats, Floats]] = []
+    lines: list[tuple[int, Floats, Floats]] = []
     for circuit in motion:
         angles = circuit.transmission_angle
-        if angles is None:
-            continue
-        path = walk(circuit)
-        across = shown_value(motion, motion.input, path.input)
-        values = np.degrees(angles[path.rows])
-        for numbers, places, others in groups:
-            if others.shape == values.shape and all(
-                np.allclose(one, other, rtol=0, atol=SAME_ANGLE, equal_nan=True)
-                for one, other in ((places, across), (others, values))
-            ):
-                numbers.append(circuit.index)
-                break
-        else:
-            groups.append(([circuit.index], across, values))
-    if not groups:
+        if angles is not None:
+            path = walk(circuit)
+            across = shown_value(motion, motion.input, path.input)
+            lines.append((circuit.index, across, np.degrees(angles[path.rows])))
+    if not lines:
         raise RequestError(
             "transmission: no circuit of this linkage has a transmission angle; nothing to draw"
         )
     with styled(style):
-        if ax is None:
-            figure = new_figure(*page_size(style, figsize, (6.4, 3.6), wide=False), pads=(0.05, 0.06))
-            axes: Axes = figure.subplots()
-        else:
-            (axes,) = given_axes(ax, 1, "or none")
-            figure = axes.figure.figure
+        page = panels_of(1, ax, "or none", (6.4, 3.6), figsize=figsize, style=style)
+        (axes,) = page.axes
         axes.grid(True)
         axes.set_axisbelow(True)
-        for place, (numbers, across, values) in enumerate(groups):
-            colour = CIRCUIT_COLOURS[numbers[0] % len(CIRCUIT_COLOURS)]
+        for place, group in enumerate(coinciding(lines, _alike)):
+            numbers, (first, across, values) = [number for number, *_ in group], group[0]
+            colour = CIRCUIT_COLOURS[first % len(CIRCUIT_COLOURS)]
             look: dict[str, Any] = {"color": colour, "ls": LINE_STYLES[place % len(LINE_STYLES)]}
             axes.plot(across, values, lw=1.6 * stroke(), label=circuits_text(numbers), **look)
         axes.axhline(
             RECOMMENDED, color=QUIET, lw=0.9 * stroke(), ls=":", label=say("{angle:g}°", angle=RECOMMENDED)
         )
-        ends = np.concatenate([across for _, across, _ in groups])
+        ends = np.concatenate([across for _, across, _ in lines])
         if np.ptp(ends) > 0:
             axes.set_xlim(ends.min(), ends.max())
         axes.set_ylim(0, 90)
@@ -114,12 +97,16 @@ def transmission(
             axes.xaxis.set_major_locator(DegreeLocator(9))
         axes.set_xlabel(input_label(motion))
         axes.set_ylabel(say("transmission angle [deg]"))
-        if ax is None:
-            headline(figure, title, title_of(motion))
-            if legend:
-                key_below(figure, axes.get_legend_handles_labels()[0])
-            tidy(figure)
-    return figure
+        page.finish(title, title_of(motion), axes.get_legend_handles_labels()[0] if legend else [])
+    return page.figure
+
+
+def _alike(first: tuple[int, Floats, Floats], second: tuple[int, Floats, Floats]) -> bool:
+    """Whether the curves of two circuits are one line."""
+    return all(
+        one.shape == other.shape and np.allclose(one, other, rtol=0, atol=SAME_ANGLE, equal_nan=True)
+        for one, other in zip(first[1:], second[1:], strict=True)
+    )
 
 
 def axodes(

@@ -16,23 +16,20 @@ from matplotlib.ticker import MaxNLocator
 from sevenbar.arrays import Floats
 from sevenbar.drawing.figure import (
     circuits_text,
-    given_axes,
-    headline,
     input_label,
-    key_below,
-    new_figure,
     note,
     range_drawn,
     shown_value,
     slides,
-    tidy,
     title_of,
 )
 from sevenbar.drawing.names import handy_unit, quantity_label
-from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, page_size, stroke, styled
+from sevenbar.drawing.panels import coinciding, panels_of
+from sevenbar.drawing.style import CIRCUIT_COLOURS, LINE_STYLES, QUIET, stroke, styled
 from sevenbar.drawing.ticks import NATURAL_ANGLE, DegreeLocator, settle, widen
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import walk
 from sevenbar.text.words import say
@@ -108,22 +105,18 @@ def passes(motion: Motion) -> list[DrawnPass]:
 def drawn_once(motion: Motion, drawn: Sequence[DrawnPass]) -> list[DrawnPass]:
     """The passes without those that lie on another: one line, whose label names all its circuits."""
     near = SAME_CURVE * (drawn[0].circuit.size if drawn and slides(motion, motion.output) else 1.0)
-    groups: list[list[DrawnPass]] = []
-    for line in drawn:
-        for group in groups:
-            first = group[0]
-            if (
-                first.circuit is not line.circuit
-                and first.angle.shape == line.angle.shape
-                and all(
-                    np.allclose(getattr(first, name), getattr(line, name), rtol=0, atol=near, equal_nan=True)
-                    for name in ("input", "time", "angle")
-                )
-            ):
-                group.append(line)
-                break
-        else:
-            groups.append([line])
+
+    def alike(first: DrawnPass, line: DrawnPass) -> bool:
+        return (
+            first.circuit is not line.circuit
+            and first.angle.shape == line.angle.shape
+            and all(
+                np.allclose(getattr(first, name), getattr(line, name), rtol=0, atol=near, equal_nan=True)
+                for name in ("input", "time", "angle")
+            )
+        )
+
+    groups = coinciding(drawn, alike)
     made = []
     for place, group in enumerate(groups):
         label = circuits_text([line.circuit.index for line in group])
@@ -176,33 +169,32 @@ def curves(
     )
     with styled(style):
         drawn = drawn_once(motion, passes(motion))
-        if ax is None:
-            tall = 0.6 + 2.4 * len(quantities)
-            wide = 6.4 if len(columns) == 1 else 9.8
-            figure = new_figure(
-                *page_size(style, figsize, (wide, tall), wide=len(columns) > 1), pads=(0.05, 0.06)
-            )
-            grid = figure.subplots(len(quantities), len(columns), sharex="col", sharey="row", squeeze=False)
-        else:
-            found = given_axes(ax, len(quantities), "one for each of the quantities")
-            grid, figure = np.array(found, dtype=object)[:, None], found[0].figure.figure
+        page = panels_of(
+            len(quantities) * len(columns),
+            ax,
+            "one for each of the quantities",
+            (6.4 if len(columns) == 1 else 9.8, 0.6 + 2.4 * len(quantities)),
+            across=len(columns),
+            figsize=figsize,
+            style=style,
+            sharex="col",
+            sharey="row",
+        )
+        grid = np.array(page.axes, dtype=object).reshape(-1, len(columns))
         cut = False
         for row, quantity in enumerate(quantities):
             for column, over in enumerate(columns):
                 panel(grid[row, column], motion, drawn, quantity, over)
             cut |= _cut(grid[row, 0], motion, drawn, quantity)
-        if ax is not None:
-            return figure
-        for axes in grid.flat:
-            axes.label_outer()
-        if against == "both" and turning:
-            _time_above(grid[0, 0], motion, drawn[0])
-        figure.align_ylabels()
-        headline(figure, title, title_of(motion))
-        if legend:
-            key_below(figure, curve_keys(grid[:, 0], drawn), note(motion, cut))
-        tidy(figure)
-    return figure
+        if page.own:
+            for axes in page.axes:
+                axes.label_outer()
+            if against == "both" and turning:
+                _time_above(grid[0, 0], motion, drawn[0])
+            page.figure.align_ylabels()
+            keys = curve_keys(grid[:, 0], drawn) if legend else []
+            page.finish(title, title_of(motion), keys, heading=note(motion, cut))
+    return page.figure
 
 
 def panel(axes: Axes, motion: Motion, drawn: Sequence[DrawnPass], quantity: str, over: str) -> None:

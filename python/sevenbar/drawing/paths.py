@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.drawing.figure import (
     CUT,
     given_axes,
@@ -46,7 +46,8 @@ from sevenbar.drawing.style import (
 from sevenbar.drawing.ticks import DegreeLocator
 from sevenbar.drawing.view import Asked, Projection, view_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Integers, Trace
+from sevenbar.kinematics.circuit_values import Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 from sevenbar.kinematics.poses import walk
 from sevenbar.text.words import say

@@ -18,7 +18,7 @@ from sevenbar.export.mass import MASSLESS, BodyMass, has_masses, masses
 from sevenbar.export.parts import Assembly, Ball, Rod, Solid, frame_of, length_of
 from sevenbar.export.pose import Pose
 from sevenbar.kinematics.joints import KINDS, Step
-from sevenbar.kinematics.rigid import about, half_turn, inverse
+from sevenbar.kinematics.rigid import about, half_turn, inverse, placed
 from sevenbar.kinematics.rigid import pose as matrix
 
 #: The names ADAMS has for length units; micrometres are written in millimetres.
@@ -71,8 +71,7 @@ class _AdamsCommands:
         for point in self.linkage.points:
             # from how the file writes a point to its link's own frame; that of the ground is the report frame
             body = point.link - 1
-            frame = self.linkage.point_frames[body]
-            place = frame[:3, :3] @ np.array(point.at) + frame[:3, 3]
+            place = placed(self.linkage.point_frames[body], point.at)
             self.marker(body, f"point_{_word(point.name, 'p')}", matrix(np.eye(3), place))
         self._motion(drive)
         self.forces.add(self.input)

@@ -145,7 +145,7 @@ class AdamsForces:
 
 def _turns(linkage_pose: Pose) -> bool:
     linkage = linkage_pose.linkage
-    return linkage.column_kinds[linkage_pose.circuit.input_column] == "turn"
+    return linkage.turns(linkage_pose.circuit.input_column)
 
 
 def file_scale(unit: str) -> float:

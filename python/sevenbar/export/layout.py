@@ -11,10 +11,9 @@ from itertools import product
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.export.parts import Assembly, Ball, Bar, Seat, assemble, hub_height
 from sevenbar.export.pose import Pose
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.joints import Shape
 
 #: Sweeps over all joints; most layouts no longer change after two.

@@ -11,8 +11,9 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.drawing.skeleton import Skeleton, skeleton_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import Motion, Solvable, chosen_circuit
 from sevenbar.kinematics.poses import frames_along, joint_frames
 
@@ -118,7 +119,7 @@ def _travel(linkage: Loop, q: Floats) -> Floats:
 
 def _no_pose(motion: Motion, circuit: Circuit, at: float) -> RequestError:
     linkage = motion.linkage
-    turns = linkage.column_kinds[circuit.input_column] == "turn"
+    turns = linkage.turns(circuit.input_column)
     name = linkage.columns[circuit.input_column]
 
     def written(value: float) -> str:

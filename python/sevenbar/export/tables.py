@@ -123,8 +123,7 @@ def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
     """
     linkage = motion.linkage
     length = "m" if units == "si" else linkage.length_unit
-    sliding = dict(zip(linkage.columns, linkage.column_kinds, strict=True))[motion.input] == "slide"
-    speed = motion.speed * (_scale(motion, units) if sliding else 1.0)
+    speed = motion.speed * (1.0 if linkage.turns(motion.input) else _scale(motion, units))
     return {
         "format": 1,
         "linkage": {"name": linkage.name, "kind": linkage.kind},
@@ -149,8 +148,7 @@ def note(motion: Motion, units: Units, *, flat: bool = False) -> dict[str, Any]:
 def circuit_arrays(motion: Motion, circuit: Circuit, units: Units) -> dict[str, Any]:
     """The rows of a circuit: time, status, pass, input, output, joints and rates, points, closure error."""
     scale = _scale(motion, units)
-    slides = [kind == "slide" for kind in motion.linkage.column_kinds]
-    factors = np.where(slides, scale, 1.0)
+    factors = np.where(motion.linkage.turning, 1.0, scale)
     arrays: dict[str, Any] = {
         "time": circuit.time,
         "status": circuit.status,

@@ -107,7 +107,7 @@ def loop(assembly: Assembly, path: Path) -> dict[str, Any]:
     scale = LENGTHS[linkage.length_unit]
     joint = linkage.joints[-1]
     count = len(linkage.joints)
-    factors = np.where([kind == "slide" for kind in linkage.column_kinds], scale, 1.0)
+    factors = np.where(linkage.turning, 1.0, scale)
     frames = {assembly.bodies[count - 2]: linkage.links[-1], "ground": linkage.ground}
     columns, angle = joint.columns, joint.angle
     if joint.backwards:

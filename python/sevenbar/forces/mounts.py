@@ -9,9 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 from sevenbar.forces.directions import direction_text, tidied
 
 #: A singular value below this part of the greatest is rounding, as for mobility.
@@ -50,7 +49,7 @@ class Acting:
     """The columns (rows, 4) of every link, root mean square over the cycle, and what of them acts."""
 
     columns: list[Floats]
-    used: npt.NDArray[np.bool_]
+    used: Booleans
     mass_acts: list[bool]
     greatest: float
     rank: int

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats, Integers, Words
 from sevenbar.curves.cycle_series import CycleSeries
 from sevenbar.errors import RequestError, ends_here
 from sevenbar.forces.bodies import Body
@@ -19,7 +19,7 @@ from sevenbar.forces.sizing import Sizing, sizing
 from sevenbar.text.printing import Drawable, Printed
 
 #: Which rows are meant: a mask, their numbers or a slice.
-Rows = npt.NDArray[np.bool_] | npt.NDArray[np.integer[Any]] | slice
+Rows = Booleans | npt.NDArray[np.integer[Any]] | slice
 
 #: The components of a reaction, in the frame of its joint, whose z is the joint's axis.
 COMPONENTS = ("Mx", "My", "Mz", "Fx", "Fy", "Fz")
@@ -46,7 +46,7 @@ class Reaction(Printed):
     moment: Floats
     at: Floats
     axes: Floats
-    determinate: npt.NDArray[np.bool_]
+    determinate: Booleans
     known: Floats
     known_values: Floats
 
@@ -85,8 +85,8 @@ class Forces(Drawable):
     input: Floats
     time: Floats
     speed: Floats
-    status: npt.NDArray[np.str_]
-    branch: npt.NDArray[np.int64]
+    status: Words
+    branch: Integers
     torque: Floats
     power: Floats
     kinetic: Floats

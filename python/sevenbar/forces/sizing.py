@@ -18,9 +18,8 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_number
+from sevenbar.arrays import Booleans, Floats, finite_number
 from sevenbar.curves.curve import Curve, Peak, greatest, mean
 from sevenbar.curves.cycle_series import cycle_series
 from sevenbar.curves.pieces import pieces
@@ -53,7 +52,7 @@ class Wrenches(Protocol):
         ...
 
     @property
-    def determinate(self) -> npt.NDArray[np.bool_]:
+    def determinate(self) -> Booleans:
         """Whether equilibrium determines each part."""
         ...
 
@@ -232,9 +231,7 @@ def flywheel(fluctuation: float, speed: float, unevenness: float) -> float:
     return fluctuation / (unevenness * speed**2)
 
 
-def _bearing(
-    every: Curve, units: Floats, known: npt.NDArray[np.bool_], wrenches: Wrenches, start: int
-) -> Bearing:
+def _bearing(every: Curve, units: Floats, known: Booleans, wrenches: Wrenches, start: int) -> Bearing:
     burdens = {}
     for name, part in PARTS.items():
         columns = tuple(start + i for i in part)

@@ -16,11 +16,15 @@ from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Loading
 from sevenbar.forces.result import Forces
-from sevenbar.kinematics.circuits import Circuit, Extremes, Law
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.extents import Allowed, BallCone, Clearance, JointRange
 from sevenbar.kinematics.geometry import Point
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.loaded import loading_with
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.plane_and_sphere import plane_of
+from sevenbar.kinematics.stops import Cone
 from sevenbar.kinematics.transmission import best_row, transmission_angle, transmission_extremes
 
 if TYPE_CHECKING:
@@ -126,6 +130,43 @@ class LinkageAnswers:
 
     def _loading(self, given: Mapping[str, Any]) -> Loading:
         return loading_with(self.linkage, **given) if given else self.linkage.loading
+
+    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
+        """The range of every column but a ball's, by its name."""
+        from sevenbar.kinematics.circuit_extents import joint_ranges
+
+        return joint_ranges(self.linkage, circuit)
+
+    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
+        """How far balls and universal joints are bent, by name."""
+        from sevenbar.kinematics.circuit_extents import ball_cones
+
+        return ball_cones(self.linkage, circuit)
+
+    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
+        """How far one is bent between directions that are given."""
+        from sevenbar.kinematics.circuit_extents import cone_of
+
+        named = any(value is not None for value in given.values())
+        return cone_of(self.linkage, circuit, joint, Cone(**given) if named else None)
+
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """The bend of each ball and universal joint on the rows, by name."""
+        from sevenbar.kinematics.circuit_extents import bends
+
+        return bends(self.linkage, circuit)
+
+    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
+        """The least distances of links that share no joint."""
+        from sevenbar.kinematics.circuit_extents import clearances
+
+        return clearances(self.linkage, circuit)
+
+    def allowed(self, circuit: Circuit) -> Allowed:
+        """What part of a circuit is within the stops."""
+        from sevenbar.kinematics.allowed import allowed
+
+        return allowed(self.linkage, circuit)
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
         """Places (..., 3) of the report frame in the plane of a planar loop (..., 2), `None` for others."""

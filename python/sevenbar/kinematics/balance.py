@@ -11,6 +11,7 @@ Source: docs/theory_forces.md, (18).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from sevenbar.forces.mounts import Mount
 from sevenbar.forces.result import Forces
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.link_bodies import joint_places, refuse_no_link
+from sevenbar.kinematics.link_motion import rates_of_frame
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.text.units import LENGTHS
 
@@ -74,17 +76,12 @@ def unit_shaking(linkage: Solvable, circuit: Circuit, link: int) -> Floats:
     Source: docs/theory_forces.md, (18).
     """
     metre = LENGTHS[linkage.length_unit]
-    # far points, so that differences lose nothing
-    ends = [np.zeros(3), *(circuit.size * np.eye(3))]
-    traces = [circuit.point(link, (float(x), float(y), float(z))) for x, y, z in ends]
-    place, acceleration = traces[0].position, traces[0].acceleration
+    frame = rates_of_frame(partial(circuit.point, link), circuit.size)
+    (place, axes), (acceleration, axes_rate) = frame("position"), frame("acceleration")
     unit = np.empty((len(place), 4, 6))
     unit[:, 3, :3], unit[:, 3, 3:] = -(metre**2) * np.cross(place, acceleration), -metre * acceleration
-    for j, end in enumerate(traces[1:]):
-        along, second = (
-            (end.position - place) / circuit.size,
-            (end.acceleration - acceleration) / circuit.size,
-        )
+    for j in range(3):
+        along, second = axes[:, :, j], axes_rate[:, :, j]
         unit[:, j, :3] = -(metre**2) * (np.cross(place, second) + np.cross(along, acceleration))
         unit[:, j, 3:] = -metre * second
     return unit

@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.kinematics.general import expanded, merged, size_of
 from sevenbar.kinematics.geometry import Loop, following_coupler
 from sevenbar.text.printing import Printed
@@ -64,7 +63,7 @@ class Motions(Printed):
     (c,) its measures by name as `measures.MEASURES` has them, NaN where there is none.
     """
 
-    clear: npt.NDArray[np.bool_]
+    clear: Booleans
     types: MotionTypes
     limits: Floats
     circuits: Integers
@@ -124,12 +123,11 @@ def loop_motions(linkages: Sequence[Loop], input: int, output: int, samples: int
         threads,
     )
     linkage, circuit = _numbered(raw.circuits)
-    kinds = linkages[0].column_kinds
     types = np.array(raw.motion_types, dtype=object)
     own = np.array(raw.circuit_types, dtype=object)
-    columns = _columns(raw.measures, own, turns=kinds[output] == "turn")
+    columns = _columns(raw.measures, own, turns=linkages[0].turns(output))
     clear = (raw.status == DRIVEN) & (raw.circuits > 0)
-    limits = _limits(raw, linkage, linkages, turns=kinds[input] == "turn")
+    limits = _limits(raw, linkage, linkages, turns=linkages[0].turns(input))
     return Motions(clear, types, limits, raw.circuits, linkage, circuit, columns)
 
 

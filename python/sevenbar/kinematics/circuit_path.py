@@ -17,10 +17,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.along import Along
 from sevenbar.curves.stationary import coefficients, nodes
 from sevenbar.errors import RequestError
@@ -63,6 +62,10 @@ NEAR_CHANGE_POINT = 0.05
 ENOUGH_ROWS = 180
 
 
+class NotFollowedError(RequestError):
+    """A circuit cannot be followed along its own length."""
+
+
 @dataclass(frozen=True, eq=False)
 class CircuitPath:
     """A circuit by its arc length s, from 0 to `length`; closed ones go on by whole lengths.
@@ -73,7 +76,7 @@ class CircuitPath:
     """
 
     poses: Along
-    drivers: npt.NDArray[np.int64]
+    drivers: Integers
     gain: Floats
     closed: bool
     tail: float
@@ -119,7 +122,7 @@ class PathBuilder:
         rows = numbers.poses(circuit.q)
         rows = rows[np.isfinite(rows).all(axis=1)]
         if len(rows) < 4:
-            raise RequestError("circuit: it has no rows to follow; ask a motion with more samples")
+            raise NotFollowedError("circuit: it has no rows to follow; ask a motion with more samples")
         # turns of a ball that holds a spin come from arctangents
         spun = [c for joint in numbers.spun for c in numbers.word.freedoms[joint][0].columns]
         rows[:, spun] = np.unwrap(rows[:, spun], axis=0)
@@ -212,9 +215,9 @@ class PathBuilder:
             for (a, b), column, piece in zip(todo, charts, found, strict=True):
                 last = division == DIVISIONS
                 if piece is None and last:
-                    raise RequestError(
-                        "circuit: it cannot be followed closely enough for a free motion; ask a motion with "
-                        "more samples"
+                    raise NotFollowedError(
+                        "circuit: it cannot be followed closely enough along its own length; ask a motion "
+                        "with more samples"
                     )
                 if piece is None or (self._tail(piece[1]) > RESOLVED and not last):
                     rough += self._divided(a, b, centres)

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from itertools import combinations
+from functools import cached_property, partial
 from typing import Any, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, Integers, Words, counted, finite_array
 from sevenbar.errors import RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.counterweights import Balance
@@ -20,162 +19,17 @@ from sevenbar.forces.free_motion.equilibria import Equilibrium
 from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.forces.result import Forces
+from sevenbar.kinematics.circuit_values import DeadCentre, Extremes, Sensitivity, Tally, Trace
+from sevenbar.kinematics.extents import Allowed, BallCone, Clearance, JointRange, WithExtents
 from sevenbar.kinematics.geometry import Point
-from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
-from sevenbar.kinematics.rigid import axial, pose
+from sevenbar.kinematics.instant_centres import InstantCentres, instant_centres
+from sevenbar.kinematics.link_motion import LinkMotion, link_motion
+from sevenbar.kinematics.rigid import placed, pose
 from sevenbar.kinematics.screw_axes import ScrewAxes, Twists, screw_axes
 from sevenbar.text.printing import Printed
 
-Integers = npt.NDArray[np.int64]
-
-Words = npt.NDArray[np.str_]
-
-#: What a row can hold, by the core's number: all; the pose but no rates (two reasons); nothing; all but the
-#: balls' turns, which a row with the pose but no rates may lack, too.
-STATUSES = ("ok", "dead-centre", "change-point", "no-solution", "turns-undefined")
-
 #: An output that moves less than this compared with the input [rad, or relative to the size] rests.
 AT_REST = 1e-12
-
-#: The status of a row of a trace on the coupler where the spin's rule names no direction.
-SPIN_UNDEFINED = "spin-undefined"
-
-
-@dataclass(frozen=True)
-class Extremes:
-    """The lowest and the highest value of a quantity, and the input [rad] at which each occurs."""
-
-    lowest: float
-    lowest_at: float
-    highest: float
-    highest_at: float
-
-
-@dataclass(frozen=True)
-class DeadCentre:
-    """A pose where the input (`kind` "input") or the output ("output") stands still.
-
-    `input` and `output` are the two angles [rad], `branch` the pass on which it lies, `condition` how much
-    a relative change of the squared dimensions is magnified in its place.
-    """
-
-    kind: Literal["input", "output"]
-    input: float
-    output: float
-    branch: int
-    condition: float
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Trace(Printed):
-    """A point of a link along a circuit, in the report frame; arrays of shape (n, 3).
-
-    `position` [length], `velocity` [length/s], `acceleration` [length/s^2], `jerk` [length/s^3]. Rows
-    without a value are NaN, with a status.
-    """
-
-    position: Floats
-    velocity: Floats
-    acceleration: Floats
-    jerk: Floats
-    status: Words
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Sensitivity(Printed):
-    """Derivatives of a circuit by the k numbers of its linkage's description, on its n rows.
-
-    `names` and `units` (k,) are those of the numbers, as in the file. `position` (n, columns, k) [rad, or
-    length, by the number's unit], `velocity` and `acceleration` by time at the circuit's own input, which
-    stays as it is; of a ball's turns there is the position only. `points` has each named point's derivative
-    (n, 3, k), `point_velocities` that of its velocity. NaN in rows without rates (`status` says why), for
-    numbers that open the loop if they change alone (`opening`), and for what spins idly.
-    """
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    columns: tuple[str, ...]
-    position: Floats
-    velocity: Floats
-    acceleration: Floats
-    points: Mapping[str, Floats]
-    point_velocities: Mapping[str, Floats]
-    opening: tuple[str, ...]
-    status: Words
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Law(Printed):
-    """An input law: time [s], input [rad] and its derivatives by time, each of shape (n,).
-
-    Laws of the same numbers are equal; its arrays are its own and read-only.
-    """
-
-    t: Floats
-    q: Floats
-    dq: Floats
-    ddq: Floats
-    dddq: Floats
-
-    def __post_init__(self) -> None:
-        for name in ("t", "q", "dq", "ddq", "dddq"):
-            array = np.array(getattr(self, name), dtype=np.float64)
-            array.setflags(write=False)
-            object.__setattr__(self, name, array)
-
-    def __reduce__(self) -> tuple[type[Law], tuple[Floats, ...]]:
-        return Law, (self.t, self.q, self.dq, self.ddq, self.dddq)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Law):
-            return NotImplemented
-        return np.array_equal(self.t, other.t) and np.array_equal(self.table, other.table)
-
-    def __hash__(self) -> int:
-        # equal zeros differ in their sign bit, which adding 0 takes away
-        return hash(((self.t + 0.0).tobytes(), (self.table + 0.0).tobytes()))
-
-    @staticmethod
-    def of(
-        t: npt.ArrayLike, q: npt.ArrayLike, dq: npt.ArrayLike, ddq: npt.ArrayLike, dddq: npt.ArrayLike = 0.0
-    ) -> Law:
-        """A law from array-likes; a single number stands for every sample.
-
-        >>> import numpy as np
-        >>> import sevenbar as sb
-        >>> t = np.linspace(0, 1, 50)
-        >>> law = sb.Law.of(t, q=3 * t**2, dq=6 * t, ddq=6)
-        >>> sb.load("rssr").motion(law=law).circuits[0].time.size
-        50
-        """
-        arrays = {"t": t, "q": q, "dq": dq, "ddq": ddq, "dddq": dddq}
-        checked = {name: finite_array(name, values) for name, values in arrays.items()}
-        count = checked["t"].size
-        if count == 0:
-            raise RequestError("t: a law needs at least one sample")
-        for name, values in checked.items():
-            if values.size not in (1, count):
-                raise RequestError(
-                    f"{name}: {values.size} values where t has {count}; give {count}, or one number"
-                )
-        if np.any(np.diff(checked["t"]) <= 0):
-            raise RequestError("t: times must rise from sample to sample")
-        return Law(**{name: np.broadcast_to(values, (count,)) for name, values in checked.items()})
-
-    @property
-    def table(self) -> Floats:
-        """The input and its derivatives, (n, 4)."""
-        return np.column_stack([self.q, self.dq, self.ddq, self.dddq])
-
-
-@dataclass(frozen=True)
-class Tally:
-    """How many rows a circuit has, how many of each status, and their greatest closure error [length]."""
-
-    rows: int
-    statuses: Mapping[str, int]
-    #: NaN where no row has one.
-    residual: float
 
 
 class Answers(Protocol):
@@ -201,6 +55,30 @@ class Answers(Protocol):
         self, circuit: Circuit, links: Sequence[int], given: Mapping[str, Any], how: Mapping[str, Any]
     ) -> Balance:
         """The counterweights on links for the least shaking, with what acts given, or the linkage's own."""
+        ...
+
+    def joint_ranges(self, circuit: Circuit) -> Mapping[str, JointRange]:
+        """The range of every column but a ball's."""
+        ...
+
+    def ball_cones(self, circuit: Circuit) -> Mapping[str, BallCone]:
+        """How far balls and universal joints are bent."""
+        ...
+
+    def ball_cone(self, circuit: Circuit, joint: str, given: Mapping[str, Any]) -> BallCone:
+        """How far one is bent between directions that are given."""
+        ...
+
+    def bends(self, circuit: Circuit) -> Mapping[str, Floats]:
+        """The bend of each on its rows."""
+        ...
+
+    def clearances(self, circuit: Circuit) -> tuple[Clearance, ...]:
+        """The least distances of links that share no joint."""
+        ...
+
+    def allowed(self, circuit: Circuit) -> Allowed:
+        """What part of it is within the stops."""
         ...
 
     def plane_coordinates(self, places: Floats) -> Floats | None:
@@ -230,7 +108,7 @@ def _given(**acting: object) -> dict[str, object]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Circuit(Printed):
+class Circuit(Printed, WithExtents):
     """One connected motion, row by row along it.
 
     `q`, `dq`, `ddq`, `dddq` hold one column for each one-freedom joint (`columns` names them), (n,
@@ -347,11 +225,10 @@ class Circuit(Printed):
     @cached_property
     def tally(self) -> Tally:
         """What there is to say of the rows as a whole."""
-        words, counts = np.unique(self.status, return_counts=True)
         known = self.residual[np.isfinite(self.residual)]
         return Tally(
             len(self.time),
-            {str(word): int(count) for word, count in zip(words, counts, strict=True)},
+            counted(self.status),
             float(known.max()) if known.size else math.nan,
         )
 
@@ -419,7 +296,7 @@ class Circuit(Printed):
         place = finite_array("at", at)
         if place.size != 3:
             raise RequestError(f"at: {place.size} numbers; give three")
-        return self._point(int(link), frame[:3, :3] @ place + frame[:3, 3])
+        return self._point(int(link), placed(frame, place))
 
     @ends_here
     def sensitivity(self) -> Sensitivity:
@@ -590,18 +467,7 @@ class Circuit(Printed):
         True
         """
         self._frame(link)
-        # the axes of the link's frame as far points, so that differences lose nothing
-        places = [np.zeros(3), *(self.size * np.eye(3))]
-        traces = [self._point(int(link), place) for place in places]
-
-        def axes(name: str) -> Floats:
-            origin, *ends = (getattr(trace, name) for trace in traces)
-            return np.stack([(end - origin) / self.size for end in ends], axis=-1)
-
-        turn, rate, second = axes("position"), axes("velocity"), axes("acceleration")
-        back = np.swapaxes(turn, -1, -2)
-        spin = rate @ back
-        return LinkMotion(turn, axial(spin), axial(second @ back + rate @ np.swapaxes(rate, -1, -2)))
+        return link_motion(partial(self._point, int(link)), self.size)
 
     @ends_here
     def screw_axes(self, link: int, relative_to: int | None = None) -> ScrewAxes:
@@ -640,18 +506,7 @@ class Circuit(Printed):
 
         Source: docs/theory_measures.md, (10).
         """
-        if self._answers.plane_coordinates(np.zeros(3)) is None:
-            raise RequestError("instant_centres: the loop is not planar; its links have screw_axes()")
-        count = len(self._frames)
-        found = {}
-        for first, second in combinations(range(1, count + 1), 2):
-            axes = self.screw_axes(first, second)
-            place = self._answers.plane_coordinates(axes.point)
-            assert place is not None
-            slides = np.where((axes.status == "translation")[:, None], axes.direction, np.nan)
-            links = (first, second)
-            found[links] = InstantCentre(links, axes.point, place, slides, axes.status)
-        return InstantCentres(found)
+        return instant_centres(self.screw_axes, len(self._frames), self._answers.plane_coordinates)
 
     def _twists(self, link: int) -> tuple[Twists, Words]:
         """How a link moves, by the frame in which its points are written; and the status of each row."""
@@ -667,16 +522,3 @@ class Circuit(Printed):
             )
         frame: Floats = self._frames[int(link) - 1]
         return frame
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LinkMotion(Printed):
-    """How a link turns along a circuit, in the report frame.
-
-    `rotation` (n, 3, 3), its axes as columns; `velocity` [rad/s] and `acceleration` [rad/s^2] are vectors
-    (n, 3). Rows without a value are NaN.
-    """
-
-    rotation: Floats
-    velocity: Floats
-    acceleration: Floats

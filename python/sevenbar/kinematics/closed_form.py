@@ -8,10 +8,12 @@ from typing import Literal
 import numpy as np
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers, Words
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import SPIN_UNDEFINED, Circuit, Integers, Law, Trace, Words
+from sevenbar.kinematics.circuit_values import SPIN_UNDEFINED, Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.from_core import change_points_from, circuit_from
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import Modes, Motion, Output, Search, Solvable
 from sevenbar.kinematics.sensitivity import sensitivity_of
 

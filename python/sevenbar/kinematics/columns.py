@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.kinematics.geometry import Loop
+
 #: What the unit of a rate of order 0 to 3 ends in.
 RATES = ("", "_s", "_s2", "_s3")
 
@@ -19,6 +26,24 @@ def joint_column(name: str, *, slides: bool, order: int, length: str, angle: str
     """
     unit = length if slides else "rad" if order else angle
     return f"{_whose(name, who)}_{unit}{RATES[order]}"
+
+
+def joint_columns(
+    linkage: Loop, rates: Sequence[Floats], *, length: str, angle: str, scale: float
+) -> dict[str, Floats]:
+    """The columns of all joints: values (n, columns), then their rates, in order.
+
+    Slides are multiplied by `scale`, which makes the unit `length` of them; angles are in `angle`, "deg" or
+    "rad".
+    """
+    found: dict[str, Floats] = {}
+    for order, values in enumerate(rates):
+        for index, name in enumerate(linkage.columns):
+            slides = not linkage.turns(index)
+            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
+            column = values[:, index] * scale if slides else values[:, index]
+            found[head] = np.degrees(column) if head.endswith("_deg") else column
+    return found
 
 
 def point_column(name: str, axis: str, *, order: int, length: str, who: str = "") -> str:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.factors import Place
 from sevenbar.kinematics.geometry import Joint, Loop
-from sevenbar.kinematics.word import Place
 from sevenbar.text.units import ANGLES, examples_of
 
 

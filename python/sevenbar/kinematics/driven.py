@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import Solvable
 
 #: Rows that close up to more than this [relative to the size] are those of a loop whose redundant constraints

@@ -21,6 +21,7 @@ from sevenbar.curves.stationary import coefficients, nodes
 from sevenbar.forces.free_motion.course import EnergyCourse
 from sevenbar.kinematics.circuit_path import TERMS, CircuitPath
 from sevenbar.kinematics.forces import ForceSolver
+from sevenbar.kinematics.path_rows import closed_on
 from sevenbar.text.units import LENGTHS
 
 #: A piece is fine enough where the last terms are below this part of a quantity's greatest value.
@@ -44,9 +45,6 @@ class EnergyBuilder:
         self.numbers = solver.numbers
         self.scales = self.numbers.scales
         self.smooth = np.flatnonzero(~self.numbers.is_ball)
-        spun = {c for joint in self.numbers.spun for c in _columns(solver, joint)}
-        #: Columns of balls that turn freely: their turns may be no polynomials.
-        self.turned = [c for c in np.flatnonzero(self.numbers.is_ball) if c not in spun]
         self.solvers: dict[int, ForceSolver] = {}
         #: The derivatives of all columns but those of balls by arc length, once the course is built.
         self.tangents: Along | None = None
@@ -158,16 +156,7 @@ class EnergyBuilder:
 
     def poses(self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> Floats:
         """Poses of the word (j, columns) at places (j,) on given pieces of the path."""
-        poses = self.path.poses.on(pieces, s)
-        if not self.turned:
-            return poses
-        for driver in np.unique(self.path.drivers[pieces]):
-            mine = np.flatnonzero(self.path.drivers[pieces] == driver)
-            own = poses[mine]
-            closed = self._solver(int(driver)).loop.closed(own[:, driver], own)
-            whole = np.isfinite(closed).all(axis=1)
-            poses[mine[whole]] = closed[whole]
-        return poses
+        return closed_on(self.path, self.numbers, pieces, s, lambda column: self._solver(column).loop)
 
     def _values(self, pieces: np.ndarray[tuple[int], np.dtype[np.int64]], s: Floats) -> tuple[Floats, Floats]:
         """m, U', D, dx/ds, winding and the columns' slopes (j, 5 + k), and the potential (j,), at places."""
@@ -202,11 +191,6 @@ class EnergyBuilder:
         if self.solver.linkage.column_kinds[self.path.input] == "slide":
             out[:, 3] *= LENGTHS[self.solver.linkage.length_unit]
         return out, potential
-
-
-def _columns(solver: ForceSolver, joint: int) -> range:
-    own = solver.linkage.places[joint]
-    return range(own.start, own.stop)
 
 
 def energy_course(solver: ForceSolver, path: CircuitPath) -> EnergyCourse:

@@ -104,7 +104,7 @@ def _solved(solver: ForceSolver, inputs: Floats, q: Floats, speed: float) -> lis
     rates = np.broadcast_to([speed, 0.0], (len(q), 2))
     torque, _, _, wrenches, _, _, _, torque_by, wrenches_by = solver.solved(inputs, q, rates)
     size = solver.size
-    unit = size if solver.linkage.column_kinds[solver.input] == "slide" else size**2
+    unit = size**2 if solver.linkage.turns(solver.input) else size
     return [unit * torque, size * wrenches[:, :, 3:], unit * torque_by, size * wrenches_by[..., 3:]]
 
 

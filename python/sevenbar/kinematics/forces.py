@@ -15,21 +15,20 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
-import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 from sevenbar.errors import RequestError
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring, Three
 from sevenbar.forces.result import OPEN, Forces, Reaction
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven
+from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import half_turn, inverse
+from sevenbar.kinematics.rigid import half_turn, inverse, placed
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
-from sevenbar.kinematics.word import Product
 from sevenbar.text.units import LENGTHS
 
 
@@ -76,8 +75,7 @@ class ForceSolver:
 
     def _place(self, link: int, at: Three) -> tuple[int, Floats, list[tuple[int, Floats]]]:
         steps, product = self._carrier(link)
-        frame = self._frame(link)
-        place = (frame[:3, :3] @ np.asarray(at) + frame[:3, 3]) / self.numbers.size
+        place = placed(self._frame(link), at) / self.numbers.size
         return steps, place, self.loop.twists_of(product) if self.by_numbers else []
 
     def _body(self, link: int, body: Body) -> tuple[int, float, Floats, Floats, list[tuple[int, Floats]]]:
@@ -101,7 +99,7 @@ class ForceSolver:
         column = linkage.column(spring.joint, "joint")
         # stiffness and damping, and the slack value
         unit, value = 1 / self.size**2, 1.0
-        if linkage.column_kinds[column] == "slide":
+        if not linkage.turns(column):
             unit, value = 1 / LENGTHS[linkage.length_unit], 1 / self.numbers.size
         return column, np.array([unit * spring.stiffness, value * spring.length, unit * spring.damping])
 
@@ -149,7 +147,7 @@ class ForceSolver:
         Loads go by the values `inputs` (n,) of the column `by`, the input if it is not given.
         """
         scales = self.numbers.scales
-        turns = self.linkage.column_kinds[self.input if by is None else by] == "turn"
+        turns = self.linkage.turns(self.input if by is None else by)
         factors = [load.factors(inputs, turns=turns) for load in self.loading.loads]
         steps, frames = self.seats
         return _core.reactions(
@@ -179,7 +177,7 @@ def forces_of(solver: ForceSolver, circuit: Circuit, *, at_rest: bool = False) -
         speeds = np.where(np.isfinite(speeds), 0.0, np.nan)
     torque, spin, energies, wrenches, seats, shaking, free, *_ = solver.solved(circuit.input, poses, speeds)
     size, metre = solver.size, LENGTHS[linkage.length_unit]
-    slides = linkage.column_kinds[circuit.input_column] == "slide"
+    slides = not linkage.turns(circuit.input_column)
     torque = torque * (size if slides else size**2)
     speed = speeds[:, 0]
     energies = energies * size**2
@@ -268,7 +266,7 @@ def _in_seat(axes: Floats, place: Floats, wrenches: Floats) -> Floats:
     return np.concatenate([moment @ axes, force @ axes], axis=2)
 
 
-def _known(open_ways: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
+def _known(open_ways: Floats) -> tuple[Floats, Booleans]:
     """What open wrenches (n, k, 6) leave: combinations (n, 6 - k, 6), orthonormal; which components (6,)."""
     rows, count, _ = open_ways.shape
     if not count:

@@ -15,7 +15,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array, finite_number
+from sevenbar.arrays import Floats, Words, finite_array, finite_number
 from sevenbar.errors import RequestError, shown
 from sevenbar.forces.free_motion.conservative import conservative
 from sevenbar.forces.free_motion.course import DAMPING, INPUT, MASS, EnergyCourse
@@ -23,13 +23,15 @@ from sevenbar.forces.free_motion.driven import COARSE, TOLERANCE, Motor, driven
 from sevenbar.forces.free_motion.equilibria import Equilibrium, resting_places
 from sevenbar.forces.free_motion.result import FreeMotion, FreeStates, TurningPoint
 from sevenbar.forces.loading import Loading
-from sevenbar.kinematics.circuit_path import ENOUGH_ROWS, CircuitPath, path_of
-from sevenbar.kinematics.circuits import Circuit, Law, Words
+from sevenbar.kinematics.circuit_path import CircuitPath
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.columns import joint_column
+from sevenbar.kinematics.covered_path import covered_path
 from sevenbar.kinematics.energy_path import EnergyBuilder
 from sevenbar.kinematics.forces import ForceSolver
 from sevenbar.kinematics.free_rows import CourseRows
 from sevenbar.kinematics.joint_text import joint_number, joint_speed
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import Motion, Solvable
 from sevenbar.text.amounts import amount_in
 from sevenbar.text.units import LENGTHS
@@ -60,7 +62,7 @@ class FreeCourse:
     @cached_property
     def path(self) -> CircuitPath:
         """The circuit by its arc length."""
-        return path_of(self.solver.numbers, _covering(self.linkage, self.circuit))
+        return covered_path(self.linkage, self.circuit, self.solver.numbers)
 
     @cached_property
     def builder(self) -> EnergyBuilder:
@@ -178,28 +180,6 @@ def course_of(linkage: Solvable, circuit: Circuit, loading: Loading) -> FreeCour
         course.__dict__["path"] = known[0][1].path
     known.append((key, course))
     return course
-
-
-def _covering(linkage: Solvable, circuit: Circuit) -> Circuit:
-    """A circuit with rows all along it."""
-    whole = circuit.fleeting()
-    if not math.isnan(circuit.speed) and len(whole.q) >= ENOUGH_ROWS:
-        return whole
-    motion = linkage.motion(2 * ENOUGH_ROWS, input=circuit.columns[circuit.input_column])
-    known = whole.q[np.isfinite(whole.q).all(axis=1)]
-    if not len(known):
-        raise RequestError("circuit: none of its rows has a pose")
-    best, nearest = None, math.inf
-    turns = np.array([kind == "turn" for kind in linkage.column_kinds])
-    for each in motion.circuits:
-        off = each.q[:, None] - known[None, :: max(1, len(known) // 8)]
-        off[..., turns] -= math.tau * np.round(off[..., turns] / math.tau)
-        off = np.abs(off / np.where(turns, 1.0, circuit.size)).max(axis=2)
-        farthest = float(np.nanmax(np.nanmin(np.where(np.isfinite(off), off, np.inf), axis=0)))
-        if farthest < nearest:
-            best, nearest = each, farthest
-    assert best is not None
-    return best
 
 
 def equilibria_of(

@@ -13,12 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.curves.along import Along
-from sevenbar.curves.stationary import coefficients, nodes
-from sevenbar.kinematics.circuit_path import TERMS
-from sevenbar.kinematics.circuits import Trace, Words
+from sevenbar.curves.stationary import coefficients
+from sevenbar.kinematics.circuit_values import Trace
 from sevenbar.kinematics.energy_path import EnergyBuilder
+from sevenbar.kinematics.path_rows import grid_of, rows_of
 from sevenbar.kinematics.poses import frames_of
 
 #: A ball whose turns' series end above this [rad] is near a singular pose, where they have no rates.
@@ -34,28 +34,9 @@ class CourseRows:
     @cached_property
     def _places(self) -> tuple[Floats, Floats]:
         """Nodes on the path's pieces (m, terms), and the rows there (m * terms, columns)."""
-        path = self.builder.path
-        edges = path.poses.edges
-        middle, half = (edges[:-1] + edges[1:]) / 2, np.diff(edges) / 2
-        grid = middle[:, None] + half[:, None] * nodes(TERMS)
-        pieces = np.repeat(np.arange(len(middle)), TERMS)
-        return grid, self._rows(self.builder.poses(pieces, grid.ravel()))
-
-    def _rows(self, poses: Floats) -> Floats:
-        """Poses of the word as rows of an analysis; see `Numbers.poses`, whose inverse this is."""
-        numbers = self.builder.numbers
-        rows = poses.copy()
-        values = numbers.values(numbers.nominal)
-        for joint in numbers.spun:
-            a, b = (numbers.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in (0, 1))
-            column = numbers.word.freedoms[joint][0].columns[0]
-            turn = _turned(a, poses[:, column]) @ _turned(b, poses[:, column + 1])
-            middle = -np.arcsin(np.clip(turn[:, 2, 0], -1.0, 1.0))
-            first = np.arctan2(turn[:, 1, 0], turn[:, 0, 0])
-            rows[:, column : column + 3] = np.stack(
-                [first, middle, np.arctan2(turn[:, 2, 1], turn[:, 2, 2])], axis=1
-            )
-        return rows
+        grid, pieces = grid_of(self.builder.path)
+        poses = self.builder.poses(pieces, grid.ravel())
+        return grid, rows_of(self.builder.numbers, poses)
 
     @cached_property
     def columns(self) -> Along:
@@ -152,11 +133,3 @@ def _by_time(
     value, one, two, three = by_s
     v, a, j = (rate[:, None] for rate in rates)
     return value, one * v, two * v**2 + one * a, three * v**3 + 3 * two * v * a + one * j
-
-
-def _turned(axis: Floats, angles: Floats) -> Floats:
-    """Rotations (n, 3, 3) about an axis (3,)."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sines, versines = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
-    return np.asarray(np.eye(3) + sines * cross + versines * (cross @ cross))

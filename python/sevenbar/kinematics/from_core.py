@@ -9,19 +9,10 @@ from functools import partial
 import numpy as np
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import (
-    STATUSES,
-    Circuit,
-    DeadCentre,
-    Extremes,
-    Integers,
-    Law,
-    Sensitivity,
-    Tally,
-    Trace,
-    Words,
-)
+from sevenbar.arrays import Booleans, Floats, Integers, Words
+from sevenbar.kinematics.circuit_values import STATUSES, DeadCentre, Extremes, Sensitivity, Tally, Trace
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import ChangePoint, Count, OpenRange, Search, Solvable
 
 _STATUS_WORDS = np.array(STATUSES)
@@ -96,8 +87,7 @@ def circuit_from(
     turns_back = any(kind == "input" for kind, *_ in raw.dead_centres)
     if len(order) and raw.mode is None and speed < 0 and law is None and raw.turns and not turns_back:
         order = np.append(order[:1], order[:0:-1])
-        turns = np.array([kind == "turn" for kind in linkage.column_kinds])
-        q, dq, ddq, dddq = _backwards(q, turns)[order], dq[order], ddq[order], dddq[order]
+        q, dq, ddq, dddq = _backwards(q, linkage.turning)[order], dq[order], ddq[order], dddq[order]
     status = _STATUS_WORDS[statuses[order]]
     # the pose of a row may be known where a ball's turns are not
     status[(status == "ok") & np.isnan(q).any(axis=1)] = "turns-undefined"
@@ -135,8 +125,8 @@ def circuit_from(
         time_ratio=raw.time_ratio,
         input_column=input_column,
         output_column=output_column,
-        input_turns=linkage.column_kinds[input_column] == "turn",
-        output_turns=linkage.column_kinds[output_column] == "turn",
+        input_turns=linkage.turns(input_column),
+        output_turns=linkage.turns(output_column),
         size=size,
         speed=speed if law is None else math.nan,
         _point=partial(point, order, status),
@@ -147,7 +137,7 @@ def circuit_from(
     )
 
 
-def _backwards(q: Floats, turns: Floats) -> Floats:
+def _backwards(q: Floats, turns: Booleans) -> Floats:
     """The joint values of a circuit that goes round, walked with rising input, as a falling one has them."""
     # what the joints have turned when the circuit closes, which falls when it is run the other way
     ahead = 2 * q[-1] - q[-2] - q[0]

@@ -11,12 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers, Words
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit, Integers, Law, Trace, Words
+from sevenbar.kinematics.circuit_values import Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.from_core import change_points_from, circuit_from, search_from, tally_from
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joints import Z
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.long_circuit import LONG, LongCircuit
 from sevenbar.kinematics.mobility import Mobility, redundant_constraints
 from sevenbar.kinematics.motion import Modes, Motion, Solvable
@@ -180,7 +182,7 @@ class GeneralLoop:
             speed=math.nan if law is not None else speed,
             samples=samples,
             motion_type=raw.motion_type,
-            limits=merged(limits, turns=linkage.column_kinds[column] == "turn", size=self.size),
+            limits=merged(limits, turns=linkage.turns(column), size=self.size),
             change_points=change_points_from(raw, column),
             circuits=circuits,
             search=search_from(raw.search, linkage.columns),

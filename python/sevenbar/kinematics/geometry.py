@@ -12,11 +12,12 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import UNLOADED, Loading
 from sevenbar.kinematics.joints import Freedom, JointKind, Step, X, Z, kind_row
 from sevenbar.kinematics.rigid import about, inverse, pose
+from sevenbar.kinematics.stops import NO_STOPS, Stops
 from sevenbar.text.printing import Drawable
 
 #: How a linkage is written: the RSSR paper's numbers, rows of Denavit-Hartenberg numbers, the same in the
@@ -123,7 +124,7 @@ class Loop(Drawable):
     `dimensions` are the named numbers of the `form` it was written in, `description` that form itself: the
     tables and keys of a file, from which a linkage with other numbers is made. Redundant constraints `agree`
     up to a closure error [rad, or relative to the size], the usual one where it is `None`;
-    `loading` is what acts on it.
+    `loading` is what acts on it, `stops` what keeps it from moving on: they change no motion.
 
     Source: docs/theory.md, (1).
     """
@@ -142,6 +143,7 @@ class Loop(Drawable):
     description: Mapping[str, Any] = field(default_factory=dict, repr=False)
     loading: Loading = field(default=UNLOADED, repr=False)
     agree: float | None = None
+    stops: Stops = field(default=NO_STOPS, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.base, self.ground, self.links, self.point_frames):
@@ -190,10 +192,21 @@ class Loop(Drawable):
         """What each column is: an angle [rad] or a length."""
         return tuple(freedom for joint in self.joints for freedom in joint.row.freedoms)
 
+    @cached_property
+    def turning(self) -> Booleans:
+        """Whether each column is an angle, not a length, (columns,)."""
+        turning = np.array([kind == "turn" for kind in self.column_kinds])
+        turning.setflags(write=False)
+        return turning
+
+    def turns(self, column: int | str) -> bool:
+        """Whether a column, by its number or name, is an angle, not a length."""
+        place = self.columns.index(column) if isinstance(column, str) else column
+        return bool(self.turning[place])
+
     def unit_of(self, column: int | str) -> str:
         """The unit of a column's values, by its number or name: "rad", or the length unit."""
-        place = self.columns.index(column) if isinstance(column, str) else column
-        return "rad" if self.column_kinds[place] == "turn" else self.length_unit
+        return "rad" if self.turns(column) else self.length_unit
 
     @property
     def added_points(self) -> tuple[Point, ...]:
@@ -224,6 +237,22 @@ class Loop(Drawable):
             raise RequestError(f"{key}: {no_joint(name, known)}")
         return self.columns.index(name)
 
+    def input_column(self, name: str | None = None, key: str = "input") -> int:
+        """The place of the input's column: that named by the caller under a key, or the drive's."""
+        return self.column(self.drive.joint if name is None else name, key)
+
+    def end_columns(self, input: str | None = None, output: str | None = None) -> tuple[int, int]:
+        """The places of the columns of input and output, those named or the drive's; two different ones."""
+        first = self.input_column(input)
+        if output is None:
+            return first, self.other_column(first)
+        second = self.column(output, "output")
+        if second == first:
+            raise RequestError(
+                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
+            )
+        return first, second
+
     def other_column(self, column: int) -> int:
         """The output where only the input was named: the drive's, else that of the last other joint."""
         if self.columns[column] != self.drive.output:
@@ -236,18 +265,19 @@ class Loop(Drawable):
         name = last[-1].first if last else self.drivable(column)[-1]
         return self.columns.index(name)
 
+    def driven_alike(self, column: int) -> bool:
+        """Whether a column turns or slides as the drive's does, so that the drive's speed can be its own."""
+        return self.turns(self.drive.joint) == self.turns(column)
+
     def speed_of(self, column: int) -> float:
         """The speed [rad/s, or length/s] at which a column drives where none is given: the drive's, or 1."""
-        drives = self.columns.index(self.drive.joint)
-        return self.drive.speed if self.column_kinds[drives] == self.column_kinds[column] else 1.0
+        return self.drive.speed if self.driven_alike(column) else 1.0
 
     def speed_written(self, column: int) -> str:
         """That speed as the description has it, "3000 rpm"; empty where it is a number, or none."""
-        drives = self.columns.index(self.drive.joint)
         drive = self.description.get("drive", {})
         written = drive.get("speed", "") if isinstance(drive, Mapping) else ""
-        same = self.column_kinds[drives] == self.column_kinds[column]
-        return written if isinstance(written, str) and same else ""
+        return written if isinstance(written, str) and self.driven_alike(column) else ""
 
 
 def following_coupler(

@@ -17,7 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 
 #: The quantities of a joint, by the order of the derivative, and what time does to their units.

@@ -8,14 +8,16 @@ A. B. W. Kennedy, "The mechanics of machinery" (1886).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.errors import RequestError
+from sevenbar.kinematics.screw_axes import ScrewAxes
 from sevenbar.text.printing import Printed
 
 
@@ -32,7 +34,7 @@ class InstantCentre(Printed):
     place: Floats
     in_plane: Floats
     direction: Floats
-    status: npt.NDArray[np.str_]
+    status: Words
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,3 +62,23 @@ class InstantCentres(Printed):
                 columns[f"{name}_{axis}_{length}"] = centre.in_plane[:, k]
             columns[f"{name}_status"] = centre.status
         return columns
+
+
+def instant_centres(
+    screw_axes: Callable[[int, int], ScrewAxes], count: int, in_plane: Callable[[Floats], Floats | None]
+) -> InstantCentres:
+    """The centres of all pairs of `count` links, from the screw axes of pairs.
+
+    `in_plane` gives places (n, 3) in the plane of the loop (n, 2), `None` for a loop that is not planar: then
+    `RequestError`.
+    """
+    if in_plane(np.zeros(3)) is None:
+        raise RequestError("instant_centres: the loop is not planar; its links have screw_axes()")
+    found = {}
+    for links in combinations(range(1, count + 1), 2):
+        axes = screw_axes(*links)
+        place = in_plane(axes.point)
+        assert place is not None
+        slides = np.where((axes.status == "translation")[:, None], axes.direction, np.nan)
+        found[links] = InstantCentre(links, axes.point, place, slides, axes.status)
+    return InstantCentres(found)

@@ -16,7 +16,7 @@ def joint_value(text: str, key: str, linkage: Loop, column: int) -> float:
 
     A plain number is in degrees for a turn and in the length unit for a slide. Raises `RequestError`.
     """
-    slides = linkage.column_kinds[column] == "slide"
+    slides = not linkage.turns(column)
     unit, plain = (linkage.length_unit,) * 2 if slides else ("rad", "deg")
     # `import sevenbar` needs no reader of formulas
     from sevenbar.text.amounts import amount_in
@@ -82,7 +82,7 @@ def joint_speed(speed: object, linkage: Loop, column: int) -> float:
 
     try:
         plain = float(speed) if isinstance(speed, np.number) else plain_speed(speed)
-        if linkage.column_kinds[column] == "slide":
+        if not linkage.turns(column):
             return sliding_speed(plain, linkage.length_unit)
         return turning_speed(plain)
     except RequestError as error:

@@ -91,6 +91,11 @@ class JointKind:
         return self.freedoms == ("turn",) * 3
 
     @cached_property
+    def bends(self) -> bool:
+        """Whether it turns about more than one axis through one place: its bend is an angle of a cone."""
+        return len(self.freedoms) > 1 and set(self.freedoms) == {"turn"}
+
+    @cached_property
     def rides(self) -> bool:
         """Whether it slides along its axis, as on a rail."""
         return any(step.freedom == "slide" and step.axis == Z for step in self.steps)

@@ -15,16 +15,18 @@ from sevenbar.errors import NotCoveredError, RequestError, ends_here, shown
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Spring
 from sevenbar.kinematics.answers import LinkageAnswers
-from sevenbar.kinematics.circuits import Circuit, Law
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.closed_form import ClosedForm
 from sevenbar.kinematics.four_bar import four_bar_of
 from sevenbar.kinematics.general import AGREE, GeneralLoop
 from sevenbar.kinematics.grashof import FourBar
 from sevenbar.kinematics.joint_text import joint_number, joint_numbers, joint_speed, pose_numbers
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.loaded import loaded
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import LEAST_AGREE, MOST_AGREE, Modes, Motion, Output, Solvable
 from sevenbar.kinematics.plane_and_sphere import MotionPlane, MotionSphere, plane_of, sphere_of
+from sevenbar.kinematics.stopped import Cones, Radii, Ranges, stopped
 
 #: Most samples a turn; beyond, the arrays of one motion would not fit into the memory of a desk machine.
 MOST_SAMPLES = 1_000_000
@@ -59,6 +61,28 @@ class Linkage(Solvable):
             1.2
         """
         return loaded(self, bodies=bodies, gravity=gravity, loads=loads, springs=springs)
+
+    @ends_here
+    def stopped(
+        self,
+        *,
+        ranges: Ranges | None = None,
+        cones: Cones | None = None,
+        radii: Radii | None = None,
+    ) -> Linkage:
+        """The linkage with other stops: ranges of joints by name, cones of S and U, radii of links.
+
+        A range is (low, high) [rad, length, or texts as "30 deg"], a turn at most; a cone an angle [rad, or
+        text] or a `Cone` with directions; a radius [length] is that of the link as a rod, the ground the last
+        one. What is left out stays as it is. They change no motion: `Circuit.allowed` is what they leave of
+        it. Raises `RequestError` for what does not exist or does not fit.
+
+            >>> import sevenbar as sb
+            >>> linkage = sb.load("rssr").stopped(ranges={"rocker": ("-30 deg", "10 deg")}, radii={1: 20})
+            >>> linkage.description["stop"]
+            [{'joint': 'rocker', 'range': [-30.0, 10.0]}]
+        """
+        return stopped(self, ranges=ranges, cones=cones, radii=radii)
 
     @property
     def lengths(self) -> tuple[float, float, float]:
@@ -105,20 +129,6 @@ class Linkage(Solvable):
             )
         return self._closed_form
 
-    def _input(self, name: str | None) -> int:
-        return self.column(self.drive.joint if name is None else name, "input")
-
-    def _ends(self, input: str | None, output: str | None) -> tuple[int, int]:
-        first = self._input(input)
-        if output is None:
-            return first, self.other_column(first)
-        second = self.column(output, "output")
-        if second == first:
-            raise RequestError(
-                f"output: joint '{output}' is the input; give another: {', '.join(self.drivable(first))}"
-            )
-        return first, second
-
     def _speed(self, speed: object, column: int) -> float:
         if speed is None:
             return self.speed_of(column)
@@ -152,7 +162,7 @@ class Linkage(Solvable):
         Source: docs/rssr.md, (3) to (9); Sun and Zhou, eq. (8), (9), and (12), (13) with their signs mended.
         """
         solver = self._rssr("output")
-        column = self._input(input)
+        column = self.input_column(input)
         array = joint_numbers("input", values, self, column)
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= 3:
             raise RequestError(f"order: {shown(order)} is not offered; give 0 to 3")
@@ -191,7 +201,7 @@ class Linkage(Solvable):
 
         Source: docs/theory.md, (6); docs/rssr.md, (4).
         """
-        column = self._input(input)
+        column = self.input_column(input)
         value = joint_number("theta", theta, self, column)
         general = self.agreeing(agree)._general
         if self._has_closed_form(method):
@@ -253,7 +263,9 @@ class Linkage(Solvable):
 
         Source: docs/theory_measures.md, (1) to (3).
         """
-        first, second = self._ends(input, self.drive.output if output is None and input is None else output)
+        first, second = self.end_columns(
+            input, self.drive.output if output is None and input is None else output
+        )
         return four_bar_of(self, self.columns[first], self.columns[second])
 
     @property
@@ -380,7 +392,7 @@ class Linkage(Solvable):
         self, samples: int, input: str | None, output: str | None, speed: float | str | None
     ) -> tuple[int, int, int, float]:
         """Columns of input and output, a count, and the speed, once checked."""
-        column, output_column = self._ends(
+        column, output_column = self.end_columns(
             input, self.drive.output if output is None and input is None else output
         )
         return column, output_column, sample_count("samples", samples), self._speed(speed, column)

@@ -114,7 +114,7 @@ def _spring(spring: Spring, linkage: Loop) -> dict[str, Any]:
     table: dict[str, Any] = {}
     if spring.joint is not None:
         column = linkage.columns.index(spring.joint)
-        size = _angle(linkage) if linkage.column_kinds[column] == "turn" else 1.0
+        size = _angle(linkage) if linkage.turns(column) else 1.0
         table |= {"joint": spring.joint, "free": spring.length / size}
     elif spring.links is not None and spring.at is not None:
         ends = [list(end) for end in spring.at]
@@ -130,4 +130,4 @@ def _angle(linkage: Loop) -> float:
 
 def _size_of_input(linkage: Loop) -> float:
     column = linkage.columns.index(linkage.drive.joint)
-    return _angle(linkage) if linkage.column_kinds[column] == "turn" else 1.0
+    return _angle(linkage) if linkage.turns(column) else 1.0

@@ -7,7 +7,8 @@ from dataclasses import fields
 from functools import cached_property
 from typing import Any
 
-from sevenbar.kinematics.circuits import Circuit, Extremes, Tally
+from sevenbar.kinematics.circuit_values import Extremes, Tally
+from sevenbar.kinematics.circuits import Circuit
 
 #: Samples a turn from which circuits are long: eight circuits of fewer rows take some 100 MB.
 LONG = 20_000

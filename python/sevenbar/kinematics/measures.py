@@ -9,7 +9,10 @@ from typing import Any, Literal
 
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.forces.sizing import Bearing, Sizing
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.extent_measures import greatest_bend, joint_extent, least_gap, usable_share
+from sevenbar.kinematics.extent_slopes import extent_slopes, stopped_measures
 from sevenbar.kinematics.force_measures import force_slopes, mass_slopes, peak_shaking, sized
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.gradients import MeasureSlopes, measure_slopes
@@ -31,6 +34,8 @@ Quantity = Literal[
     "moment",
     "power",
     "energy",
+    "joint",
+    "length",
 ]
 
 
@@ -50,14 +55,14 @@ class Measure:
 
     def __reduce__(self) -> tuple[Callable[..., Measure], tuple[Any, ...]]:
         """Pickled by its name, since the functions of `MEASURES` have none; a caller's with its function."""
-        own = (MEASURES | FORCE_MEASURES).get(self.name) is self
-        if own or self.name.partition(":")[0] in JOINT_MEASURES:
+        own = (MEASURES | FORCE_MEASURES | EXTENT_MEASURES).get(self.name) is self
+        if own or self.name.partition(":")[0] in OF_JOINTS:
             return _measure, (self.name,)
         return Measure, (self.name, self.per, self.quantity, self.value, self.title)
 
     def unit(self, linkage: Loop, output: str) -> str:
         """The unit of its numbers, "" where there is none; `output` is the column of the output."""
-        slides = linkage.column_kinds[linkage.columns.index(output)] == "slide"
+        slides = not linkage.turns(output)
         length = linkage.length_unit
         rate = length if slides else "rad"
         return {
@@ -72,7 +77,15 @@ class Measure:
             "moment": "N_m",
             "power": "W",
             "energy": "J",
+            "length": length,
+            "joint": length if self._slides(linkage) else "deg",
         }.get(self.quantity, "")
+
+    def _slides(self, linkage: Loop) -> bool:
+        """Whether the joint of its name does."""
+        joint = self.name.partition(":")[2]
+        named = [c for c in linkage.columns if c in (joint, f"{joint}.1")]
+        return bool(named) and linkage.unit_of(named[0]) != "rad"
 
     def column(self, linkage: Loop, output: str) -> str:
         """Its name in tables, with the unit."""
@@ -170,6 +183,21 @@ FORCE_MEASURES: dict[str, Measure] = {
     )
 }
 
+#: Measures of how far a circuit takes its joints and links, and of its stops.
+EXTENT_MEASURES: dict[str, Measure] = {
+    measure.name: measure
+    for measure in (
+        Measure("clearance", "circuit", "length", least_gap, "least distance of links, less their radii"),
+        Measure("usable", "circuit", "ratio", usable_share, "part of the circuit within all stops"),
+    )
+}
+
+#: The same of a joint, as in range:rocker.
+JOINT_EXTENTS: dict[str, tuple[Quantity, Callable[[Circuit, str], float | None], str]] = {
+    "range": ("joint", joint_extent, "range of joint {}; none where it is endless"),
+    "ball_angle": ("angle", greatest_bend, "greatest angle of joint {} from its seat"),
+}
+
 #: Measures of a joint, as in peak_force:crank: quantity, what of its bearing, title.
 JOINT_MEASURES: dict[str, tuple[Quantity, Callable[[Bearing], float], str]] = {
     "peak_force": ("force", lambda b: b.force.peak.value, "greatest force in joint {}"),
@@ -178,11 +206,20 @@ JOINT_MEASURES: dict[str, tuple[Quantity, Callable[[Bearing], float], str]] = {
 }
 
 
+#: All that are of a joint, by its name.
+OF_JOINTS = (*JOINT_MEASURES, *JOINT_EXTENTS)
+
+
 def _of_joint(name: str) -> Measure | None:
     """The measure of a joint by its name; `None` where the name is of none."""
     kind, colon, joint = name.partition(":")
-    if not colon or kind not in JOINT_MEASURES or not joint:
+    if not colon or kind not in OF_JOINTS or not joint:
         return None
+    if kind in JOINT_EXTENTS:
+        quantity, of_joint, title = JOINT_EXTENTS[kind]
+        return Measure(
+            name, "circuit", quantity, lambda circuit: of_joint(circuit, joint), title.format(joint)
+        )
     quantity, pick, title = JOINT_MEASURES[kind]
 
     def value(circuit: Circuit) -> float | None:
@@ -211,7 +248,7 @@ def measures_named(given: Iterable[str | Measure | Callable[[Motion], float]]) -
 def _measure(given: object) -> Measure:
     if isinstance(given, Measure):
         return given
-    if isinstance(given, str) and given in (every := MEASURES | FORCE_MEASURES):
+    if isinstance(given, str) and given in (every := MEASURES | FORCE_MEASURES | EXTENT_MEASURES):
         return every[given]
     of_joint = _of_joint(given) if isinstance(given, str) else None
     if of_joint is not None:
@@ -220,7 +257,7 @@ def _measure(given: object) -> Measure:
         name = getattr(given, "__name__", "measure").strip("<>")
         about = (getattr(given, "__doc__", None) or name).splitlines()[0]
         return Measure(name, "linkage", "ratio", given, about)
-    known = [*MEASURES, *FORCE_MEASURES, *(f"{kind}:JOINT" for kind in JOINT_MEASURES)]
+    known = [*MEASURES, *FORCE_MEASURES, *EXTENT_MEASURES, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
     raise RequestError(
         f"measure: {shown(given)} is not a measure; {suggestion(str(given), known)}"
         f"give some of {', '.join(known)}, "
@@ -246,11 +283,12 @@ def rows_of(motion: Motion, measures: Sequence[Measure]) -> list[dict[str, float
     return [{"circuit": c.index} | shared | {m.name: m.value(c) for m in own} for c in motion.circuits]
 
 
-def gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
+def gradient(motion: Motion, circuit: int = 0, *, also: Sequence[str] = ()) -> dict[str, MeasureSlopes]:
     """The measures of a circuit that are numbers, by name, with derivatives by the description's numbers.
 
     Those of `MEASURES` that vary smoothly, and angle_lowest, angle_highest of the output and limit_1 .. of
-    the input besides; angles in degrees. Derivatives (k,) are exact, in the order of the names that
+    the input besides; those of ranges, balls and distances that the linkage's stops are about, and `also` by
+    their names; angles in degrees. Derivatives (k,) are exact, in the order of the names that
     `Circuit.sensitivity` has, by their units; NaN where a measure has none, as at a kink. Raises
     `RequestError` for a circuit that does not exist and a linkage made without a description.
 
@@ -259,11 +297,13 @@ def gradient(motion: Motion, circuit: int = 0) -> dict[str, MeasureSlopes]:
         >>> found.unit, found.slopes.shape
         ('deg', (6,))
 
-    Source: docs/theory_design.md, (6).
+    Source: docs/theory_design.md, (6); docs/theory_measures.md, (16).
     """
     chosen = chosen_circuit(motion, circuit)
     numbers = Numbers(motion.linkage)
     found = [*measure_slopes(numbers, chosen, motion.speed), *force_slopes(numbers, chosen, motion.speed)]
+    wanted = [one.name for one in measures_named(also)] if also else []
+    found += extent_slopes(numbers, chosen, list(dict.fromkeys([*stopped_measures(numbers), *wanted])))
     return {one.name: one for one in found}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
@@ -12,17 +12,14 @@ from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.errors import MissingExtraError, RequestError, shown
-from sevenbar.kinematics.circuits import (
-    Answers,
-    Circuit,
-    Law,
-    Words,
-)
-from sevenbar.kinematics.columns import joint_column, point_column
+from sevenbar.kinematics.circuits import Answers, Circuit
+from sevenbar.kinematics.columns import joint_columns, point_column
+from sevenbar.kinematics.extents import JointRange
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.grashof import FourBar
+from sevenbar.kinematics.law import Law
 from sevenbar.text.printing import Drawable, Printed
 from sevenbar.text.units import LENGTHS
 
@@ -308,7 +305,7 @@ class Motion(Drawable):
     def change_point_inputs(self) -> Floats:
         """The input at the change points [rad in [0, 2 pi), or length], rising; isolated poses aside."""
         values = np.array([point.input for point in self.change_points if not point.isolated])
-        turns = self.linkage.column_kinds[self.linkage.columns.index(self.input)] == "turn"
+        turns = self.linkage.turns(self.input)
         return np.sort(np.mod(values, math.tau) if turns else values)
 
     @property
@@ -320,6 +317,16 @@ class Motion(Drawable):
     def mobility(self) -> Mobility:
         """How freely the linkage moves."""
         return self.linkage.mobility(agree=self.agree)
+
+    @property
+    def joint_ranges(self) -> tuple[Mapping[str, JointRange], ...]:
+        """The joint ranges of each circuit; see `Circuit.joint_ranges`.
+
+        >>> import sevenbar as sb
+        >>> [ranges["crank"].endless for ranges in sb.load("rssr").motion().joint_ranges]
+        [True, True]
+        """
+        return tuple(circuit.joint_ranges for circuit in self.circuits)
 
     @cached_property
     def near_motion(self) -> NearMotion | None:
@@ -428,12 +435,8 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
         "status": circuit.status,
         "time_s": circuit.time,
     }
-    for order, values in enumerate((circuit.q, circuit.dq, circuit.ddq, circuit.dddq)):
-        for index, (name, kind) in enumerate(zip(circuit.columns, linkage.column_kinds, strict=True)):
-            slides = kind == "slide"
-            column = values[:, index] * scale if slides else values[:, index]
-            head = joint_column(name, slides=slides, order=order, length=length, angle=angle)
-            columns[head] = np.degrees(column) if head.endswith("_deg") else column
+    rates = (circuit.q, circuit.dq, circuit.ddq, circuit.dddq)
+    columns |= joint_columns(linkage, rates, length=length, angle=angle, scale=scale)
     for point in linkage.points:
         trace = circuit.point(point.link, point.at)
         for order, values in enumerate((trace.position, trace.velocity, trace.acceleration)):
@@ -443,6 +446,11 @@ def _circuit_columns(circuit: Circuit, linkage: Loop, si: bool) -> dict[str, npt
     if circuit.transmission_angle is not None:
         transmission = circuit.transmission_angle
         columns[f"transmission_{angle}"] = transmission if si else np.degrees(transmission)
+    if not linkage.stops.is_empty:
+        for name, bend in circuit.bends.items():
+            columns[f"{name}_bend_{angle}"] = bend if si else np.degrees(bend)
+    if linkage.stops.stops:
+        columns["within_stops"] = circuit.allowed.within.astype(np.int64)
     head, factor = _advantage_column(circuit, length, scale)
     columns[head] = circuit.mechanical_advantage * factor
     columns[f"residual_{length}"] = circuit.residual * scale

@@ -11,8 +11,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.arrays import Floats, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.rigid import inverse, pose
 
@@ -95,7 +95,7 @@ def along(linkage: Loop, circuit: Circuit, column: int) -> Floats:
     if column == circuit.output_column:
         return path.output
     values: Floats = circuit.q[path.rows, column]
-    if len(path.rows) > len(circuit.time) and linkage.column_kinds[column] == "turn":
+    if len(path.rows) > len(circuit.time) and linkage.turns(column):
         values[-1] += _turns_gained(circuit.q[:, column])
     return values
 

@@ -33,6 +33,11 @@ def inverse(motion: Floats) -> Floats:
     return pose(back, -(back @ motion[..., :3, 3:])[..., 0])
 
 
+def placed(frame: Floats, place: npt.ArrayLike) -> Floats:
+    """A place (3,) written in a frame (4, 4), in the coordinates in which that frame is given."""
+    return np.asarray(frame[:3, :3] @ np.asarray(place, dtype=np.float64) + frame[:3, 3])
+
+
 def about(axis: int, angle: npt.ArrayLike) -> Floats:
     """The rotations (..., 3, 3) about x, y or z (`axis` 0, 1, 2) by angles (...) [rad].
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Words
 from sevenbar.text.printing import Printed
 
 #: Turns slower than this, for the size of the linkage and against the velocity, are none: the axis is farther
@@ -54,7 +54,7 @@ class ScrewAxes(Printed):
     fixed_direction: Floats
     moving_point: Floats
     moving_direction: Floats
-    status: npt.NDArray[np.str_]
+    status: Words
 
     def columns(self, length: str) -> dict[str, npt.NDArray[np.generic]]:
         """The rows column by column, each name ending in its unit; `length` is the length unit."""
@@ -89,9 +89,7 @@ class Twists:
     velocity: Floats
 
 
-def screw_axes(
-    link: int, other: int, own: Twists, base: Twists, size: float, status: npt.NDArray[np.str_]
-) -> ScrewAxes:
+def screw_axes(link: int, other: int, own: Twists, base: Twists, size: float, status: Words) -> ScrewAxes:
     """The screw axes of a link against another; `status` (n,) is that of the rows, `size` [length]."""
     place = own.frame[:, :3, 3]
     turn = own.turn - base.turn

@@ -24,12 +24,14 @@ import numpy as np
 import numpy.typing as npt
 
 import sevenbar._core as _core
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Circuit, Sensitivity
+from sevenbar.arrays import Booleans, Floats, Integers
+from sevenbar.kinematics.circuit_values import Sensitivity
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension, description_of, dimensions_of
+from sevenbar.kinematics.factors import Place, Product, Values, vector
 from sevenbar.kinematics.motion import Solvable
-from sevenbar.kinematics.rigid import about, adjoint, cross, zyx_turns
-from sevenbar.kinematics.word import Carried, Place, Product, Values, holding_axis, points_of, vector, word_of
+from sevenbar.kinematics.rigid import about, adjoint, cross, placed, zyx_turns
+from sevenbar.kinematics.word import Carried, holding_axis, points_of, word_of
 
 #: Part of what one of a number moves [rad, or relative to the size, for a radian or the size of it] that no
 #: joint can follow: rounding leaves 1e-15 of it, near dead centres 1e-9; tolerances are 1e-6 and more.
@@ -63,9 +65,9 @@ class Slopes:
     points: Floats
     points_by_number: Floats
     points_by_input: Floats
-    opening: npt.NDArray[np.bool_]
-    idle: npt.NDArray[np.bool_]
-    idle_points: npt.NDArray[np.bool_]
+    opening: Booleans
+    idle: Booleans
+    idle_points: Booleans
 
 
 class Numbers:
@@ -91,7 +93,7 @@ class Numbers:
         self.units = np.array(
             [self.size if d.kind in ("length", "pitch") else 1 / d.scale for d in self.dimensions]
         )
-        self.turns = np.array([kind == "turn" for kind in linkage.column_kinds])
+        self.turns = linkage.turning
         #: What a value of each column is relative to in the core: a radian, or the size.
         self.scales = np.where(self.turns, 1.0, self.size)
         #: Balls, counted among the joints, that stand as two turns.
@@ -123,13 +125,14 @@ class Numbers:
         p: Floats | None = None,
         only: Sequence[int] | None = None,
         marks: int | None = None,
+        extra: Sequence[Carried] = (),
     ) -> NumberedLoop:
         """The loop driven by a column at numbers p, the description's own by default.
 
         Derivatives are by all numbers, or `only` by some, (k,) then being these. With `marks`, a column, two
-        more points come last that lie on its axis, the size apart.
+        more points come last that lie on its axis, the size apart; then those `extra`.
         """
-        return NumberedLoop(self, input, self.nominal if p is None else p, only, marks)
+        return NumberedLoop(self, input, self.nominal if p is None else p, only, marks, extra)
 
     def poses(self, q: Floats, p: Floats | None = None) -> Floats:
         """Rows of an analysis (n, columns) as poses of the word.
@@ -159,7 +162,7 @@ class Numbers:
             q[:, column], q[:, column + 1], q[:, column + 2] = first, -back, 0.0
         return q
 
-    def by_columns(self, q: Floats, here: Slopes) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    def by_columns(self, q: Floats, here: Slopes) -> tuple[Floats, Booleans]:
         """Derivatives of the columns as the analysis has them, (n, orders, k, columns), and which spin idly.
 
         `q` (n, columns) are the analysis' own rows. Of a ball's turns there is the position only.
@@ -190,6 +193,7 @@ class NumberedLoop:
         p: Floats,
         only: Sequence[int] | None = None,
         marks: int | None = None,
+        extra: Sequence[Carried] = (),
     ) -> None:
         self.numbers, self.input, self.p = numbers, input, p
         word, values = numbers.word, numbers.values(p)
@@ -211,6 +215,7 @@ class NumberedLoop:
         if marks is not None:
             count = next(k for k, step in enumerate(word.steps, 1) if marks in step.columns)
             points += [(count, np.array([0.0, 0.0, end]), []) for end in (0.0, 1.0)]
+        points += [self._point(point, values, own) for point in extra]
         self._own = fixed, advances = self._design(values)
         #: What the core knows of it.
         self.core = _core.Numbers(
@@ -252,7 +257,7 @@ class NumberedLoop:
                 ways[own[key]] = ways.get(own[key], 0.0) + matrix[:3, k]
         scales = {i: dimensions[k].scale for i, k in enumerate(self.only)}
         ready = [(i, scales[i] * way / size) for i, way in sorted(ways.items())]
-        return point.steps, (matrix[:3, :3] @ at + matrix[:3, 3]) / size, ready
+        return point.steps, placed(matrix, at) / size, ready
 
     def twists_of(self, frame: Product) -> list[tuple[int, Floats]]:
         """By number, the twist (6,) of a link's frame against the steps before it, as the core takes it."""
@@ -284,11 +289,11 @@ class NumberedLoop:
         found, sides = self.core.follow(start, inputs, fixed, advances, scaled)
         return found * scales, sides
 
-    def opening(self, circuit: Circuit) -> npt.NDArray[np.bool_]:
+    def opening(self, circuit: Circuit) -> Booleans:
         """Which numbers (k,) cannot change alone without opening the loop, on the rows of a circuit."""
         return self.slopes(self.poses(circuit)[1], 0).opening
 
-    def poses(self, circuit: Circuit) -> tuple[npt.NDArray[np.int64], Floats]:
+    def poses(self, circuit: Circuit) -> tuple[Integers, Floats]:
         """Closed poses (n, columns) on rows (n,) of a circuit; those that are lost are left out."""
         q = self.closed(circuit.q[:, self.input], self.numbers.poses(circuit.q))
         rows = np.flatnonzero(np.isfinite(q).all(axis=1))

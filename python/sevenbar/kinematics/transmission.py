@@ -28,9 +28,11 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.stationary import curve_through, nodes, real_roots
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.axes import Axes, axes_along
-from sevenbar.kinematics.circuits import Circuit, Extremes, Law
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.general import expanded
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.motion import Solvable
 from sevenbar.kinematics.plane_and_sphere import InPlane, in_plane, sphere_of
 from sevenbar.kinematics.poses import Walk, walk

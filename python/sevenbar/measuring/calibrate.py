@@ -32,11 +32,10 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.errors import MissingExtraError, RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.measuring.compare import Comparison, causes, compare, ends_of, inputs_of, name_of, per_cent
@@ -51,8 +50,8 @@ from sevenbar.text.progress import Progress, silent
 #: Correlation of neighbouring residuals, in standard deviations of that of random ones, that is reported.
 FOLLOWS = 4.0
 
-#: `fixed` and `follows` as the caller wants it; `untold` is what the data do not identify.
-Status = Literal["calibrated", "fixed", "follows", "untold", "opens the loop"]
+#: `fixed` and `follows` as the caller wants it; `unidentified` is what the data do not identify.
+Status = Literal["calibrated", "fixed", "follows", "unidentified", "opens the loop"]
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class Parameter:
 
     `error` is its standard error, `low` and `high` the ends of its interval; NaN where it was not
     calibrated, and where the rows are exact.
-    `undone_by` names the dimensions whose changes undo one of an `untold` dimension.
+    `undone_by` names the dimensions whose changes undo one of an `unidentified` dimension.
     """
 
     name: str
@@ -309,7 +308,7 @@ def _calibration(
             parameters.append(Parameter(name, kind, status, nominal, value, error, *ends))
         elif k in unidentified:
             undone = tuple(model.names[other] for other in unidentified[k])
-            parameters.append(Parameter(name, kind, "untold", nominal, value, undone_by=undone))
+            parameters.append(Parameter(name, kind, "unidentified", nominal, value, undone_by=undone))
         elif name in model.opening:
             parameters.append(Parameter(name, kind, "opens the loop", nominal, value))
         elif k < len(model.names) - 2:

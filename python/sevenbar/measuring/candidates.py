@@ -11,9 +11,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit, Integers, Law
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.measured import OUTPUTS, Ends, Measured
 from sevenbar.measuring.passes import Key, PassFit, stretches_of, ways_through

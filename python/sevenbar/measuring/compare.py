@@ -16,9 +16,9 @@ from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.measuring.candidates import SAME_RESIDUAL, Candidates
 from sevenbar.measuring.doubtful import far_off, sentence
@@ -134,14 +134,8 @@ def ends_of(linkage: Linkage, input: str | None = None, output: str | None = Non
     >>> ends.output, ends.output_slides
     ('slider', True)
     """
-    first = linkage.column(linkage.drive.joint if input is None else input, "input")
-    second = linkage.other_column(first) if output is None else linkage.column(output, "output")
-    if first == second:
-        raise RequestError(
-            f"output: joint '{linkage.columns[first]}' is the input; "
-            f"give another: {', '.join(linkage.drivable(first))}"
-        )
-    first_slides, second_slides = (linkage.column_kinds[column] == "slide" for column in (first, second))
+    first, second = linkage.end_columns(input, output)
+    first_slides, second_slides = (not linkage.turns(column) for column in (first, second))
     names = linkage.columns[first], linkage.columns[second]
     return Ends(*names, first_slides, second_slides, linkage.length_unit)
 
@@ -329,10 +323,7 @@ def _speed(
         except RequestError as error:
             raise RequestError(f"speed: {error}") from None
     else:
-        same = (
-            linkage.column_kinds[linkage.columns.index(linkage.drive.joint)] == linkage.column_kinds[column]
-        )
-        rate = linkage.drive.speed if same else 1.0
+        rate = linkage.speed_of(column)
     notes: list[str] = []
     values = measured.values
     if "time" in values and "input" in values and (given is None) and len(measured) > 2:

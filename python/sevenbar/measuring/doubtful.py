@@ -14,8 +14,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.arrays import Floats, Integers
 
 #: Times the median difference beyond which a row is far off; of normal noise one in 1e40 is.
 FAR = 20.0

@@ -16,9 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, TableError, shown, suggestion
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.text.printing import Printed
 from sevenbar.text.ranges import split_name
 from sevenbar.text.table import TextTable, name_and_unit, plain_name, read_table, read_text, unit_size

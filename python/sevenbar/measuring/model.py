@@ -16,9 +16,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import NotCoveredError
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers, Slopes
 from sevenbar.measuring.compare import Comparison

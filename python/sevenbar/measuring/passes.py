@@ -13,8 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.arrays import Floats, Integers
 
 #: Share of an input's travel by which it goes back where it turns; less is noise.
 TURNS_BACK = 0.01

@@ -21,6 +21,7 @@ from sevenbar.reporting.files import Report, columns_file, figure_files, json_fi
 from sevenbar.reporting.folder import write_columns, write_csv
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of
+from sevenbar.text.words import retold, say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,18 +40,26 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
     parts: list[RenderableType] = [Text(comparison.linkage.heading, style="bold underline"), facts.grid]
     drive = drive_text(ends.input, comparison.speed, ends.unit("input"), ends.output)
     if isinstance(comparison, ExtremesComparison):
-        facts.add("measured", f"{comparison.source}, lowest and highest values")
+        facts.add("measured", say("{source}, lowest and highest values", source=comparison.source))
         facts.add("drive", drive)
-        first, *others = (f"circuit {i} (residual {per_cent(m)})" for i, m in comparison.residuals)
+        first, *others = (
+            _with_residual(say("circuit {number}", number=i), m) for i, m in comparison.residuals
+        )
         facts.add("explained by", first, style="bold")
         if others:
-            facts.add("not by", "; ".join(others[:MOST_CANDIDATES]))
-        facts.add("", "residual: root mean square of the errors relative to the measured range")
+            facts.add("not by", say("; ").join(others[:MOST_CANDIDATES]))
+        facts.add("", say("residual: root mean square of the errors relative to the measured range"))
         return Group(*parts, Text(), _extents_table(comparison.table, ends))
     chosen = comparison.chosen
     rows = np.isfinite(next(iter(comparison.computed.values()))).sum()
     facts.add(
-        "measured", f"{comparison.source}, {rows} rows of {', '.join(_words(ends, comparison.outputs))}"
+        "measured",
+        say(
+            "{source}, {rows} of {quantities}",
+            source=comparison.source,
+            rows=say("{count} rows", count=rows),
+            quantities=say(", ").join(_words(ends, comparison.outputs)),
+        ),
     )
     facts.add("drive", drive)
     facts.add("explained by", _candidate(chosen), style="bold")
@@ -61,20 +70,23 @@ def comparison_text(comparison: Comparison | ExtremesComparison) -> RenderableTy
             others.append(_candidate(candidate))
     if others:
         more = len(others) - MOST_CANDIDATES
-        tail = f"; {more} more" if more > 0 else ""
-        facts.add("not by", "; ".join(others[:MOST_CANDIDATES]) + tail)
-    facts.add("", "residual: root mean square of the differences relative to the measured range")
+        rest = [say("{count} more", count=more)] if more > 0 else []
+        facts.add("not by", say("; ").join([*others[:MOST_CANDIDATES], *rest]))
+    facts.add("", say("residual: root mean square of the differences relative to the measured range"))
     for name, value, quantity, asked in (
         ("phase", chosen.phase, "input", "phase"),
         ("offset", chosen.offset, "angle", "offset"),
     ):
         if asked in comparison.aligned:
-            sense = (
-                "added to the measured input" if name == "phase" else "subtracted from the measured output"
+            shown = _value(ends, quantity, value)
+            facts.add(
+                name,
+                say("{value} added to the measured input", value=shown)
+                if name == "phase"
+                else say("{value} subtracted from the measured output", value=shown),
             )
-            facts.add(name, f"{_value(ends, quantity, value)} {sense}")
     for note in comparison.notes:
-        facts.add("note", note)
+        facts.add("note", retold(note))
     return Group(*parts, Text(), _extents_table(comparison.table, ends), Text(), _spread_table(comparison))
 
 
@@ -84,33 +96,48 @@ def calibration_text(calibration: Calibration) -> RenderableType:
     facts = Facts()
     facts.add(
         "measured",
-        f"{calibration.source}, {_rows_and_places(calibration)} of "
-        + ", ".join(_words(ends, calibration.outputs)),
+        say(
+            "{source}, {rows} of {quantities}",
+            source=calibration.source,
+            rows=_rows_and_places(calibration),
+            quantities=say(", ").join(_words(ends, calibration.outputs)),
+        ),
     )
     speed = calibration.before.speed
     facts.add("drive", drive_text(ends.input, speed, ends.unit("input"), ends.output))
-    facts.add("explained by", name_of(chosen))
+    facts.add("explained by", _named(chosen))
     for quantity in calibration.outputs:
         before, after = (
             _rms(calibration.measured[quantity] - side[quantity])
             for side in (calibration.nominal, calibration.computed)
         )
         facts.add(
-            f"rms of the {ends.word(quantity)}",
-            f"{before:.4g} before, {after:.4g} after [{ends.unit(quantity)}]",
+            say("rms of the {quantity}", quantity=say(ends.word(quantity))),
+            say(
+                "{before:.4g} before, {after:.4g} after [{unit}]",
+                before=before,
+                after=after,
+                unit=ends.unit(quantity),
+            ),
         )
     count = len(calibration.calibrated)
-    facts.add("fitted", f"{count} parameters, {calibration.freedom} degrees of freedom")
+    facts.add(
+        "fitted",
+        say("{count} parameters, {freedom} degrees of freedom", count=count, freedom=calibration.freedom),
+    )
     if held := calibration.held.text:
         facts.add("held", held)
     for parameter in calibration.parameters:
-        if parameter.status == "untold":
+        if parameter.status == "unidentified":
             facts.add("not identifiable", unidentified_sentence(parameter, calibration))
     opening = [p.name for p in calibration.parameters if p.status == "opens the loop"]
     if opening:
-        facts.add("held", f"{', '.join(opening)}: a change of one alone would open this overconstrained loop")
+        names = ", ".join(opening)
+        facts.add(
+            "held", say("{names}: a change of one alone would open this overconstrained loop", names=names)
+        )
     for note in calibration.notes:
-        facts.add("note", note)
+        facts.add("note", retold(note))
     title = Text(calibration.linkage.heading, style="bold underline")
     return Group(title, facts.grid, Text(), _parameter_table(calibration))
 
@@ -118,16 +145,25 @@ def calibration_text(calibration: Calibration) -> RenderableType:
 def _rows_and_places(calibration: Calibration) -> str:
     """How many rows there are, and at how many places where some repeat an input."""
     rows = len(calibration.line)
-    return f"{rows} rows" + (f" at {calibration.places} places" if calibration.places < rows else "")
+    if calibration.places < rows:
+        return say("{count} rows at {places} places", count=rows, places=calibration.places)
+    return say("{count} rows", count=rows)
 
 
 def unidentified_sentence(parameter: Parameter, calibration: Calibration) -> str:
     """Why a parameter was held, and at what."""
     at = _parameter_value(parameter, parameter.value, calibration.ends)
     if not parameter.undone_by:
-        return f"{parameter.name}, held at {at}: a change of it does not show in these data"
-    others = ", ".join(parameter.undone_by)
-    return f"{parameter.name}, held at {at}: changes of {others} would hide a change of it"
+        return say(
+            "{name}, held at {value}: a change of it does not show in these data",
+            name=parameter.name, value=at,
+        )  # fmt: skip
+    return say(
+        "{name}, held at {value}: changes of {others} would hide a change of it",
+        name=parameter.name,
+        value=at,
+        others=", ".join(parameter.undone_by),
+    )
 
 
 def comparison_dict(comparison: Comparison | ExtremesComparison) -> dict[str, Any]:
@@ -218,6 +254,7 @@ def comparison_report(figures: Sequence[str] = ("png",)) -> Report[Comparison | 
             "rows.csv": _write_compared,
             **figure_files("comparison", figures, _comparison_figure),
         },
+        spoken=True,
     )
 
 
@@ -264,6 +301,7 @@ def calibration_report(
             "rows.csv": columns_file(_calibrated_rows),
             **figure_files("calibration", figures, _calibration_figure),
         },
+        spoken=True,
     )
 
 
@@ -292,13 +330,23 @@ def _calibrated_rows(calibration: Calibration) -> dict[str, Any]:
 
 
 def _words(ends: Ends, quantities: Iterable[str]) -> list[str]:
-    return [ends.word(quantity) for quantity in quantities]
+    return [say(ends.word(quantity)) for quantity in quantities]
 
 
 def _candidate(fit: PassFit) -> str:
     if fit.explains and fit.open_rows:
-        return f"{name_of(fit)} (residual {per_cent(fit.closed_residual)} where it closes)"
-    return f"{name_of(fit)} (residual {per_cent(fit.residual)})"
+        share = per_cent(fit.closed_residual)
+        return say("{circuit} (residual {share} where it closes)", circuit=_named(fit), share=share)
+    return _with_residual(_named(fit), fit.residual)
+
+
+def _named(fit: PassFit) -> str:
+    """A candidate in the language that is spoken; messages name it in English."""
+    return retold(name_of(fit))
+
+
+def _with_residual(circuit: str, residual: float) -> str:
+    return say("{circuit} (residual {share})", circuit=circuit, share=per_cent(residual))
 
 
 def _value(ends: Ends, quantity: str, value: float) -> str:
@@ -311,7 +359,7 @@ def _extents_table(extents: Sequence[Extent], ends: Ends) -> Table:
     """The paper's Table 1, a line for each of its three values of each quantity."""
     rows = (
         (
-            f"{ends.word(extent.quantity)} {name} [{ends.unit(extent.quantity)}]",
+            f"{say(ends.word(extent.quantity))} {say(name)} [{ends.unit(extent.quantity)}]",
             f"{computed:.6g}",
             f"{measured:.6g}",
             f"{error:+.4g}",
@@ -327,7 +375,7 @@ def _spread_table(comparison: Comparison) -> Table:
     ends = comparison.ends
     rows = (
         (
-            f"{ends.word(quantity)} [{ends.unit(quantity)}]",
+            f"{say(ends.word(quantity))} [{ends.unit(quantity)}]",
             f"{spread.greatest:+.4g}",
             str(spread.line),
             f"{spread.rms:.4g}",
@@ -349,12 +397,12 @@ def _parameter_table(calibration: Calibration) -> Table:
         if p.status == "calibrated" or follows:
             reach = _shown(p, (p.high - p.low) / 2)
             digits = EXACT_DIGITS if calibration.exact else _digits(reach)
-            plus_minus = "exact" if calibration.exact else f"{reach:.{digits}f}"
+            plus_minus = say("exact") if calibration.exact else f"{reach:.{digits}f}"
             change = f"{value - nominal:+.{digits}f}"
-            cells = [f"{value:.{digits}f}", plus_minus, change, "follows" * follows]
+            cells = [f"{value:.{digits}f}", plus_minus, change, say("follows") if follows else ""]
         else:
-            note = {"fixed": "held", "untold": "not identifiable"}.get(p.status, p.status)
-            cells = [f"{value:.6g}", "-", "-", note]
+            note = {"fixed": "held", "unidentified": "not identifiable"}.get(p.status, p.status)
+            cells = [f"{value:.6g}", "-", "-", say(note)]
         rows.append((label, f"{nominal:.6g}", *cells))
     return number_table(heads, rows, words=[5])
 

@@ -81,7 +81,7 @@ def _head(calibration: Calibration) -> list[str]:
         lines.append(f"  {p.name} = {value:.9g}{unit}" + ("" if calibration.exact else f", +- {reach:.2g}"))
     if held := calibration.held.text:
         lines.append(f"Held: {held}.")
-    unidentified = [p.name for p in calibration.parameters if p.status == "untold"]
+    unidentified = [p.name for p in calibration.parameters if p.status == "unidentified"]
     if unidentified:
         lines.append(
             f"Held at nominal values, since the data do not identify them: {', '.join(unidentified)}."

@@ -10,6 +10,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.mobility import Mobility
 from sevenbar.kinematics.motion import Motion, Solvable
+from sevenbar.reporting.extents import usable_text
 from sevenbar.reporting.force_words import acting_text
 from sevenbar.reporting.four_bar_text import grashof_text, links_text
 from sevenbar.reporting.how_found import how_found
@@ -91,6 +92,8 @@ def facts_of(motion: Motion) -> list[tuple[str, str]]:
     if not linkage.loading.is_empty:
         acting = acting_text(linkage.loading)
         facts.append(("forces", say("{acting}; 'sevenbar forces' reports all joints", acting=acting)))
+    if motion.circuits and linkage.stops.stops:
+        facts.append(("within the stops", usable_text(motion.circuits)))
     if motion.circuits:
         error, unit = closure_error(motion), linkage.length_unit
         facts.append(("closure error", say("at most {error:.1e} {unit}", error=error, unit=unit)))

@@ -26,6 +26,7 @@ from sevenbar.reporting.force_words import (
     quantity,
     spin_facts,
 )
+from sevenbar.reporting.shown import rows_text
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 
@@ -60,8 +61,7 @@ def _(forces: Forces) -> str:
     facts += [(label, said) for label, said in open_facts(forces) if label]
     facts.append(("checks", check_text(forces)))
     state = " at rest" if forces.at_rest else ""
-    words, counts = np.unique(forces.status, return_counts=True)
-    rows = ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
+    rows = rows_text(forces.status)
     return lines(f"Forces{state} of '{forces.heading}', driven by {forces.driver}: {rows}", facts)
 
 

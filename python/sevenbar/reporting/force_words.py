@@ -16,7 +16,7 @@ from sevenbar.forces.result import COMPONENTS, Forces
 from sevenbar.forces.shaking import Shaking, shaking_of
 from sevenbar.forces.sizing import Sizing
 from sevenbar.reporting.shown import Shown
-from sevenbar.text.words import say
+from sevenbar.text.words import retold, say
 
 #: The moment of an idle spin below this part of the greatest moment in a joint is rounding.
 ROUNDING = 1e-9
@@ -73,11 +73,12 @@ def body_text(body: Body, mass: float | None) -> str:
     """A body by its mass, and where centre and inertia come from; `mass` [kg] of one that is drawn."""
     shown = f"{body.mass or mass or math.nan:.6g} kg"
     if body.solid == "rod":
-        return f"{shown}, a uniform rod between its joints"
+        return say("{mass}, a uniform rod between its joints", mass=shown)
     if body.solid == "drawn":
-        return f"{shown}, the solids that exports draw" + ("" if body.mass else ", of steel")
-    centre = f"{shown}, centre {triple_text(body.centre or ())}"
-    return centre + ("" if body.tensor.any() else ", a point")
+        drawn = say("{mass}, the solids that exports draw", mass=shown)
+        return drawn if body.mass else say("{drawn}, of steel", drawn=drawn)
+    centre = say("{mass}, centre {place}", mass=shown, place=triple_text(body.centre or ()))
+    return centre if body.tensor.any() else say("{body}, a point", body=centre)
 
 
 def bodies_texts(loading: Loading, resolved: Mapping[int, Body]) -> list[tuple[str, str]]:
@@ -86,41 +87,52 @@ def bodies_texts(loading: Loading, resolved: Mapping[int, Body]) -> list[tuple[s
     for link in sorted(loading.bodies):
         for body in loading.bodies[link]:
             own = resolved[link].mass if len(loading.bodies[link]) == 1 else None
-            found.append((f"link {link}", body_text(body, own)))
+            found.append((say("link {number}", number=link), body_text(body, own)))
     return found
 
 
 def load_text(load: Load, shown: Callable[[float], str]) -> str:
     """A load in words; `shown` writes a value of the input."""
-    axes = "" if load.axes == "ground" else ", turning with the link"
     parts = []
     if any(load.force):
-        parts.append(f"force {triple_text(load.force)} N at {triple_text(load.at or ())}")
+        force, at = triple_text(load.force), triple_text(load.at or ())
+        parts.append(say("force {force} N at {place}", force=force, place=at))
     if any(load.torque):
-        parts.append(f"torque {triple_text(load.torque)} N m")
-    when = ""
+        parts.append(say("torque {torque} N m", torque=triple_text(load.torque)))
+    text = say("{loads} on link {link}", loads=say(" and ").join(parts), link=load.link)
+    if load.axes != "ground":
+        text = say("{load}, turning with the link", load=text)
     if load.between is not None:
-        when = f", from {shown(load.between[0])} to {shown(load.between[1])} of the input"
+        low, high = map(shown, load.between)
+        text = say("{load}, from {low} to {high} of the input", load=text, low=low, high=high)
     elif load.table is not None:
         inputs = load.table[0]
-        when = f", by a table of {len(inputs)} rows from {shown(inputs[0])} to {shown(inputs[-1])}"
-    name = f"{load.name}: " if load.name else ""
-    return f"{name}{' and '.join(parts)} on link {load.link}{axes}{when}"
+        low, high = shown(inputs[0]), shown(inputs[-1])
+        text = say(
+            "{load}, by a table of {count} rows from {low} to {high}",
+            load=text, count=len(inputs), low=low, high=high,
+        )  # fmt: skip
+    return say("{word}: {meaning}", word=load.name, meaning=text) if load.name else text
 
 
 def spring_text(spring: Spring, unit: str, *, slides: bool) -> str:
     """A spring in words; `unit` that of lengths, `slides` whether its joint does."""
     force, by = ("N", unit) if spring.links is not None or slides else ("N m", "rad")
     if spring.links is not None:
-        where, free = f"links {spring.links[0]} and {spring.links[1]}", f"{spring.length:.6g} {unit}"
+        first, second = spring.links
+        where = say("links {first} and {second}", first=first, second=second)
+        free = f"{spring.length:.6g} {unit}"
     else:
-        where = f"joint {spring.joint}"
+        where = say("joint {joint}", joint=spring.joint)
         free = f"{spring.length:.6g} {unit}" if slides else Shown("rad")(spring.length)
-    parts = [f"{spring.stiffness:.6g} {force}/{by}, free at {free}"] if spring.stiffness else []
+    parts = []
+    if spring.stiffness:
+        stiffness = f"{spring.stiffness:.6g} {force}/{by}"
+        parts.append(say("{stiffness}, free at {length}", stiffness=stiffness, length=free))
     if spring.damping:
-        parts.append(f"damping {spring.damping:.6g} {force} s/{by}")
-    name = f"{spring.name}: " if spring.name else ""
-    return f"{name}{where}: {', '.join(parts)}"
+        parts.append(say("damping {damping}", damping=f"{spring.damping:.6g} {force} s/{by}"))
+    text = say("{word}: {meaning}", word=where, meaning=say(", ").join(parts))
+    return say("{word}: {meaning}", word=spring.name, meaning=text) if spring.name else text
 
 
 def triple_text(values: Sequence[float]) -> str:
@@ -148,12 +160,13 @@ def acting_facts(forces: Forces, sliding: Sequence[str]) -> list[tuple[str, str]
     """What acts, a line each; `sliding` are the joints that slide."""
     loading, place = forces.loading, Places(forces)
     lines = bodies_texts(loading, forces.bodies)
-    lines += [(f"load {i}", load_text(load, place.plain)) for i, load in enumerate(loading.loads, 1)]
+    for i, load in enumerate(loading.loads, 1):
+        lines.append((say("load {number}", number=i), load_text(load, place.plain)))
     for i, spring in enumerate(loading.springs, 1):
         text = spring_text(spring, forces.length_unit, slides=spring.joint in sliding)
-        lines.append((f"spring {i}", text))
-    pull = f"{triple_text(loading.gravity)} m/s^2" if any(loading.gravity) else "none"
-    return [*lines, ("gravity", pull)]
+        lines.append((say("spring {number}", number=i), text))
+    pull = f"{triple_text(loading.gravity)} m/s^2" if any(loading.gravity) else say("none")
+    return [*lines, (say("gravity"), pull)]
 
 
 def no_peak(forces: Forces) -> str:
@@ -163,13 +176,17 @@ def no_peak(forces: Forces) -> str:
         return ""
     dead = np.unique(forces.status[lost])
     if "dead-centre" in dead:
-        return (
-            f"no peak: the {quantity(forces)} grows without bound at the dead centres of {forces.driver}; "
-            "drive it by a law that stays off them, or another joint"
+        return say(
+            "no peak: the {quantity} grows without bound at the dead centres of {joint}; "
+            "drive it by a law that stays off them, or another joint",
+            quantity=say(quantity(forces)),
+            joint=forces.driver,
         )
-    rows = f"{int(lost.sum())} of {len(lost)} rows"
-    return (
-        f"no peak: {rows} have no value ({', '.join(map(str, dead))}); drive it by a law that stays off them"
+    return say(
+        "no peak: {count} of {rows} rows have no value ({status}); drive it by a law that stays off them",
+        count=int(lost.sum()),
+        rows=len(lost),
+        status=", ".join(map(str, dead)),
     )
 
 
@@ -178,40 +195,49 @@ def quantity(forces: Forces) -> str:
     return "force" if forces.slides else "torque"
 
 
+def drive_label(forces: Forces) -> str:
+    """What the line of what the drive has to give is called."""
+    return say("input force") if forces.slides else say("input torque")
+
+
 def drive_facts(forces: Forces, found: Sizing | None) -> list[tuple[str, str]]:
     """What the drive has to give: torque, power, energy, flywheel."""
-    what, unit = f"input {quantity(forces)}", forces.unit
+    what, unit = drive_label(forces), forces.unit
     if found is None:
         return [(what, no_peak(forces))]
     place = Places(forces)
+    rms, mean = f"{number(found.rms_torque)} {unit}", f"{_mean(found.mean_torque, found)} {unit}"
     facts = [
-        (what, f"peak {place.at(found.peak_torque, unit)}"),
-        ("", f"rms {number(found.rms_torque)} {unit}, mean {_mean(found.mean_torque, found)} {unit}"),
+        (what, say("peak {value}", value=place.at(found.peak_torque, unit))),
+        ("", say("rms {rms}, mean {mean}", rms=rms, mean=mean)),
     ]
     if forces.at_rest:
         return facts
-    braking = "no braking"
+    braking = say("no braking")
     if found.braking_power is not None:
-        braking = f"braking {place.at(found.braking_power, 'W')}"
-    facts.append(("power", f"peak {place.at(found.peak_power, 'W')}, {braking}"))
+        braking = say("braking {value}", value=place.at(found.braking_power, "W"))
+    peak = say("peak {value}", value=place.at(found.peak_power, "W"))
+    facts.append((say("power"), say(", ").join([peak, braking])))
     average = _mean_power(forces)
-    taken = ": the linkage drives its input" if average < 0 else ""
-    facts.append(("", f"mean {number(average)} W{taken}"))
-    steady = "torque" if forces.periodic else "power"
-    facts.append(
-        (
-            "energy",
-            f"fluctuates by {number(found.fluctuation)} J about a drive of constant {steady}: fastest at "
-            f"{place(found.fastest)}, slowest at {place(found.slowest)}",
-        )
+    mean = say("mean {power} W", power=number(average))
+    facts.append(("", say("{mean}: the linkage drives its input", mean=mean) if average < 0 else mean))
+    steady = say("torque") if forces.periodic else say("power")
+    energy = say(
+        "fluctuates by {energy} J about a drive of constant {steady}: fastest at {fastest}, "
+        "slowest at {slowest}",
+        energy=number(found.fluctuation),
+        steady=steady,
+        fastest=place(found.fastest),
+        slowest=place(found.slowest),
     )
+    facts.append((say("energy"), energy))
     if found.flywheel is not None:
-        facts.append(
-            (
-                "flywheel",
-                f"{number(found.flywheel)} kg m^2 at the input for an unevenness of {found.unevenness:g}",
-            )
-        )
+        inertia = number(found.flywheel)
+        wheel = say(
+            "{inertia} kg m^2 at the input for an unevenness of {unevenness:g}",
+            inertia=inertia, unevenness=found.unevenness,
+        )  # fmt: skip
+        facts.append((say("flywheel"), wheel))
     return facts
 
 
@@ -235,13 +261,14 @@ def spin_facts(forces: Forces) -> list[tuple[str, str]]:
     for link, moment in forces.spin.items():
         most = float(np.nanmax(np.abs(moment), initial=0.0))
         if most <= ROUNDING * scale:
-            text = "not held: its body is a rod, symmetric about the line of its balls, or none"
+            text = say("not held: its body is a rod, symmetric about the line of its balls, or none")
         else:
-            text = (
-                f"the rule that holds it gives up to {number(most)} N m that no ball gives; without a guide "
-                "the link turns about the line of its balls, and these forces are not its own"
+            text = say(
+                "the rule that holds it gives up to {moment} N m that no ball gives; without a guide "
+                "the link turns about the line of its balls, and these forces are not its own",
+                moment=number(most),
             )
-        facts.append(("idle spin", f"{link}: {text}"))
+        facts.append((say("idle spin"), say("{word}: {meaning}", word=retold(link), meaning=text)))
     return facts
 
 
@@ -255,20 +282,24 @@ def open_facts(forces: Forces) -> list[tuple[str, str]]:
         parts.setdefault(lost, []).append(name)
     everywhere = len(parts) == 1
     listed = [
-        f"{', '.join(lost)} {'in every joint' if everywhere else 'of ' + ', '.join(joints)}"
+        say("{components} in every joint", components=", ".join(lost))
+        if everywhere
+        else say("{components} of {joints}", components=", ".join(lost), joints=", ".join(joints))
         for lost, joints in parts.items()
         if lost
     ]
-    what = "; ".join(forces.indeterminate)
-    alone = known_alone(forces)
-    return [
-        (
-            "not determined",
-            f"rigid bodies leave open {what}, which all joints bear together: {'; '.join(listed)}",
-        ),
-        ("", "these depend on clearances and elasticity; one joint with more freedom determines them"),
-        *([("", f"known alone, greatest of the rows: {', '.join(alone)}")] if alone else []),
+    what = say("; ").join(map(retold, forces.indeterminate))
+    together = say(
+        "rigid bodies leave open {what}, which all joints bear together: {components}",
+        what=what, components=say("; ").join(listed),
+    )  # fmt: skip
+    facts = [
+        (say("not determined"), together),
+        ("", say("these depend on clearances and elasticity; one joint with more freedom determines them")),
     ]
+    if alone := known_alone(forces):
+        facts.append(("", say("known alone, greatest of the rows: {forces}", forces=say(", ").join(alone))))
+    return facts
 
 
 def known_alone(forces: Forces) -> list[str]:
@@ -278,7 +309,8 @@ def known_alone(forces: Forces) -> list[str]:
         x, y = reaction.determinate[3:5]
         if x != y:
             which = 0 if x else 1
-            found.append(f"{COMPONENTS[3 + which]} {number(greatest(reaction.force[:, which]))} N of {name}")
+            size = f"{COMPONENTS[3 + which]} {number(greatest(reaction.force[:, which]))} N"
+            found.append(say("{force} of {joint}", force=size, joint=name))
     return found
 
 
@@ -294,11 +326,13 @@ def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]
     if found is None:
         return []
     place = Places(forces)
+    force, rms_force = place.at(found.force, "N"), f"{number(found.rms_force)} N"
+    moment, rms_moment = place.at(found.moment, "N m"), f"{number(found.rms_moment)} N m"
     return [
-        ("shaking force", f"peak {place.at(found.force, 'N')}, rms {number(found.rms_force)} N"),
+        (say("shaking force"), say("peak {value}, rms {rms}", value=force, rms=rms_force)),
         (
-            "moment",
-            f"about the origin: peak {place.at(found.moment, 'N m')}, rms {number(found.rms_moment)} N m",
+            say("moment"),
+            say("about the origin: peak {value}, rms {rms}", value=moment, rms=rms_moment),
         ),
     ]
 
@@ -315,14 +349,19 @@ def check_values(forces: Forces) -> dict[str, float | None]:
 def check_text(forces: Forces) -> str:
     """The checks in words."""
     values = check_values(forces)
-    kind = "torque is the slope of potential energy" if forces.at_rest else "power closes along the cycle"
     words = {
-        "power": kind,
-        "ground": "the ground bears weights, loads and shaking",
-        "work": "work of a cycle",
+        "power": say("torque is the slope of potential energy")
+        if forces.at_rest
+        else say("power closes along the cycle"),
+        "ground": say("the ground bears weights, loads and shaking"),
+        "work": say("work of a cycle"),
     }
-    made = [f"{words[key]} to {value:.1e}" for key, value in values.items() if value is not None]
-    return ", ".join(made) + " of the peak" if made else ""
+    made = [
+        say("{check} to {value:.1e}", check=words[key], value=value)
+        for key, value in values.items()
+        if value is not None
+    ]
+    return say("{checks} of the peak", checks=say(", ").join(made)) if made else ""
 
 
 def found_text(found: Sizing | None, *, law: bool = False) -> str:
@@ -331,13 +370,19 @@ def found_text(found: Sizing | None, *, law: bool = False) -> str:
         return ""
     match found.found:
         case "series":
-            tail = f"; what the rows may miss is {found.tail:.0e} of the peak"
-            return f"by a series through all rows, peaks between them{tail}"
+            return say(
+                "by a series through all rows, peaks between them; what the rows may miss is {tail:.0e} of "
+                "the peak",
+                tail=found.tail,
+            )
         case "pieces":
-            return "between the inputs at which loads set in or end, peaks within and at them"
+            return say("between the inputs at which loads set in or end, peaks within and at them")
+        case _ if law:
+            return say(
+                "of the rows as they are, those of the law: its accelerations are as good as its table"
+            )
         case _:
-            rows = "of the rows as they are"
-            return f"{rows}, those of the law: its accelerations are as good as its table" if law else rows
+            return say("of the rows as they are")
 
 
 def greatest(values: Floats) -> float:

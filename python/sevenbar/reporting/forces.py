@@ -30,17 +30,19 @@ from sevenbar.reporting.force_words import (
     check_text,
     check_values,
     drive_facts,
+    drive_label,
     found_text,
     greatest,
     no_peak,
     number,
     open_facts,
-    quantity,
     shaking_facts,
     shaking_found,
     spin_facts,
 )
 from sevenbar.reporting.page import Facts, drive_text, number_table
+from sevenbar.reporting.shown import rows_text
+from sevenbar.text.words import say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,7 +75,9 @@ def forces_report(
         "forces.json": json_file(as_dict),
         "forces.csv": columns_file(lambda found: columns(found.forces)),
     }
-    return Report(text, as_dict, files, partial(_figures, figures, look or FigureLook(), tuple(joints)))
+    return Report(
+        text, as_dict, files, partial(_figures, figures, look or FigureLook(), tuple(joints)), spoken=True
+    )
 
 
 def _figures(
@@ -107,30 +111,31 @@ def _drawn(draw: Callable[..., Figure], look: FigureLook, _found: CircuitForces)
 def drive_fact(found: CircuitForces) -> str:
     """Which circuit, and how it is driven."""
     motion, circuit, forces = found.motion, found.circuit, found.forces
-    which = f"{circuit.index} of {len(motion.circuits)}"
+    which = say("{number} of {count}", number=circuit.index, count=len(motion.circuits))
     if len(np.unique(circuit.branch)) > 1 and len(np.unique(forces.branch)) == 1:
-        which += f", pass {int(forces.branch[0])}"
+        which = say("{circuit}, pass {number}", circuit=which, number=int(forces.branch[0]))
     if forces.at_rest:
-        return f"{which}, at rest at each {forces.driver}: no inertia, no damping"
+        return say(
+            "{circuit}, at rest at each {joint}: no inertia, no damping", circuit=which, joint=forces.driver
+        )
     speed = motion.speed if motion.law is None else None
     unit = motion.linkage.unit_of(motion.input)
-    return f"{which}, {drive_text(motion.input, speed, unit, written=motion.speed_written)}"
+    driven = drive_text(motion.input, speed, unit, written=motion.speed_written)
+    return say(", ").join([which, driven])
 
 
 def facts_of_forces(found: CircuitForces) -> list[tuple[str, str]]:
     """All that a report says of forces above the table of joints."""
     forces, linkage = found.forces, found.motion.linkage
-    sliding = [c for c, kind in zip(linkage.columns, linkage.column_kinds, strict=True) if kind == "slide"]
-    facts = [("circuit", drive_fact(found)), *acting_facts(forces, sliding)]
+    sliding = [column for column in linkage.columns if not linkage.turns(column)]
+    facts = [(say("circuit"), drive_fact(found)), *acting_facts(forces, sliding)]
     facts += drive_facts(forces, found.sizing)
     facts += shaking_facts(forces, found.shaking)
     facts += spin_facts(forces)
     facts += open_facts(forces)
-    facts.append(("found", found_text(found.sizing, law=found.motion.law is not None)))
-    facts.append(("checks", check_text(forces)))
-    words, counts = np.unique(forces.status, return_counts=True)
-    rows = ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
-    facts.append(("rows", f"{len(forces.status)}: {rows}"))
+    facts.append((say("found"), found_text(found.sizing, law=found.motion.law is not None)))
+    facts.append((say("checks"), check_text(forces)))
+    facts.append((say("rows"), f"{len(forces.status)}: {rows_text(forces.status)}"))
     return [(label, said) for label, said in facts if said]
 
 
@@ -139,7 +144,7 @@ def text(found: CircuitForces) -> RenderableType:
     forces = found.forces
     facts = Facts()
     for label, said in facts_of_forces(found):
-        strong = label == f"input {quantity(forces)}"
+        strong = label == drive_label(forces)
         facts.add(label, said, style="bold" if strong else "")
     parts: list[RenderableType] = [Text(found.motion.linkage.heading, style="bold underline"), facts.grid]
     if found.sizing is not None:
@@ -148,8 +153,10 @@ def text(found: CircuitForces) -> RenderableType:
             Text(),
             number_table(head, rows),
             Text(
-                "peaks of what the link before puts on the link after; radial square to the joint's axis, "
-                "axial along it, tilting moment square to it, turning about it",
+                say(
+                    "peaks of what the link before puts on the link after; radial square to the joint's "
+                    "axis, axial along it, tilting moment square to it, turning about it"
+                ),
                 style="dim",
             ),
         ]
@@ -160,8 +167,8 @@ def bearing_rows(forces: Forces, found: Sizing) -> tuple[list[str], list[list[st
     """The table of joints: what each bears at most, and the force's place and cubic mean."""
     place = Places(forces)
     head = [
-        "joint", "force\n[N]", "@", "cubic mean\n[N]", "radial\n[N]", "axial\n[N]", "tilting\n[N m]",
-        "turning\n[N m]",
+        say("joint"), say("force\n[N]"), "@", say("cubic mean\n[N]"), say("radial\n[N]"), say("axial\n[N]"),
+        say("tilting\n[N m]"), say("turning\n[N m]"),
     ]  # fmt: skip
     rows = []
     for name, bearing in found.bearings.items():
@@ -181,17 +188,17 @@ def bearing_rows(forces: Forces, found: Sizing) -> tuple[list[str], list[list[st
     for row in rows:
         for column, scale in ((1, 0), (4, 0), (5, 0), (6, 1), (7, 1)):
             # what is left of rounding
-            if row[column] not in (OPEN, "") and abs(float(row[column])) < 1e-12 * scales[scale]:
+            if row[column] not in (say(OPEN), "") and abs(float(row[column])) < 1e-12 * scales[scale]:
                 row[column] = "0"
     return head, rows
 
 
 def _scale(rows: list[list[str]], of: tuple[int, ...]) -> float:
-    return max((float(row[i]) for row in rows for i in of if row[i] not in (OPEN, "")), default=0.0)
+    return max((float(row[i]) for row in rows for i in of if row[i] not in (say(OPEN), "")), default=0.0)
 
 
 def _peak(burden: Burden) -> str:
-    return number(burden.peak.value) if math.isfinite(burden.peak.value) else OPEN
+    return number(burden.peak.value) if math.isfinite(burden.peak.value) else say(OPEN)
 
 
 def columns(forces: Forces) -> dict[str, npt.NDArray[Any]]:

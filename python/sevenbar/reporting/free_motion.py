@@ -15,6 +15,7 @@ from sevenbar.forces.free_motion.result import FreeMotion
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.page import Facts, number_table
 from sevenbar.text.printing import figure_of, lines, text_of
+from sevenbar.text.words import say
 
 #: How a motion goes on, in words.
 GOES_ON = {
@@ -40,25 +41,34 @@ def free_facts(found: FreeMotion) -> list[tuple[str, str]]:
         return _angle(float(x), turns=found.input_turns, unit=found.length_unit)
 
     facts = [
-        ("motion", GOES_ON[found.kind]),
-        ("time", f"0 to {found.duration:g} s, {len(found.time)} rows"),
-        ("start", f"{name} = {value(found.input[0])}, {value(found.speed[0])}/s"),
-        ("end", f"{name} = {value(found.input[-1])}, {value(found.speed[-1])}/s"),
+        (say("motion"), say(GOES_ON[found.kind])),
+        (say("time"), say("0 to {end:g} s, {count} rows", end=found.duration, count=len(found.time))),
+        (say("start"), f"{name} = {value(found.input[0])}, {value(found.speed[0])}/s"),
+        (say("end"), f"{name} = {value(found.input[-1])}, {value(found.speed[-1])}/s"),
     ]
     if found.period is not None:
-        facts.append(("period", f"{found.period:.12g} s"))
+        facts.append((say("period"), f"{found.period:.12g} s"))
     if found.turning:
         facts.append(
-            ("turns back at", ", ".join(f"{name} = {value(point.input)}" for point in found.turning))
+            (
+                say("turns back at"),
+                say(", ").join(f"{name} = {value(point.input)}" for point in found.turning),
+            )
         )
-    facts.append(("greatest kinetic energy", f"{np.nanmax(found.kinetic):.9g} J, of these rows"))
+    facts.append(
+        (
+            say("greatest kinetic energy"),
+            say("{energy:.9g} J, of these rows", energy=np.nanmax(found.kinetic)),
+        )
+    )
     if math.isfinite(found.energy_error):
-        facts.append(("energy", f"kept to {found.energy_error:.1e} of that"))
+        facts.append((say("energy"), say("kept to {share:.1e} of that", share=found.energy_error)))
     if math.isfinite(found.difference):
-        facts.append(("accuracy", f"two tolerances differ by {found.difference:.1e} of arc length"))
-    facts.append(("resolution", f"polynomials along the circuit to {found.tail:.1e}"))
+        difference = say("two tolerances differ by {share:.1e} of arc length", share=found.difference)
+        facts.append((say("accuracy"), difference))
+    facts.append((say("resolution"), say("polynomials along the circuit to {tail:.1e}", tail=found.tail)))
     if found.through_change_points:
-        facts.append(("note", "it passes change points along the circuit's smooth continuation"))
+        facts.append((say("note"), say("it passes change points along the circuit's smooth continuation")))
     return facts
 
 
@@ -79,11 +89,14 @@ def _page(found: tuple[FreeMotion, Sequence[Equilibrium]]) -> RenderableType:
     facts = Facts()
     for label, text in free_facts(fall):
         facts.add(label, text)
-    parts: list[RenderableType] = [Text(f"free motion of {fall.heading}", style="bold"), facts.grid]
+    parts: list[RenderableType] = [
+        Text(say("free motion of {linkage}", linkage=fall.heading), style="bold"),
+        facts.grid,
+    ]
     if places:
         rows = [
             [
-                place.kind,
+                say(place.kind),
                 _angle(place.input, turns=fall.input_turns, unit=fall.length_unit),
                 "" if math.isnan(place.frequency) else f"{place.frequency:.9g}",
                 f"{place.potential:.9g}",
@@ -136,4 +149,5 @@ def free_report(formats: Sequence[str]) -> Report[tuple[FreeMotion, Sequence[Equ
             "free.csv": columns_file(lambda found: found[0].table()),
             **figure_files("free", formats, draw),
         },
+        spoken=True,
     )

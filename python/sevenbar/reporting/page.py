@@ -24,8 +24,8 @@ class Facts:
         self.grid.add_column()
 
     def add(self, label: str, text: str, style: str = "") -> None:
-        """Adds a line; without a label it belongs to the one above."""
-        self.grid.add_row(label, Text(text, style=style))
+        """Adds a line, its label in the language that is spoken; without one it belongs to the line above."""
+        self.grid.add_row(say(label) if label else "", Text(text, style=style))
 
 
 def drive_text(input: str, speed: float | None, unit: str, output: str = "", *, written: str = "") -> str:
@@ -56,11 +56,16 @@ def speed_text(speed: float, unit: str, written: str = "") -> str:
 
 
 def number_table(heads: Sequence[str], rows: Iterable[Sequence[str]], *, words: Sequence[int] = ()) -> Table:
-    """A table with names in its first column and numbers, flush right, in the others except `words`."""
+    """A table with names in its first column and numbers, flush right, in the others except `words`.
+
+    Heads that the catalogue has are in the language that is spoken.
+    """
     table = Table(box=SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for place, head in enumerate(heads):
         right = place > 0 and place not in words
-        table.add_column(Text(head), justify="right" if right else "left", no_wrap=place == 0)
+        table.add_column(
+            Text(say(head) if head else ""), justify="right" if right else "left", no_wrap=place == 0
+        )
     for row in rows:
         table.add_row(*map(Text, row))
     return table

@@ -16,10 +16,12 @@ from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.table import Table
 from rich.text import Text
 
-from sevenbar.kinematics.circuits import Circuit, Extremes
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.joint_text import joint_value
 from sevenbar.kinematics.motion import Modes, Motion
+from sevenbar.reporting.extents import extents_dict
 from sevenbar.reporting.facts import closure_error, completeness_text, side_lengths
 from sevenbar.reporting.figures import FigureLook, posed_circuit, report_figures, write_figures
 from sevenbar.reporting.files import Files, LongTable, Report, json_file, json_text, without_nan
@@ -105,7 +107,9 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "agree": motion.agree,
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
         "circuits": [
-            _circuit_dict(circuit) | {"forces": None if linkage.loading.is_empty else peaks_dict(circuit)}
+            _circuit_dict(circuit)
+            | extents_dict(circuit, linkage)
+            | {"forces": None if linkage.loading.is_empty else peaks_dict(circuit)}
             for circuit in motion.circuits
         ],
         "idle": list(motion.idle),
@@ -163,11 +167,11 @@ class _Page:
         yield from made
 
 
-def text(motion: Motion) -> RenderableType:
-    """The report for people, to be printed by rich; angles in degrees."""
+def text(motion: Motion, *, ranges: bool = False) -> RenderableType:
+    """The report for people, to be printed by rich; angles in degrees; with `ranges` of all joints."""
 
     def parts(width: int) -> Iterator[RenderableType]:
-        page = summary(motion, width)
+        page = summary(motion, width, ranges=ranges)
         facts = Facts()
         for name, fact in page.facts:
             facts.add(name, fact, style="bold" if name == say("motion type") else "")
@@ -187,14 +191,14 @@ def print_text(motion: Motion, console: Console | None = None) -> None:
     (console or Console()).print(text(motion))
 
 
-def markdown(motion: Motion, pictures: Sequence[str] = ()) -> str:
-    """The report for people as Markdown, and pictures by their file names.
+def markdown(motion: Motion, pictures: Sequence[str] = (), *, ranges: bool = False) -> str:
+    """The report for people as Markdown, and pictures by their file names; with `ranges` of all joints.
 
     >>> import sevenbar as sb
     >>> markdown(sb.load("rssr").motion()).splitlines()[0]
     '# RSSR of Sun and Zhou'
     """
-    page = summary(motion)
+    page = summary(motion, ranges=ranges)
     parts = [f"# {escaped(page.title)}"]
     parts.append(
         "\n".join(f"- {name}: {escaped(fact)}" if name else f"  {escaped(fact)}" for name, fact in page.facts)
@@ -227,8 +231,11 @@ def motion_report(
     *,
     circuit: int | None = None,
     look: FigureLook | None = None,
+    ranges: bool = False,
 ) -> Report[Motion]:
     """How a motion is reported, with the figures in these formats, of a circuit, drawn in a way.
+
+    With `ranges` tables of all joints' ranges, bends and distances are part of the page.
 
     `drawn` gives the motion that the figures show, where it is another, such as one of fewer rows.
     """
@@ -237,11 +244,11 @@ def motion_report(
         "motion.csv": LongTable(Motion.column_parts, row_count),
     }
     return Report(
-        text,
+        partial(text, ranges=ranges),
         as_dict,
         files,
         lambda motion: report_figures(drawn(motion), figures, circuit=circuit, look=look),
-        {"report.md": _write_markdown},
+        {"report.md": partial(_write_markdown, ranges=ranges)},
         spoken=True,
     )
 
@@ -251,11 +258,13 @@ def row_count(motion: Motion) -> int:
     return sum(circuit.tally.rows for circuit in motion)
 
 
-def _write_markdown(motion: Motion, path: Path) -> None:
+def _write_markdown(motion: Motion, path: Path, *, ranges: bool = False) -> None:
     # a browser shows no PDF in place; of several formats one is enough
     shown_here = [file.name for file in sorted(path.parent.iterdir()) if file.suffix in (".png", ".svg")]
     stems = {name.rpartition(".")[0]: name for name in reversed(shown_here)}
-    path.write_text(markdown(motion, [stems[stem] for stem in sorted(stems)]), encoding="utf-8")
+    path.write_text(
+        markdown(motion, [stems[stem] for stem in sorted(stems)], ranges=ranges), encoding="utf-8"
+    )
 
 
 def write(

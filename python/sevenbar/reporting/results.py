@@ -9,11 +9,13 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Circuit, Extremes, Sensitivity, Trace, Words
+from sevenbar.kinematics.circuit_values import Extremes, Sensitivity, Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.instant_centres import InstantCentre, InstantCentres
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Modes, Motion, Output
 from sevenbar.kinematics.screw_axes import ScrewAxes
+from sevenbar.reporting.circuit_quantities import way_round
 from sevenbar.reporting.facts import (
     COMPLETE,
     closure_error,
@@ -22,8 +24,8 @@ from sevenbar.reporting.facts import (
     joints_text,
 )
 from sevenbar.reporting.page import drive_text
-from sevenbar.reporting.shown import Shown
-from sevenbar.reporting.summary import circuit_facts, way_round
+from sevenbar.reporting.shown import Shown, rows_text
+from sevenbar.reporting.summary import circuit_facts
 from sevenbar.text.printing import figure_of, lines, picture_of, text_of
 
 if TYPE_CHECKING:
@@ -75,7 +77,7 @@ def _(modes: Modes) -> str:
         f"{count} assembly mode{'s' * (count != 1)} at input {modes.input:.6g}",
         [
             ("q", f"{modes.q.shape}: {', '.join(modes.columns)}"),
-            ("status", _counts(modes.status)),
+            ("status", rows_text(modes.status)),
             ("residual", worst),
             ("completeness", f"{modes.completeness}: {COMPLETE[modes.completeness]}"),
         ],
@@ -133,7 +135,7 @@ def _(circuit: Circuit) -> str:
     return lines(
         f"Circuit {circuit.index}: {circuit.motion_type}, {way_round(circuit)}",
         [
-            ("rows", f"{len(circuit.time)}: {_counts(circuit.status)}"),
+            ("rows", f"{len(circuit.time)}: {rows_text(circuit.status)}"),
             ("columns", ", ".join(circuit.columns)),
             (circuit.columns[circuit.input_column], extent(circuit.input_range, place, as_limits=True)),
             (circuit.columns[circuit.output_column], extent(circuit.output_range, result)),
@@ -159,7 +161,7 @@ def _(trace: Trace) -> str:
     return lines(
         f"Trace of a point: {len(trace.position)} rows",
         [
-            ("status", _counts(trace.status)),
+            ("status", rows_text(trace.status)),
             *((axis, _extent(values)) for axis, values in zip("xyz", trace.position.T, strict=True)),
             ("speed", _extent(np.linalg.norm(trace.velocity, axis=1))),
             ("acceleration", _extent(np.linalg.norm(trace.acceleration, axis=1))),
@@ -172,7 +174,7 @@ def _(axes: ScrewAxes) -> str:
     return lines(
         f"Screw axes of link {axes.link} against link {axes.relative_to}: {len(axes.status)} rows",
         [
-            ("status", _counts(axes.status)),
+            ("status", rows_text(axes.status)),
             ("pitch", _extent(axes.pitch)),
             ("rate", _extent(axes.rate)),
             ("slide rate", _extent(axes.slide_rate)),
@@ -186,7 +188,7 @@ def _(centre: InstantCentre) -> str:
     sides = zip("xy", centre.in_plane.T, strict=True)
     return lines(
         f"Instant centre of links {first} and {second}: {len(centre.status)} rows",
-        [("status", _counts(centre.status)), *((axis, _extent(values)) for axis, values in sides)],
+        [("status", rows_text(centre.status)), *((axis, _extent(values)) for axis, values in sides)],
     )
 
 
@@ -194,7 +196,7 @@ def _(centre: InstantCentre) -> str:
 def _(found: InstantCentres) -> str:
     return lines(
         f"{len(found)} instant centres",
-        [(f"{a}-{b}", _counts(centre.status)) for (a, b), centre in found.centres.items()],
+        [(f"{a}-{b}", rows_text(centre.status)) for (a, b), centre in found.centres.items()],
     )
 
 
@@ -209,7 +211,7 @@ def _(found: Sensitivity) -> str:
     return lines(
         f"Sensitivity of {columns} columns by {numbers} numbers: {rows} rows",
         [
-            ("status", _counts(found.status)),
+            ("status", rows_text(found.status)),
             ("greatest", "; ".join(most[:MOST_CIRCUITS]) + (" .." if len(most) > MOST_CIRCUITS else "")),
             ("points", ", ".join(found.points)),
             ("opening", ", ".join(found.opening)),
@@ -229,7 +231,7 @@ def _(output: Output) -> str:
     return lines(
         f"Output of both branches at {output.position.shape[1]} inputs",
         [
-            ("status", _counts(output.status.ravel())),
+            ("status", rows_text(output.status.ravel())),
             ("position", _extent(output.position)),
             *(
                 (name, _extent(values))
@@ -238,12 +240,6 @@ def _(output: Output) -> str:
             ),
         ],
     )
-
-
-def _counts(status: Words) -> str:
-    """How many rows have each status."""
-    words, counts = np.unique(status, return_counts=True)
-    return ", ".join(f"{count} {word}" for word, count in zip(words, counts, strict=True))
 
 
 def _extent(values: Floats) -> str:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, counted
 from sevenbar.kinematics.columns import joint_column
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.screw_axes import ScrewAxes
@@ -46,7 +46,7 @@ def axode_columns(
     ['circuit', 'branch', 'sample', 'theta_1_deg', 'link2_status', 'link2_point_x_mm']
     """
     linkage = motion.linkage
-    slides = linkage.column_kinds[linkage.columns.index(motion.input)] == "slide"
+    slides = not linkage.turns(motion.input)
     head = joint_column(motion.input, slides=slides, order=0, length=linkage.length_unit, angle="deg")
     parts = []
     for circuit in motion:
@@ -76,11 +76,6 @@ def _ranges(axes: ScrewAxes) -> dict[str, tuple[float, float] | None]:
     return {name: ends(getattr(axes, name)) for name in ("pitch", "rate", "slide_rate")}
 
 
-def _statuses(axes: ScrewAxes) -> dict[str, int]:
-    words, counts = np.unique(axes.status, return_counts=True)
-    return {str(word): int(count) for word, count in zip(words, counts, strict=True)}
-
-
 def _as_dict(links: Sequence[int], relative_to: int | None, motion: Motion) -> dict[str, Any]:
     linkage = motion.linkage
     return {
@@ -91,7 +86,7 @@ def _as_dict(links: Sequence[int], relative_to: int | None, motion: Motion) -> d
         "circuits": [
             {
                 "links": [
-                    {"link": link, "statuses": _statuses(axes), **_ranges(axes)}
+                    {"link": link, "statuses": counted(axes.status), **_ranges(axes)}
                     for link, axes in ((n, circuit.screw_axes(n, relative_to)) for n in links)
                 ]
             }
@@ -114,7 +109,7 @@ def _text(links: Sequence[int], relative_to: int | None, motion: Motion) -> Rend
             fastest = circuit.size * max(ranges["rate"] or (0.0,))
             scale = {"pitch": circuit.size, "rate": 0.0, "slide_rate": fastest}
             cells = [_range(ranges[name], ROUNDING * size) for name, size in scale.items()]
-            words = ", ".join(f"{n} {word}" for word, n in _statuses(axes).items())
+            words = ", ".join(f"{n} {word}" for word, n in counted(axes.status).items())
             rows.append((f"{link}", f"{circuit.index}", words, *cells))
     title = Text(linkage.heading, style="bold underline")
     drive = drive_text(motion.input, motion.speed, linkage.unit_of(motion.input))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from sevenbar.arrays import Words, counted
 from sevenbar.kinematics.geometry import Loop
 
 
@@ -44,3 +45,8 @@ def degrees(angle: float, *, whole: bool = False) -> str:
     # rounded first, so that neither -0.000 nor 360.000 is left
     degrees = round(math.degrees(angle), 3)
     return f"{(degrees % 360 if whole else degrees) + 0.0:.3f}\u00b0"
+
+
+def rows_text(status: Words) -> str:
+    """How many rows have each status: "2 dead-centre, 358 ok"."""
+    return ", ".join(f"{count} {word}" for word, count in counted(status).items())

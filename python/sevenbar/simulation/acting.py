@@ -13,6 +13,7 @@ from sevenbar.forces.loading import Load, Spring, Three
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.link_bodies import as_moved, resolved
 from sevenbar.kinematics.motion import Solvable
+from sevenbar.kinematics.rigid import placed
 from sevenbar.text.units import LENGTHS
 
 #: Added to the inertia of a body about every axis, as a part of that of its mass at a tenth of the linkage's
@@ -46,8 +47,7 @@ def in_links(linkage: Loop, bodies: Mapping[int, Body]) -> dict[int, PlacedMass]
         assert body.centre is not None
         frame = linkage.point_frames[link - 1]
         turn = frame[:3, :3]
-        centre = turn @ np.array(body.centre) + frame[:3, 3]
-        found[link] = PlacedMass(body.mass, centre, turn @ body.tensor @ turn.T)
+        found[link] = PlacedMass(body.mass, placed(frame, body.centre), turn @ body.tensor @ turn.T)
     return found
 
 
@@ -109,11 +109,10 @@ def acting(
     if loading.is_empty:
         return None
     metre = LENGTHS[linkage.length_unit]
-    turning = linkage.column_kinds[linkage.columns.index(linkage.drive.joint)] == "turn"
+    turning = linkage.turns(linkage.drive.joint)
 
-    def placed(link: int, at: Three) -> Placed:
-        frame = linkage.point_frames[link - 1]
-        return links[link], frame[:3, :3] @ np.array(at) + frame[:3, 3]
+    def on_link(link: int, at: Three) -> Placed:
+        return links[link], placed(linkage.point_frames[link - 1], at)
 
     def axes(link: int) -> Floats:
         return np.asarray(linkage.point_frames[link - 1][:3, :3])
@@ -123,7 +122,7 @@ def acting(
         turns = own.axes == "link"
         turn = axes(own.link) if turns else np.eye(3)
         return PlacedLoad(
-            placed(own.link, own.at),
+            on_link(own.link, own.at),
             turn @ np.array(own.force),
             turn @ np.array(own.torque),
             turns,
@@ -138,12 +137,12 @@ def acting(
     def spring(own: Spring) -> PlacedSpring:
         assert own.links is not None
         assert own.at is not None
-        first, second = (placed(link, at) for link, at in zip(own.links, own.at, strict=True))
+        first, second = (on_link(link, at) for link, at in zip(own.links, own.at, strict=True))
         return PlacedSpring((first, second), own.stiffness / metre, own.length * metre, own.damping / metre)
 
     def in_joint(own: Spring) -> JointSpring:
         assert own.joint is not None
-        slides = linkage.column_kinds[linkage.columns.index(own.joint)] == "slide"
+        slides = not linkage.turns(own.joint)
         unit = metre if slides else 1.0
         return JointSpring(*columns[own.joint], own.stiffness / unit, own.length * unit, own.damping / unit)
 

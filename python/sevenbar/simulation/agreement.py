@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.rigid import placed
 from sevenbar.simulation.course import Course
 from sevenbar.simulation.engine import Record
 from sevenbar.simulation.force_agreement import ComparedForce, compared_forces
@@ -105,11 +106,10 @@ def agreement(course: Course, model: Prototype, record: Record) -> Simulation:
         np.zeros_like(values.gap),
         np.zeros_like(values.tilt),
     )
-    _unwind(values, theory, [kind == "turn" for kind in linkage.column_kinds])
+    _unwind(values, theory, linkage.turning)
     points = {}
     for point in linkage.points:
-        frame = linkage.point_frames[point.link - 1]
-        place = frame[:3, :3] @ np.array(point.at) + frame[:3, 3]
+        place = placed(linkage.point_frames[point.link - 1], point.at)
         trace = circuit.point(point.link, point.at)
         points[point.name] = (
             PointValues(*bodies.point(point.link - 1, place)),
@@ -149,7 +149,7 @@ def _links(linkage: Loop, model: Prototype, record: Record, first: int) -> BodyS
     )
 
 
-def _unwind(values: JointValues, theory: JointValues, turns: list[bool]) -> None:
+def _unwind(values: JointValues, theory: JointValues, turns: Booleans) -> None:
     """Puts the engine's angles on the same whole turns as Sevenbar's, by their first rows with a value."""
     for column in np.flatnonzero(turns):
         apart = (theory.q[:, column] - values.q[:, column]) / math.tau
@@ -163,7 +163,7 @@ def _differences(run: Simulation) -> Iterator[Difference]:
     unit = linkage.length_unit
     output = circuit.output_column
     order = [output, *(c for c in range(len(linkage.columns)) if c != output)]
-    slides = [kind == "slide" for kind in linkage.column_kinds]
+    slides = ~linkage.turning
     for column in order:
         name = linkage.columns[column]
         own = unit if slides[column] else "rad"

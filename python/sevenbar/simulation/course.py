@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats, Integers
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 
 #: An engine starts so many rows ahead of the first that is compared. Its accelerations start with an error
@@ -63,7 +63,7 @@ class Course:
         values = self.circuit.q[self.rows].copy()
         if self.closes:
             ahead = 2 * values[-2] - values[-3]
-            turns = np.array([kind == "turn" for kind in self.motion.linkage.column_kinds])
+            turns = self.motion.linkage.turning
             whole = np.round((ahead - values[-1]) / math.tau) * math.tau
             values[-1] += np.where(turns & np.isfinite(whole), whole, 0.0)
         return values
@@ -119,7 +119,7 @@ def course(motion: Motion, index: int) -> Course:
     return Course(motion, circuit, lead, inner, float(abs(steps[0] / motion.speed)), closes=False)
 
 
-def _longest_pass(circuit: Circuit, solved: np.ndarray) -> Integers:
+def _longest_pass(circuit: Circuit, solved: Booleans) -> Integers:
     """The rows of the longest pass between input dead centres that have all values."""
     marks = np.flatnonzero(np.diff(circuit.branch) != 0) + 1
     passes = [np.arange(a, b) for a, b in pairwise([0, *marks, len(circuit.branch)])]

@@ -57,25 +57,25 @@ def output_figure(run: Simulation) -> Figure:
 def joints_figure(run: Simulation) -> Figure:
     """Every joint's value, theory and engine, and the size of the difference on a logarithmic scale."""
     linkage = run.linkage
-    kinds = [kind for kind in ("turn", "slide") if kind in linkage.column_kinds]
+    kinds = [turns for turns in (True, False) if turns in linkage.turning]
     with styled():
         figure = page_figure(9.2, 1.6 + 3.4 * len(kinds), pads=(0.06, 0.08))
         grid = figure.subplots(len(kinds), 2, sharex=True, squeeze=False)
-        for (left, right), kind in zip(grid, kinds, strict=True):
-            unit = "rad" if kind == "turn" else linkage.length_unit
-            shown = "deg" if kind == "turn" else unit
-            convert = np.degrees if kind == "turn" else np.asarray
+        for (left, right), turns in zip(grid, kinds, strict=True):
+            unit = "rad" if turns else linkage.length_unit
+            shown = "deg" if turns else unit
+            convert = np.degrees if turns else np.asarray
             for column, name in enumerate(linkage.columns):
-                if linkage.column_kinds[column] != kind:
+                if linkage.turns(column) != turns:
                     continue
                 colour = CIRCUIT_COLOURS[column % len(CIRCUIT_COLOURS)]
                 own, other = run.theory.q[:, column], run.engine.q[:, column]
                 _compared(left, run, convert(own), convert(other), colour)
                 _logarithmic(right, run, np.abs(other - own), colour, shown_name(name, 20))
-            if kind == "turn":
+            if turns:
                 left.yaxis.set_major_locator(DegreeLocator(9))
             left.set_ylabel(
-                say("turns [{unit}]", unit=shown) if kind == "turn" else say("slides [{unit}]", unit=shown)
+                say("turns [{unit}]", unit=shown) if turns else say("slides [{unit}]", unit=shown)
             )
             right.set_ylabel(say("size of the difference [{unit}]", unit=unit))
         _finish(figure, run)

@@ -110,7 +110,7 @@ def joint_values(linkage: Loop, bodies: BodyStates) -> JointValues:
         gap, tilt = _apart(joint, turn, local, columns[0][0])
         gaps.append(gap)
         tilts.append(tilt)
-    turns = np.array([kind == "turn" for kind in linkage.column_kinds])
+    turns = linkage.turning
     q = np.stack([part[0] for part in parts], axis=1)
     q[:, turns] = np.unwrap(q[:, turns], axis=0)
     return JointValues(

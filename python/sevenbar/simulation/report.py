@@ -174,7 +174,7 @@ def columns(run: Simulation) -> dict[str, npt.NDArray[Any]]:
     found: dict[str, npt.NDArray[Any]] = {"row": np.arange(len(run.time)), "time_s": run.time}
     sides = {"sevenbar": run.theory, engine: run.engine}
     for index, name in enumerate(linkage.columns):
-        slides = linkage.column_kinds[index] == "slide"
+        slides = not linkage.turns(index)
         for order, quantity in enumerate(("q", "dq", "ddq")):
             for who, joints in sides.items():
                 head = joint_column(name, slides=slides, order=order, length=unit, angle="deg", who=who)

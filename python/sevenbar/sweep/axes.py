@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.dimensions import Dimension, read_at
 from sevenbar.text.ranges import split_grid, split_list, split_name, split_range
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import SevenbarError
 from sevenbar.kinematics.batches import (
     INVALID,
@@ -21,7 +21,6 @@ from sevenbar.kinematics.batches import (
     rssr_rows,
     rssr_types,
 )
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.transmission import coupling_of
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names

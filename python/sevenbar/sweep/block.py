@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.arrays import Integers
 from sevenbar.kinematics.measures import Measure
 from sevenbar.sweep.plan import SweepPlan
 

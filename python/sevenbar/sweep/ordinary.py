@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.errors import RequestError, SevenbarError, shown
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure, rows_of
 from sevenbar.kinematics.motion import Motion
 from sevenbar.sweep.block import NO_CIRCUIT, OK, Block, limit_names

@@ -32,7 +32,6 @@ def language(code: str | None) -> Iterator[None]:
 
         >>> import sevenbar as sb
         >>> with sb.language("zh"):
-        ...     figure = sb.plot.transmission(sb.load("rssr").motion())
         ...     title = sb.report.markdown(sb.load("rssr").motion()).splitlines()[4]
         >>> title
         '- 驱动: crank，10 rad/s；输出 rocker'
@@ -78,6 +77,11 @@ def retold(text: str) -> str:
         if match := pattern.fullmatch(text):
             return translation.format(**match.groupdict())
     return text
+
+
+def retold_parts(text: str, between: str) -> str:
+    """`retold` for each part of a list."""
+    return say(between).join(map(retold, text.split(between)))
 
 
 @cache

@@ -223,7 +223,7 @@ fn rocking_stops(start: f64, end: f64, step: f64, samples: usize) -> Vec<Stop> {
 
 /// The follower's angle moved by whole turns so that it continues from the row before.
 ///
-/// An output that rocks is placed in its range; one that turns is followed in steps short enough to be told from a turn.
+/// An output that rocks is placed in its range; one that turns is followed in steps short enough to be distinguished from a turn.
 fn unwrap_follower(
     pair: &Pair,
     circuit: &Circuit,

@@ -138,7 +138,7 @@ fn shrinking(size: u64) -> f64 {
     f64::from_bits(larger(EXPONENT_SUM.saturating_sub(size >> MANTISSA_BITS), 1) << MANTISSA_BITS)
 }
 
-/// Divides the dimensions of each linkage by a power of two, and tells which could be one: 1, else 0.
+/// Divides the dimensions of each linkage by a power of two, and returns which could be one: 1, else 0.
 #[inline(always)]
 fn scale(block: &mut Dimensions, valid: &mut Lane) {
     let [m, n, l1, l2, l3, d, ..] = block;

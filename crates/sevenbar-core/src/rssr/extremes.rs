@@ -8,7 +8,7 @@ use crate::taylor::Taylor;
 use crate::trigonometric::within_turn;
 use std::f64::consts::TAU;
 
-/// Cells in which a turn is searched; two stationary points within one cell are told apart as well.
+/// Cells in which a turn is searched; two stationary points within one cell are distinguished as well.
 const CELLS: usize = 360;
 
 /// How often the cells beside a nearest approach of the branches are halved: down to 1e-9 rad.

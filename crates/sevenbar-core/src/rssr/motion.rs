@@ -48,7 +48,7 @@ pub struct Circuit {
     /// The range of the input.
     pub input: Extent,
     /// The range of the output, in the turn in which the circuit's first row lies; `Full` at a change point, where only
-    /// following the circuit tells it.
+    /// following the circuit shows it.
     pub output: Extent,
     /// The branch of the closed form on the first pass.
     pub first_branch: usize,

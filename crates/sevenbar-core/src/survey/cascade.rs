@@ -1,6 +1,7 @@
 //! The questions to the linkages of a block, from cheap to dear; only those that are left go on to the next.
 
 use super::draw::{Draw, NUMBERS};
+use super::figures::Figures;
 use super::judge::Measured;
 use super::kind::Kind;
 use super::pose::Row;
@@ -9,11 +10,11 @@ use super::swing::Swing;
 use super::tally::{Tally, Verdict};
 use super::transmission::Transmission;
 use super::wish::{Rank, Readings, Want, Wish};
-use crate::rssr::{BLOCK, Dimensions, Lane, MOST_LIMITS, MotionType};
+use crate::rssr::{BLOCK, Dimensions, Lane, MotionType};
 use crate::simd::{Kernel, dispatch};
 use std::f64::consts::{PI, TAU};
 
-/// Inputs of a whole turn at which the balls are looked at.
+/// Inputs of a whole turn at which the balls are measured.
 const TURN: usize = 36;
 
 /// Judges the linkages of some indices; the answer is the same however they are divided.
@@ -268,21 +269,6 @@ fn judge_swing(
     }
 }
 
-/// What one linkage is measured by.
-#[derive(Clone, Copy, Debug)]
-pub struct Figures {
-    /// The motion type as a number.
-    pub motion_type: u8,
-    /// Input dead centres in [0, 2 pi), rising, NaN after the last.
-    pub limits: [f64; MOST_LIMITS],
-    /// How far the output goes on each circuit; NaN where it turns fully, and where there is none.
-    pub swing: [f64; 2],
-    /// Time of the slower stroke over that of the quicker; NaN where the input does not turn fully.
-    pub time_ratio: [f64; 2],
-    /// The least transmission angle; NaN where the input does not turn fully.
-    pub transmission: f64,
-}
-
 /// What linkages of given numbers (M, N, L1, L2, L3, D, the angle between the axes) are measured by.
 pub fn figures(numbers: &[[f64; NUMBERS]]) -> Vec<Figures> {
     let mut found = Vec::with_capacity(numbers.len());
@@ -418,7 +404,7 @@ mod tests {
         }
     }
 
-    /// The same numbers as by the solver that looks at one linkage at a time.
+    /// The same numbers as by the solver that takes one linkage at a time.
     fn agree(numbers: &[[f64; NUMBERS]]) {
         for (row, found) in numbers.iter().zip(figures(numbers)) {
             let [m, n, l1, l2, l3, d, angle] = *row;

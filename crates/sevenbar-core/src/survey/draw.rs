@@ -16,7 +16,7 @@ const SIDES: usize = NUMBERS + 1;
 /// Newton steps for the root: they converge in six.
 const STEPS: usize = 20;
 
-/// Parts into which the range of each number is divided where linkages are told apart.
+/// Parts into which the range of each number is divided where linkages are distinguished.
 const PARTS: u32 = 3;
 
 /// The part of the cube that a linkage lies in, at most this.

@@ -27,7 +27,7 @@ impl Kind {
         }
     }
 
-    /// Finds everything: in vector code where it stands clear, else by the solver that counts zeros by signs.
+    /// Finds everything: in vector code where it is clear, else by the solver that counts zeros by signs.
     #[inline(always)]
     pub(super) fn find<const FUSED: bool>(&mut self, block: &Dimensions) {
         self.there.find::<FUSED>(block, Input::Crank);

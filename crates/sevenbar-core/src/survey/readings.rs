@@ -38,7 +38,7 @@ impl Best {
     }
 }
 
-/// The outputs of a block at all samples, and what they come to.
+/// The outputs of a block at all samples, and their errors.
 pub(super) struct Compared {
     /// Both branches at each sample.
     angles: Vec<[Lane; 2]>,

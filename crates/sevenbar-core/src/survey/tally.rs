@@ -82,7 +82,7 @@ impl Histogram {
     }
 }
 
-/// What the linkages of some indices came to.
+/// The tally of the linkages of some indices.
 #[derive(Clone, Debug)]
 pub struct Tally {
     /// How many had each verdict.

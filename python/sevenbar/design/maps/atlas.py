@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.maps.mesh import Mesh, Scheme, meshed
@@ -18,7 +18,6 @@ from sevenbar.design.maps.plane import Kind, LoopPlane, Plane
 from sevenbar.design.maps.rssr_plane import RssrPlane
 from sevenbar.design.maps.window import MapAxis, Range, axes_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
@@ -176,7 +175,7 @@ def motion_map(
             raise RequestError(f"follow: {axis.name} is an axis of the map; leave one of the two out")
     draft = draft.holding(follow)
     linkage = draft.linkage
-    column = linkage.column(linkage.drive.joint if input is None else input, "input")
+    column = linkage.input_column(input)
     driver = linkage.columns[column]
     places = {axis.dimension.place[0] for axis in axes}
     plane: Plane

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.design.maps.atlas import Map
 from sevenbar.design.maps.outline import Region, joined
 from sevenbar.design.maps.plane import Take
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import MEASURES, Measure, measures_named
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed

@@ -10,11 +10,10 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.window import MapAxis
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure, rows_of
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.progress import Progress, silent

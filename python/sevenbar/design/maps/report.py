@@ -21,6 +21,7 @@ from sevenbar.reporting.files import Report, Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, number_table, opening
 from sevenbar.text.printing import text_of
+from sevenbar.text.words import say
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,19 +110,21 @@ def text(findings: MapFindings) -> RenderableType:
     design = of.design
     facts = Facts()
     for label, axis in (("across", x), ("up", y)):
-        facts.add(label, f"{axis.name} from {axis.text(axis.low)} to {axis.text(axis.high)}")
+        low, high = axis.text(axis.low), axis.text(axis.high)
+        facts.add(label, say("{dimension} from {low} to {high}", dimension=axis.name, low=low, high=high))
     if held := of.held.text:
         facts.add("held", held)
     facts.add("input", of.input)
     facts.add("boundaries", _precision(of))
-    where = "" if design.inside else "; outside the map"
-    facts.add("design", f"{x.name} = {x.text(design.x)}, {y.name} = {y.text(design.y)}{where}")
+    place = f"{x.name} = {x.text(design.x)}, {y.name} = {y.text(design.y)}"
+    facts.add("design", place if design.inside else say("{design}; outside the map", design=place))
     facts.add("", of.name(design.kind), "bold")
     for found in heights:
-        value = "none" if found.here is None else f"{found.here:.6g} {found.unit}".rstrip()
-        facts.add("", f"{found.measure.name} {value}")
+        name = found.measure.name
+        value = say("none") if found.here is None else f"{found.here:.6g} {found.unit}".rstrip()
+        facts.add("", f"{name} {value}")
         if not np.isfinite(found.values).any():
-            facts.add("", f"{found.measure.name}: no linkage on the map has it", "yellow")
+            facts.add("", say("{measure}: no linkage on the map has it", measure=name), "yellow")
     shares = number_table(
         ["on the map", "share"], [[of.name(kind), f"{100 * share:.3f} %"] for kind, share in of.areas.items()]
     )
@@ -141,21 +144,31 @@ def text(findings: MapFindings) -> RenderableType:
 
 
 def _precision(of: Map) -> str:
-    within = f"within {of.tolerance:.0e} of the ranges".replace("e-0", "e-")
+    within = f"{of.tolerance:.0e}".replace("e-0", "e-")
     if of.open == 1.0:
-        return f"{within}; what is narrower than a cell of the grid may be missing"
-    return f"{within}; no region wider than {max(of.widest, of.tolerance):.1e} of them is missing".replace(
-        "e-0", "e-"
+        return say(
+            "within {share} of the ranges; what is narrower than a cell of the grid may be missing",
+            share=within,
+        )
+    return say(
+        "within {share} of the ranges; no region wider than {widest} of them is missing",
+        share=within,
+        widest=f"{max(of.widest, of.tolerance):.1e}".replace("e-0", "e-"),
     )
 
 
 def _row(of: Map, step: NearestChange) -> list[str]:
     axis = step.axis
     end = axis.low if step.way == "down" else axis.high
+    way = (
+        say("{dimension} down", dimension=axis.name)
+        if step.way == "down"
+        else say("{dimension} up", dimension=axis.name)
+    )
     if step.value is None or step.kind is None:
-        return [f"{axis.name} {step.way}", "", f"not before {axis.text(end)}", ""]
+        return [way, "", say("not before {value}", value=axis.text(end)), ""]
     by = step.value - axis.dimension.value
-    return [f"{axis.name} {step.way}", f"{by:+.6g}", axis.text(step.value, 9), of.name(step.kind)]
+    return [way, f"{by:+.6g}", axis.text(step.value, 9), of.name(step.kind)]
 
 
 def map_report(
@@ -174,7 +187,7 @@ def map_report(
         files["contours.csv"] = _write_contours
     for place, stem in enumerate(("map", *measures)):
         files |= figure_files(stem, figures, partial(_sheet, size, side, place))
-    return Report(text, as_dict, files)
+    return Report(text, as_dict, files, spoken=True)
 
 
 def _sheet(size: str | None, side: bool, place: int, found: MapFindings) -> Figure:

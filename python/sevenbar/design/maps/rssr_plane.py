@@ -6,13 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.description.draft import Draft
 from sevenbar.design.maps.critical import NEARLY_REAL, ROUNDING, critical_gaps
 from sevenbar.design.maps.plane import Kind, Plane, Take
 from sevenbar.design.maps.window import MapAxis
 from sevenbar.kinematics.batches import CODES, RSSR_ROWS, rssr_motions, rssr_rows, rssr_types
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.measures import Measure
 from sevenbar.text.progress import Progress
 

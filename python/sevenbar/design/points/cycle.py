@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Booleans, Floats, finite_array
 from sevenbar.curves.stationary import highest_between
 from sevenbar.curves.timed_rows import shares_of
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Circuit, Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.driven import driven as driven_circuit
+from sevenbar.kinematics.link_motion import rates_of_frame
 from sevenbar.kinematics.motion import Motion, chosen_circuit
 
 #: Derivatives by time of a point's place, in the order of `LinkRates`.
@@ -165,7 +167,7 @@ def cycle_of(
 
 def driven(
     motion: Motion, circuit: Circuit, branch: int, inputs: Floats, *, speed: float | None = None
-) -> tuple[Circuit, npt.NDArray[np.bool_]]:
+) -> tuple[Circuit, Booleans]:
     """A circuit at these inputs (n,) at constant speed, and which of its rows are those of a pass."""
     again = driven_circuit(
         motion.linkage, circuit, inputs, speed=motion.speed if speed is None else speed, agree=motion.agree
@@ -180,7 +182,7 @@ def shown_inputs(cycle: Cycle, inputs: Floats) -> Floats:
 
 def input_text(motion: Motion, value: float) -> str:
     """A value of the input as people read it: degrees, or lengths."""
-    slides = motion.linkage.column_kinds[motion.linkage.columns.index(motion.input)] == "slide"
+    slides = not motion.linkage.turns(motion.input)
     return f"{value:.6g} {motion.linkage.length_unit}" if slides else f"{math.degrees(value):.6g} deg"
 
 
@@ -192,17 +194,12 @@ def _refuse_link(motion: Motion, link: object) -> None:
         raise RequestError(f"link: {link} is the ground, which stands still; give 1 to {count - 1}")
 
 
-def link_rates(circuit: Circuit, rows: npt.NDArray[np.bool_], link: int) -> LinkRates:
+def link_rates(circuit: Circuit, rows: Booleans, link: int) -> LinkRates:
     """The rates of a link at rows of a circuit, from four points that are the circuit's size apart."""
-    places = [np.zeros(3), *(circuit.size * np.eye(3))]
-    traces = [circuit.point(link, (float(x), float(y), float(z))) for x, y, z in places]
-
-    def rates_of(trace: Trace) -> Floats:
-        return np.stack([getattr(trace, order)[rows] for order in ORDERS])
-
-    origin, *ends = map(rates_of, traces)
-    gradient = np.stack([(end - origin) / circuit.size for end in ends], axis=-1)
-    return LinkRates(circuit.input[rows], circuit.time[rows], origin, gradient)
+    frame = rates_of_frame(partial(circuit.point, link), circuit.size)
+    origins, axes = zip(*(frame(order) for order in ORDERS), strict=True)
+    constant, gradient = (np.stack([part[rows] for part in parts]) for parts in (origins, axes))
+    return LinkRates(circuit.input[rows], circuit.time[rows], constant, gradient)
 
 
 def box_of(box: npt.ArrayLike, *, name: str = "box") -> tuple[Floats, Floats]:

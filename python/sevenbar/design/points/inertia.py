@@ -57,7 +57,7 @@ class Inertia(Printed):
     @property
     def slides(self) -> bool:
         """Whether the input slides, so that it takes a force and no torque."""
-        return self.cycle.motion.linkage.column_kinds[self.cycle.circuit.input_column] == "slide"
+        return not self.cycle.motion.linkage.turns(self.cycle.circuit.input_column)
 
     @property
     def unit(self) -> str:

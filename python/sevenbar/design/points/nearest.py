@@ -16,14 +16,13 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, Integers, finite_array
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.points.cone import least_greatest
 from sevenbar.design.points.cycle import Cycle, LinkRates, box_of, cycle_of, input_text
 from sevenbar.design.points.squares import least_squares_in
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent

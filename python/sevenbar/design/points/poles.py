@@ -16,10 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_array
+from sevenbar.arrays import Floats, Words, finite_array
 from sevenbar.design.points.cycle import Cycle, cycle_of
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Words
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed
 

@@ -18,9 +18,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 from sevenbar.design.points.cone import lower_bound
 from sevenbar.design.points.cycle import ORDERS, Cycle
 
@@ -149,7 +148,7 @@ def _squares(vectors: Floats) -> Floats:
     return vectors[:, :, None] * vectors[:, None, :]
 
 
-def _weights(peaks: _Peaks, free: npt.NDArray[np.bool_], half: Floats) -> Floats:
+def _weights(peaks: _Peaks, free: Booleans, half: Floats) -> Floats:
     """The weights (k,) >= 0 with which slopes along the free coordinates cancel best; few are not zero."""
     from scipy.optimize import nnls
 
@@ -159,7 +158,7 @@ def _weights(peaks: _Peaks, free: npt.NDArray[np.bool_], half: Floats) -> Floats
     return found
 
 
-def _step(peaks: _Peaks, weights: Floats, free: npt.NDArray[np.bool_], half: Floats) -> tuple[Floats, Floats]:
+def _step(peaks: _Peaks, weights: Floats, free: Booleans, half: Floats) -> tuple[Floats, Floats]:
     """Newton's step of the free coordinates, and the peaks' weights."""
     scale = float(peaks.heights.max())
     slopes = (peaks.slopes * half)[:, free] / scale

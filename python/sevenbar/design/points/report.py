@@ -22,6 +22,7 @@ from sevenbar.kinematics.columns import joint_column
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file, text_file
 from sevenbar.reporting.page import Facts, drive_text, number_table, opening
 from sevenbar.text.printing import text_of
+from sevenbar.text.words import retold, say
 
 #: Most inputs that are listed; more are a rate that is as great at all of them.
 MOST_LISTED = 6
@@ -30,35 +31,60 @@ MOST_LISTED = 6
 def least_text(found: LeastPoint) -> RenderableType:
     """A point of least rate as a page."""
     facts, unit = Facts(), found.unit
-    word = "root mean square" if found.measure == "rms" else "greatest"
-    facts.add("link", f"{found.link}, {_whose(found.cycle)}")
+    rate = say(found.of)
+    word = (
+        say("root mean square {rate}", rate=rate)
+        if found.measure == "rms"
+        else say("greatest {rate}", rate=rate)
+    )
+    facts.add("link", f"{found.link}{say(', ')}{_whose(found.cycle)}")
     sides = zip("uvw", found.low, found.high, strict=True)
-    box = ", ".join(f"{letter} {a:g} to {b:g}" for letter, a, b in sides)
+    box = ", ".join(f"{letter} {a:g}{say(' to ')}{b:g}" for letter, a, b in sides)
     facts.add("box", box + _length(found.cycle))
     facts.add("point", _place(found.at) + _length(found.cycle), style="bold")
-    facts.add(f"{word} {found.of}", f"{found.value:.9g} {unit}", style="bold")
-    facts.add("lower bound", f"{found.bound:.9g} {unit}: no point of the box has less")
-    whole = "over the whole cycle, between the rows too" if found.cycle.closed else "over the law's rows"
-    facts.add("duality gap", f"{found.gap:.2g} {unit}, {found.relative_gap:.2g} of the value, {whole}")
+    facts.add(word, f"{found.value:.9g} {unit}", style="bold")
+    bound = f"{found.bound:.9g} {unit}"
+    facts.add("lower bound", say("{bound}: no point of the box has less", bound=bound))
+    whole = (
+        say("over the whole cycle, between the rows too")
+        if found.cycle.closed
+        else say("over the law's rows")
+    )
+    gap = say(
+        "{gap:.2g} {unit}, {share:.2g} of the value", gap=found.gap, unit=unit, share=found.relative_gap
+    )
+    facts.add("duality gap", say(", ").join([gap, whole]))
     if len(found.inputs):
         facts.add("met at", _met(found))
     if found.sides:
         facts.add("on the box", ", ".join(found.sides))
     for direction in found.free:
-        facts.add("free", f"along ({_numbers(direction)}) nothing changes; the middle is taken")
+        facts.add(
+            "free",
+            say("along ({direction}) nothing changes; the middle is taken", direction=_numbers(direction)),
+        )
     if found.solver is not None:
         solver = found.solver
         facts.add(
             "Clarabel",
-            f"{solver.status} in {solver.steps} steps, round {found.rounds}: primal {solver.primal:.7g}, "
-            f"dual {solver.dual:.7g} {unit} at {len(solver.weights)} rows; then Newton's method",
+            say(
+                "{status} in {steps} steps, round {round}: primal {primal:.7g}, dual {dual:.7g} {unit} at "
+                "{rows} rows; then Newton's method",
+                status=solver.status,
+                steps=solver.steps,
+                round=found.rounds,
+                primal=solver.primal,
+                dual=solver.dual,
+                unit=unit,
+                rows=len(solver.weights),
+            ),
         )
     for note in notes(found.cycle):
         facts.add("note", note)
     parts: list[RenderableType] = [_title(found.cycle), facts.grid]
     if found.before:
         rows = [[p.name, _place(p.at), f"{p.value:.6g}", _times(p.value, found)] for p in found.before]
-        rows.append(["found", _place(found.at), f"{found.value:.6g}", ""])
+        rows.append([say("found"), _place(found.at), f"{found.value:.6g}", ""])
         head = ["point", "at", f"{word} [{unit}]", "times"]
         parts += [Text(), number_table(head, rows, words=[1])]
     return Group(*parts)
@@ -66,9 +92,13 @@ def least_text(found: LeastPoint) -> RenderableType:
 
 def _met(found: LeastPoint) -> str:
     pairs = zip(found.inputs[:MOST_LISTED], found.weights, strict=False)
-    text = ", ".join(f"{input_text(found.cycle.motion, float(x))} (weight {w:.3f})" for x, w in pairs)
-    more = f" and {len(found.inputs) - MOST_LISTED} more" if len(found.inputs) > MOST_LISTED else ""
-    return f"{found.cycle.motion.input} = {text}{more}"
+    text = say(", ").join(
+        say("{input} (weight {weight:.3f})", input=input_text(found.cycle.motion, float(x)), weight=w)
+        for x, w in pairs
+    )
+    text = f"{found.cycle.motion.input} = {text}"
+    more = len(found.inputs) - MOST_LISTED
+    return say("{inputs} and {count} more", inputs=text, count=more) if more > 0 else text
 
 
 def _times(value: float, found: LeastPoint) -> str:
@@ -79,15 +109,25 @@ def _times(value: float, found: LeastPoint) -> str:
 def nearest_text(found: NearestPath) -> RenderableType:
     """A point with a nearest path as a page."""
     facts, length = Facts(), _length(found.cycle)
-    facts.add("link", f"{found.link}, {_whose(found.cycle)}")
-    timed = "each at its input" if found.bound is not None else "at any inputs"
-    facts.add("curve", f"{len(found.wanted)} places, {timed}")
+    facts.add("link", f"{found.link}{say(', ')}{_whose(found.cycle)}")
+    places = len(found.wanted)
+    timed = (
+        say("{count} places, each at its input", count=places)
+        if found.bound is not None
+        else say("{count} places, at any inputs", count=places)
+    )
+    facts.add("curve", timed)
     facts.add("point", _place(found.at) + length, style="bold")
-    facts.add("distance", f"rms {found.rms:.6g}, greatest {found.greatest:.6g}{length}", style="bold")
+    distance = say("rms {rms:.6g}, greatest {greatest:.6g}", rms=found.rms, greatest=found.greatest)
+    facts.add("distance", distance + length, style="bold")
     if found.bound is not None:
-        facts.add("lower bound", f"{found.measure} {found.bound:.6g}{length}: no point of the box is nearer")
+        bound = f"{say(found.measure)} {found.bound:.6g}{length}"
+        facts.add("lower bound", say("{bound}: no point of the box is nearer", bound=bound))
     else:
-        best = f"local: the best of {found.starts} starts, {found.agreeing} of which ended there"
+        best = say(
+            "local: the best of {starts} starts, {count} of which ended there",
+            starts=found.starts, count=found.agreeing,
+        )  # fmt: skip
         facts.add("optimum", best)
     for note in notes(found.cycle):
         facts.add("note", note)
@@ -97,17 +137,19 @@ def nearest_text(found: NearestPath) -> RenderableType:
 def inertia_text(found: Inertia) -> RenderableType:
     """What masses do as a page."""
     facts, motion = Facts(), found.cycle.motion
-    what = "force" if found.slides else "torque"
+    what = say("force") if found.slides else say("torque")
     facts.add("circuit", _whose(found.cycle))
-    facts.add("rows", f"{len(found.input)} over {found.cycle.period:.6g} s")
+    facts.add("rows", say("{count} over {time:.6g} s", count=len(found.input), time=found.cycle.period))
     if any(found.gravity):
         facts.add("gravity", f"({_numbers(found.gravity)}) m/s^2")
     for word, row in (("highest", int(found.torque.argmax())), ("lowest", int(found.torque.argmin()))):
         at = input_text(motion, float(found.input[row]))
-        facts.add(f"{word} {what}", f"{found.torque[row]:.6g} {found.unit} at {motion.input} = {at}")
-    facts.add(f"mean {what}", f"{found.mean:.2g} {found.unit}")
+        value = f"{found.torque[row]:.6g} {found.unit}"
+        label = say("highest {what}", what=what) if word == "highest" else say("lowest {what}", what=what)
+        facts.add(label, say("{value} at {input}", value=value, input=f"{motion.input} = {at}"))
+    facts.add(say("mean {what}", what=what), f"{found.mean:.2g} {found.unit}")
     rms = float(np.sqrt(found.cycle.mean(found.torque**2)))
-    facts.add(f"rms {what}", f"{rms:.6g} {found.unit}")
+    facts.add(say("rms {what}", what=what), f"{rms:.6g} {found.unit}")
     for note in notes(found.cycle, [mass.link for mass in found.masses]):
         facts.add("note", note)
     rows = []
@@ -126,8 +168,11 @@ def notes(cycle: Cycle, links: Sequence[int] = ()) -> list[str]:
     for freedom in cycle.motion.idle:
         if any(f"link {link})" in freedom or f"link {link} " in freedom for link in links or [cycle.link]):
             text.append(
-                f"the {freedom} is open in the linkage; points off that line "
-                "move as the convention for it says"
+                say(
+                    "the {freedom} is open in the linkage; points off that line move as the convention for "
+                    "it says",
+                    freedom=retold(freedom),
+                )
             )
     return text
 
@@ -140,8 +185,10 @@ def _whose(cycle: Cycle) -> str:
     motion = cycle.motion
     unit = motion.linkage.unit_of(motion.input)
     drive = drive_text(motion.input, None if motion.law is not None else motion.speed, unit)
-    branch = f", branch {cycle.branch}" if not cycle.circuit.goes_round else ""
-    return f"circuit {cycle.circuit.index}{branch}, {drive}"
+    parts = [say("circuit {number}", number=cycle.circuit.index)]
+    if not cycle.circuit.goes_round:
+        parts.append(say("branch {number}", number=cycle.branch))
+    return say(", ").join([*parts, drive])
 
 
 def _numbers(values: Sequence[float] | Floats) -> str:
@@ -263,6 +310,7 @@ def least_report(
                 "point", figures, lambda found: least_figure(found, poles_of(found.cycle, found.at), name)
             ),
         },
+        spoken=True,
     )
 
 
@@ -279,6 +327,7 @@ def nearest_report(
             "path.csv": columns_file(_path_columns),
             **figure_files("point", figures, lambda found: nearest_figure(found, name)),
         },
+        spoken=True,
     )
 
 
@@ -292,6 +341,7 @@ def inertia_report(figures: Sequence[str] = ("png",)) -> Report[Inertia]:
             "inertia.csv": columns_file(_inertia_columns),
             **figure_files("inertia", figures, inertia_figure),
         },
+        spoken=True,
     )
 
 

@@ -2,10 +2,10 @@
 
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.run import survey
-from sevenbar.design.survey.tally import Kept, Tally
+from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel
 
-__all__ = ["Kept", "SurveyResult", "SurveyTask", "SwingWish", "Tally", "Travel", "survey"]
+__all__ = ["Kept", "SurveyResult", "SurveyTally", "SurveyTask", "SwingWish", "Travel", "survey"]
 
 
 def __dir__() -> list[str]:

@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from sevenbar.design.survey.tally import Tally
+from sevenbar.design.survey.tally import SurveyTally
 from sevenbar.design.survey.task import SurveyTask
 from sevenbar.errors import OutputError, shown
 from sevenbar.sweep.parts import differences, hold_folder, other_maker
@@ -40,7 +40,7 @@ class Journal:
         and for parts of another maker where `mixed` is not.
         """
         self.folder, self._task = folder, task
-        self.tallies: dict[int, Tally] = {}
+        self.tallies: dict[int, SurveyTally] = {}
         self._lock: int | None = None
         self._file: Any = None
         try:
@@ -73,7 +73,7 @@ class Journal:
             os.fsync(self._file.fileno())
         except OSError as error:
             raise self._unwritable(error) from None
-        self.tallies[part] = Tally.of_dict(json.loads(content))
+        self.tallies[part] = SurveyTally.of_dict(json.loads(content))
 
     def close(self) -> None:
         """Lets another run have the folder."""
@@ -124,7 +124,7 @@ class Journal:
             try:
                 row = json.loads(line)
                 by, part = row["made_by"], int(row["part"])
-                tally = Tally.of_dict(row["tally"])
+                tally = SurveyTally.of_dict(row["tally"])
                 if part >= self._task.parts or tally.count != len(self._task.linkages(part)):
                     raise ValueError
             except (ValueError, KeyError, TypeError, IndexError):

@@ -18,7 +18,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.survey.skew_closure import ANGLE, COUNT, START, Poses, least_square, poses
-from sevenbar.design.survey.tally import Kept, Tally
+from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel, drawn_numbers, scale_of
 from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
 from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
@@ -29,10 +29,10 @@ from sevenbar.text.progress import Progress
 #: Inputs at which a polished design is measured, over its range or over a turn.
 DENSE = 361
 
-#: Inputs of a whole turn at which a polished swing is looked at.
+#: Inputs of a whole turn at which a polished swing is measured.
 TURN = 36
 
-#: Room that is left at each limit for what lies between the inputs looked at.
+#: Room that is left at each limit for what lies between the inputs measured.
 MARGIN = 1e-4
 
 #: Gain of a figure, relative to it, that is not worth another program.
@@ -164,7 +164,7 @@ class Polish:
             off, slopes = self.met(now, z)
             if np.abs(off).max(initial=0.0) < MET:
                 break
-            # what stands at a bound stays there
+            # what is at a bound stays there
             slopes[:, own][:, (z[own] <= self.low) | (z[own] >= self.high)] = 0.0
             z = z - np.linalg.lstsq(slopes, off, rcond=None)[0]
         return z
@@ -214,7 +214,7 @@ class Polish:
 
 
 def draft_of(numbers: Floats, branch: int, sense: float, name: str) -> Draft:
-    """A description of a linkage as it stands where its readings start: both dials read zero there."""
+    """A description of a linkage in the pose where its readings start: both dials read zero there."""
     first = poses(numbers, np.zeros(1), branch)
     assert first is not None
     lengths = numbers[:6] * scale_of(numbers)
@@ -334,7 +334,7 @@ def ball_angle(directions: Floats) -> float:
 
 
 def designs(
-    task: SurveyTask, tally: Tally, count: int, progress: Progress
+    task: SurveyTask, tally: SurveyTally, count: int, progress: Progress
 ) -> tuple[list[Candidate], list[Refusal], int]:
     """The best of a survey as designs, what was refused of them, and how many became better by polishing."""
     best = tally.best[: POLISHED_EACH * count]
@@ -359,7 +359,7 @@ def designs(
 
 
 def rank_of(task: SurveyTask, candidate: Candidate) -> float:
-    """By what a design stands before others: less is better."""
+    """The figure by which designs are sorted: less is better."""
     figures = candidate.claim.figures
     if task.rank == "ball angle":
         return max(figures["ball_crank_deg"], figures["ball_rocker_deg"])

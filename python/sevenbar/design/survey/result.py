@@ -1,17 +1,17 @@
-"""What a survey came to: the designs, why others were refused, and what came nearest where there is none."""
+"""The answer of a survey: the designs, why others were refused, and what came nearest where there is none."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-from sevenbar.design.survey.tally import Tally
+from sevenbar.design.survey.tally import SurveyTally
 from sevenbar.design.survey.task import SurveyTask, drawn_numbers
 from sevenbar.design.synthesis.candidates import Candidate, Refusal
 from sevenbar.kinematics.surveys import NUMBERS, VERDICTS
 from sevenbar.text.printing import Printed, lines, text_of
 
-#: What is said of the linkage that came nearest to pass a question.
+#: How the linkage that came nearest to pass a question is described.
 NEAREST = {
     "transmission": "near enough, least transmission angle {transmission:.4g} deg",
     "error": "error {error:.4g} deg",
@@ -27,7 +27,7 @@ class SurveyResult(Printed):
     """
 
     task: SurveyTask
-    tally: Tally
+    tally: SurveyTally
     candidates: tuple[Candidate, ...]
     refusals: tuple[Refusal, ...]
     polished: int

@@ -14,7 +14,7 @@ from pathlib import Path
 from sevenbar.design.survey.journal import Journal
 from sevenbar.design.survey.polish import designs
 from sevenbar.design.survey.result import SurveyResult
-from sevenbar.design.survey.tally import BEST, Tally
+from sevenbar.design.survey.tally import BEST, SurveyTally
 from sevenbar.design.survey.task import SurveyTask
 from sevenbar.design.synthesis.function.generation import need_scipy
 from sevenbar.errors import RequestError
@@ -33,7 +33,7 @@ Making = Callable[[Iterable[int]], Generator[Made, None, None]]
 def part_line(task: SurveyTask, part: int) -> bytes:
     """The tally of a part as JSON: the same bits wherever it is made by the same `maker`."""
     linkages = task.linkages(part)
-    return Tally.of(task.core().tally(linkages.start, len(linkages))).line().encode()
+    return SurveyTally.of(task.core().tally(linkages.start, len(linkages))).line().encode()
 
 
 def survey(
@@ -93,7 +93,7 @@ def _judged(
     resume: bool,
     mixed: bool,
     progress: Progress,
-) -> Tally:
+) -> SurveyTally:
     """The tally of all parts, or of those that were done when Ctrl+C came."""
     unlike = [one for one in makers if one != makers[0]]
     if unlike and not mixed:
@@ -108,7 +108,7 @@ def _judged(
             for part, content, by in finished:
                 if journal is not None:
                     journal.keep(part, content, by)
-                tally = Tally.of_dict(json.loads(content))
+                tally = SurveyTally.of_dict(json.loads(content))
                 total = tally if total is None else total + tally
                 progress(total.count, task.count, _best(task, total))
     except KeyboardInterrupt:
@@ -121,7 +121,7 @@ def _judged(
     return total
 
 
-def _best(task: SurveyTask, tally: Tally | None) -> str:
+def _best(task: SurveyTask, tally: SurveyTally | None) -> str:
     """The best so far in words."""
     if tally is None or not tally.best:
         return ""

@@ -1,4 +1,4 @@
-"""What the linkages of a survey came to: why others were refused, how measures are spread, the best so far.
+"""The tally of a survey: why linkages were refused, how measures are spread, the best so far.
 
 Tallies are put together in any order: counts are summed, and of each part of the space of numbers the best
 linkage is kept, earlier ones first where two are as good. A part of the space that is among the first hundred
@@ -46,12 +46,12 @@ class Kept:
 
     @property
     def order(self) -> tuple[float, int]:
-        """By what it stands before others."""
+        """The order among those kept."""
         return (self.figure, self.index)
 
 
 @dataclass(frozen=True)
-class Tally:
+class SurveyTally:
     """Counts of linkages by verdict, motion type and limits; spreads of measures; the best and the nearest.
 
     `spreads` have for each measure the width of a cell [rad] and the counts (36,), the last of all beyond.
@@ -80,15 +80,15 @@ class Tally:
         return dict(zip(VERDICTS[1:], self.verdicts[1:], strict=True))
 
     @staticmethod
-    def of(raw: RawTally) -> Tally:
+    def of(raw: RawTally) -> SurveyTally:
         """The tally of one part, as the core has it."""
         spreads = {name: (step, tuple(counts)) for name, (step, counts) in sorted(raw.spreads.items())}
         nearest = {kept.place: kept for kept in _kept(raw.nearest)}
-        return Tally(
+        return SurveyTally(
             tuple(raw.verdicts), tuple(raw.types), tuple(raw.limits), spreads, tuple(_kept(raw.best)), nearest
         )
 
-    def __add__(self, other: Tally) -> Tally:
+    def __add__(self, other: SurveyTally) -> SurveyTally:
         """Both put together."""
         best: dict[int, Kept] = {}
         for kept in (*self.best, *other.best):
@@ -103,7 +103,7 @@ class Tally:
             name: (step, _summed(counts, other.spreads[name][1]))
             for name, (step, counts) in self.spreads.items()
         }
-        return Tally(
+        return SurveyTally(
             _summed(self.verdicts, other.verdicts),
             _summed(self.types, other.types),
             _summed(self.limits, other.limits),
@@ -130,9 +130,9 @@ class Tally:
         return json.dumps(self.as_dict(), separators=(",", ":"))
 
     @staticmethod
-    def of_dict(plain: Mapping[str, Any]) -> Tally:
+    def of_dict(plain: Mapping[str, Any]) -> SurveyTally:
         """The tally of plain values; raises `KeyError`, `TypeError` or `ValueError` where they are none."""
-        return Tally(
+        return SurveyTally(
             tuple(plain["verdicts"].values()),
             tuple(plain["motion_types"].values()),
             tuple(plain["limits"].values()),

@@ -10,12 +10,12 @@ from typing import Literal
 
 import numpy as np
 
-from sevenbar.arrays import Floats, short_way
+from sevenbar.arrays import Booleans, Floats, Integers, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.synthesis.closure import row_of, transmission_slopes, transmissions
 from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.motion import Motion
 from sevenbar.text.printing import Printed, brief, lines, text_of
@@ -126,19 +126,25 @@ class Candidate(Printed):
 
 
 def checked(
-    draft: Draft, claim: Claim, limits: Limits | None = None, *, poses: Floats | None = None
+    draft: Draft,
+    claim: Claim,
+    limits: Limits | None = None,
+    *,
+    poses: Floats | None = None,
+    samples: int = CHECK_SAMPLES,
 ) -> Candidate | Refusal:
     """The design as the ordinary analysis finds it, or why it does not do what is claimed.
 
     All poses must lie on one circuit and on one pass of it, so that no dead centre of the input is between
     any two, and follow each other in the order claimed; then come the limits. `poses` (n, columns) hold all
-    joints, where circuits may share the values of input and output. Raises nothing for a design that cannot
-    be a linkage: that is a refusal, too.
+    joints, where circuits may share the values of input and output. `samples` inputs of a full turn are
+    compared: more where the input moves little. Raises nothing for a design that cannot be a linkage: that
+    is a refusal, too.
     """
     limits = Limits() if limits is None else limits
     try:
         linkage = draft.linkage
-        motion = linkage.motion(CHECK_SAMPLES)
+        motion = linkage.motion(samples)
     except (DescriptionError, RequestError) as error:
         return Refusal("assembly", str(error))
     if not motion.circuits:
@@ -198,7 +204,7 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
         columns = [circuit.input_column, circuit.output_column]
         if whole is not None:
             columns += [c for c, ball in enumerate(balls) if not ball and c not in columns]
-        turning = [motion.linkage.column_kinds[c] == "turn" for c in columns]
+        turning = motion.linkage.turning[columns]
         rows = circuit.q[:, columns]
         poses = np.column_stack([inputs, outputs]) if whole is None else whole[:, columns]
         steps = _apart(np.roll(rows, -1, axis=0) - rows, turning, circuit.size)
@@ -220,7 +226,7 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
     return best
 
 
-def _apart(difference: Floats, turning: Sequence[bool], size: float) -> Floats:
+def _apart(difference: Floats, turning: Booleans, size: float) -> Floats:
     """Differences of joint values (.., columns), angles to the nearest turn, slides relative to the size."""
     return np.where(turning, short_way(difference), difference / size)
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words
@@ -15,7 +15,6 @@ from sevenbar.drawing.names import quantity_label, short
 from sevenbar.drawing.space import measuring
 from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
 from sevenbar.drawing.ticks import DegreeLocator
-from sevenbar.kinematics.circuits import Integers
 from sevenbar.text.words import say
 
 #: Bars beyond the first so many share one, and their height [inch].

@@ -17,12 +17,11 @@ from functools import cached_property
 
 import numpy as np
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers, Words, counted
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.tolerance.sensitivities import Sensitivities, sensitivities
 from sevenbar.design.tolerance.tolerances import Tolerances, tolerances
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.circuits import Integers, Words
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.linkage import Linkage
 
@@ -116,9 +115,8 @@ class Linear:
     def left_out(self) -> tuple[str, ...]:
         """What is left out, in words: rows, and dimensions."""
         remarks = list(self.tolerances.left_out)
-        words, counts = np.unique(self.status[self.status != "ok"], return_counts=True)
-        for word, count in zip(words, counts, strict=True):
-            remarks.append(f"{count} of {len(self.status)} rows left out: {_WHY.get(str(word), str(word))}")
+        for word, count in counted(self.status[self.status != "ok"]).items():
+            remarks.append(f"{count} of {len(self.status)} rows left out: {_WHY.get(word, word)}")
         return tuple(remarks)
 
 

@@ -13,21 +13,21 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from sevenbar.arrays import counted
 from sevenbar.design.tolerance.figures import deviation_figure, shares_figure
 from sevenbar.design.tolerance.linear import Linear
 from sevenbar.design.tolerance.samples import LEVELS, MonteCarlo
 from sevenbar.design.tolerance.tolerances import CUT
 from sevenbar.design.tolerance.words import output_unit, output_values, output_words, shown_input
 from sevenbar.design.tolerance.worst import WorstCase
+from sevenbar.kinematics.measures import MEASURES
 from sevenbar.reporting.files import Report, columns_file, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
 from sevenbar.reporting.page import Facts, drive_text, number_table
+from sevenbar.text.words import retold, say, spoken
 
 #: Dimensions of a corner design that the page names; the JSON has all.
 MOST_NAMED = 8
-
-#: How corner designs are called.
-CORNERS = "designs with every dimension at an end of its tolerance"
 
 #: An effect relative to the greatest that is rounding.
 NO_EFFECT = 1e-9
@@ -48,28 +48,34 @@ def text(findings: Findings) -> RenderableType:
     found = linear.found
     facts = Facts()
     facts.add(
-        "output", f"{output_words(linear)}, circuit {found.circuit.index} ({found.circuit.motion_type})"
+        "output",
+        say(
+            "{output}, circuit {number} ({motion_type})",
+            output=output_words(linear),
+            number=found.circuit.index,
+            motion_type=say(found.circuit.motion_type),
+        ),
     )
     unit = found.linkage.unit_of(found.input_name)
     facts.add("drive", drive_text(found.input_name, found.speed, unit))
-    spread = f", the tolerance being {CUT:g} standard deviations" if linear.distribution == "normal" else ""
     if linear.held.left_to_the_program:
         facts.add("held", linear.held.text)
-    facts.add("errors", f"independent, {linear.distribution}{spread}")
+    errors = say("independent, {distribution}", distribution=say(linear.distribution))
+    if linear.distribution == "normal":
+        errors = say("{errors}, the tolerance being {count:g} standard deviations", errors=errors, count=CUT)
+    facts.add("errors", errors)
     facts.add("worst case", _worst_text(worst))
     facts.add("", _corner_text(worst))
     if tried := _tried_text(worst):
         facts.add("", tried)
     row = int(np.argmax(linear.deviation))
     three = 3 * float(output_values(linear, linear.deviation)[row])
-    facts.add(
-        "3 sigma", f"± {three:.4g} {output_unit(linear)} at {shown_input(linear, linear.input[row])}, linear"
-    )
+    facts.add("3 sigma", _linear_text(linear, three, row))
     if exact is not None:
         facts.add("Monte Carlo", _samples_text(exact))
         facts.add("", exact.verdict, style="bold")
     for note in linear.left_out():
-        facts.add("note", note)
+        facts.add("note", retold(note))
     title = Text(found.linkage.heading, style="bold underline")
     parts: list[RenderableType] = [title, facts.grid, Text(), _effects_table(linear)]
     if found.measures:
@@ -86,7 +92,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
         "linkage": found.linkage.name,
         "drive": {"input": found.input_name, "output": found.output_name, "speed": found.speed},
         "circuit": found.circuit.index,
-        "told": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
+        "reported": {"output": linear.output, "quantity": linear.quantity, "unit": linear.unit},
         "distribution": linear.distribution,
         **linear.held.as_dict,
         "dimensions": [
@@ -120,10 +126,7 @@ def as_dict(findings: Findings) -> dict[str, Any]:
             | dict(zip(("worst_case", "deviation"), linear.measure(one.name), strict=True))
             for one in found.measures
         ],
-        "rows": {
-            str(word): int(count)
-            for word, count in zip(*np.unique(linear.status, return_counts=True), strict=True)
-        },
+        "rows": counted(linear.status),
         "notes": list(linear.left_out()),
     }
     if exact is not None:
@@ -157,6 +160,7 @@ def tolerance_report(figures: Sequence[str] = ("png",)) -> Report[Findings]:
             **figure_files("shares", figures, lambda found: shares_figure(found.linear)),
             **figure_files("deviation", figures, lambda found: deviation_figure(found.linear, found.exact)),
         },
+        spoken=True,
     )
 
 
@@ -224,7 +228,13 @@ def _per(unit: str, dimension: str) -> str:
 def _worst_text(worst: WorstCase) -> str:
     linear = worst.linear
     most = float(output_values(linear, linear.worst)[worst.at])
-    return f"± {most:.4g} {output_unit(linear)} at {shown_input(linear, linear.input[worst.at])}, linear"
+    return _linear_text(linear, most, worst.at)
+
+
+def _linear_text(linear: Linear, value: float, row: int) -> str:
+    """An estimate by derivatives at a row."""
+    shown = f"± {value:.4g} {output_unit(linear)}"
+    return say("{value} at {input}, linear", value=shown, input=shown_input(linear, linear.input[row]))
 
 
 def _corner_text(worst: WorstCase) -> str:
@@ -232,36 +242,56 @@ def _corner_text(worst: WorstCase) -> str:
     linear = worst.linear
     named = [f"{name} {value:.7g}" for name, value in list(worst.corner.items())[:MOST_NAMED]]
     more = len(worst.corner) - len(named)
-    design = ", ".join(named) + (f" and {more} more" if more else "")
+    design = ", ".join(named)
+    if more:
+        design = say("{dimensions} and {count} more", dimensions=design, count=more)
     high, low = (float(output_values(linear, side)[worst.at]) for side in (worst.high, worst.low))
     if not (math.isfinite(high) and math.isfinite(low)):
-        return (
-            f"{worst.open} of {worst.tried} {CORNERS} do not close there, one of them with {design}, "
-            "so this is no bound"
-        )
-    share = 100 * worst.difference
-    beside = f"{abs(share):.2g} % {'more' if share > 0 else 'less'} than linear"
-    other = "the opposite errors" if worst.opposite else "other ends"
-    return f"exactly {high:+.4g} with {design}; {low:+.4g} with {other}: {beside}"
+        return say(
+            "{open} of {tried} designs with every dimension at an end of its tolerance do not close there, "
+            "one of them with {design}, so this is no bound",
+            open=worst.open, tried=worst.tried, design=design,
+        )  # fmt: skip
+    share = f"{abs(100 * worst.difference):.2g} %"
+    return say(
+        "exactly {high:+.4g} with {design}; {low:+.4g} with {other}: {comparison}",
+        high=high,
+        design=design,
+        low=low,
+        other=say("the opposite errors") if worst.opposite else say("other ends"),
+        comparison=say("{share} more than linear", share=share)
+        if worst.difference > 0
+        else say("{share} less than linear", share=share),
+    )
 
 
 def _tried_text(worst: WorstCase) -> str:
     """Which corner designs were computed; empty where that is shown already."""
     if worst.tried < worst.corners:
         rest = worst.corners - worst.tried
-        return f"of the {worst.tried} {CORNERS} that the derivatives name; the other {rest:,} were not tried"
-    return "" if worst.open else f"of all {worst.corners} {CORNERS}"
+        return say(
+            "of the {tried} designs with every dimension at an end of its tolerance that the derivatives "
+            "name; the other {rest:,} were not tried",
+            tried=worst.tried, rest=rest,
+        )  # fmt: skip
+    if worst.open:
+        return ""
+    return say("of all {count} designs with every dimension at an end of its tolerance", count=worst.corners)
 
 
 def _samples_text(exact: MonteCarlo) -> str:
     linear = exact.linear
     seen = float(output_values(linear, exact.greatest))
     three = 3 * float(output_values(linear, exact.deviation).max())
-    return (
-        f"{exact.count} designs (seed {exact.seed}): 3 sigma ± {three:.4g} {output_unit(linear)}, "
-        f"greatest {seen:.4g}; "
-        f"exact over linear deviation {_with_error(exact.ratio, exact.ratio_error)}, "
-        f"bias {_with_error(exact.bias, exact.bias_error)} of one"
+    return say(
+        "{count} designs (seed {seed}): 3 sigma ± {sigma}, greatest {seen:.4g}; exact over linear deviation "
+        "{ratio}, bias {bias} of one",
+        count=exact.count,
+        seed=exact.seed,
+        sigma=f"{three:.4g} {output_unit(linear)}",
+        seen=seen,
+        ratio=_with_error(exact.ratio, exact.ratio_error),
+        bias=_with_error(exact.bias, exact.bias_error),
     )
 
 
@@ -279,7 +309,7 @@ def _effects_table(linear: Linear) -> Table:
             effect.dimension.name,
             f"{effect.dimension.value:.7g}",
             f"± {effect.width:.4g} {effect.dimension.unit}".rstrip(),
-            _effect_text(linear, effect.greatest) if effect.greatest > least else "none",
+            _effect_text(linear, effect.greatest) if effect.greatest > least else say("none"),
             shown_input(linear, effect.at) if effect.greatest > least else "-",
             f"{100 * effect.share:.1f} %",
             effect.source,
@@ -300,5 +330,7 @@ def _measures_table(linear: Linear) -> Table:
         cells = [f"± {value:.4g}" if math.isfinite(value) else "-" for value in (worst, 3 * deviation)]
         unit = f" [{one.unit.replace('^2', '²')}]" if one.unit else ""
         measure, colon, joint = one.name.partition(":")
-        rows.append((measure.replace("_", " ") + colon + joint + unit, f"{one.value:.6g}", *cells))
+        title = MEASURES[measure].title if measure in MEASURES and spoken() != "en" else measure
+        words = say(title.replace("_", " "))
+        rows.append((words + colon + joint + unit, f"{one.value:.6g}", *cells))
     return number_table(("measure", "nominal", "worst case", "3 sigma"), rows)

@@ -29,6 +29,7 @@ from sevenbar.errors import RequestError, SevenbarError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed
 from sevenbar.text.progress import Progress, silent
+from sevenbar.text.words import retold, say
 
 #: Quantiles that are kept: the median, 95 % and the 3 sigma of a normal distribution.
 LEVELS = (0.00135, 0.025, 0.5, 0.975, 0.99865)
@@ -98,30 +99,40 @@ class MonteCarlo(Printed):
     def verdict(self) -> str:
         """Whether the linear estimate holds, and why."""
         if self.holds:
-            return (
-                "the linear estimate holds: standard deviations agree within "
-                f"{100 * RATIO_HOLDS:g} %, the mean is off by less than {BIAS_HOLDS:g} of one"
-            )
+            return say(
+                "the linear estimate holds: standard deviations agree within {ratio:g} %, the mean is off by "
+                "less than {bias:g} of one",
+                ratio=100 * RATIO_HOLDS, bias=BIAS_HOLDS,
+            )  # fmt: skip
         if self.holds is None:
-            return f"whether the linear estimate holds cannot be decided with {self.count} samples; take more"
+            return say(
+                "whether the linear estimate holds cannot be decided with {count} samples; take more",
+                count=self.count,
+            )
         because = []
         if self.lost:
+            lost = 100 * self.lost / self.count
             because.append(
-                f"{100 * self.lost / self.count:.3g} % of the samples do not go round ({self.why_lost})"
+                say("{share:.3g} % of the samples do not go round ({why})", share=lost, why=self.why_lost)
             )
         if abs(self.ratio - 1) - SURE * self.ratio_error > RATIO_HOLDS:
-            more = "greater" if self.ratio > 1 else "smaller"
-            because.append(f"the standard deviation is {100 * abs(self.ratio - 1):.3g} % {more}")
+            share = 100 * abs(self.ratio - 1)
+            because.append(
+                say("the standard deviation is {share:.3g} % greater", share=share)
+                if self.ratio > 1
+                else say("the standard deviation is {share:.3g} % smaller", share=share)
+            )
         if abs(self.bias) - SURE * self.bias_error > BIAS_HOLDS:
-            because.append(f"the mean is off by {abs(self.bias):.2g} standard deviations")
-        return "the linear estimate does not hold, because " + " and ".join(because)
+            because.append(say("the mean is off by {bias:.2g} standard deviations", bias=abs(self.bias)))
+        return say("the linear estimate does not hold, because {reasons}", reasons=say(" and ").join(because))
 
     @property
     def why_lost(self) -> str:
         """What became of the samples that do not go round."""
-        parts = [f"{count} {reason}" for reason, count in self.reasons.items()]
-        seen = f"of {self.looked_at} looked at " if self.looked_at < self.lost else ""
-        return seen + ", ".join(parts)
+        parts = say(", ").join(f"{count} {retold(reason)}" for reason, count in self.reasons.items())
+        if self.looked_at < self.lost:
+            return say("of {count} looked at {parts}", count=self.looked_at, parts=parts)
+        return parts
 
 
 def monte_carlo(

@@ -6,14 +6,14 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats, short_way
+from sevenbar.arrays import Booleans, Floats, Integers, Words, short_way
 from sevenbar.description.draft import Draft
 from sevenbar.design.tolerance.outputs import Output, outputs_of, slopes_of, values_of
 from sevenbar.errors import NotCoveredError, RequestError, shown, suggestion
-from sevenbar.kinematics.circuits import Circuit, Integers, Words
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.dimensions import Dimension
+from sevenbar.kinematics.extent_slopes import extent_slopes
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.force_measures import force_slopes
 from sevenbar.kinematics.gradients import QUANTITIES, MeasureSlopes, measure_slopes
@@ -120,7 +120,7 @@ class Sensitivities(Printed):
         return () if self.following is None else (self.loop.numbers.names[self.following.own],)
 
     @property
-    def opens(self) -> npt.NDArray[np.bool_]:
+    def opens(self) -> Booleans:
         """Which dimensions (dimensions,) open the loop."""
         return np.array([name in self.opening for name in self.loop.numbers.names])
 
@@ -218,6 +218,7 @@ def sensitivities(
         one for one in measure_slopes(numbers, chosen, motion.speed) if not one.name.startswith("jerk_")
     ]
     measures += force_slopes(numbers, chosen, motion.speed)
+    measures += extent_slopes(numbers, chosen)
     if following is not None:
         slopes = following.chained(slopes, numbers.nominal)
         measures = [replace(one, slopes=following.chained(one.slopes, numbers.nominal)) for one in measures]

@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.tolerance.exact import ChangedDesigns
 from sevenbar.design.tolerance.linear import Given, Linear, linear_estimate
@@ -136,7 +135,7 @@ def worst_case(
 def corners_of(linear: Linear) -> tuple[Floats, int]:
     """The changes (m, dimensions) of the corners that are computed, and how many corners there are."""
     widths = linear.tolerances.widths
-    own: npt.NDArray[np.int64] = np.flatnonzero(widths)
+    own: Integers = np.flatnonzero(widths)
     if len(own) <= MOST_DIMENSIONS:
         changes = np.zeros((2 ** len(own), len(widths)))
         changes[:, own] = np.array(list(product((-1.0, 1.0), repeat=len(own)))) * widths[own]

@@ -144,7 +144,7 @@ class Transport:
 
 
 def _slides(view: View) -> bool:
-    return view.linkage.column_kinds[view.circuit.input_column] == "slide"
+    return not view.linkage.turns(view.circuit.input_column)
 
 
 def _shown_speed(view: View) -> float:

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.arrays import Booleans, Floats, Integers
 
 #: For each shape of `shapes.mesh`: orientations wxyz (N, 4), positions (N, 3), scales (N, 3).
 Poses = dict[str, tuple[Floats, Floats, Floats]]
@@ -41,7 +40,7 @@ class SolidPlan:
     twist: Floats
     sides: Floats
     colours: Colours
-    moves: npt.NDArray[np.bool_]
+    moves: Booleans
     count: int
     fixed: Floats
     axes: Integers

@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, Integers
 
 #: Corners (v, 3) and triangles (f, 3), counter-clockwise seen from outside.
-Mesh = tuple[Floats, npt.NDArray[np.int64]]
+Mesh = tuple[Floats, Integers]
 
 #: Facets of a round shape.
 ROUND = 32

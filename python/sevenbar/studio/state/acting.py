@@ -65,8 +65,7 @@ class SwitchedLoading:
             found.append(Switch(GRAVITY, GRAVITY, f"{triple_text(own.gravity)} m/s^2"))
         found += _named("load", own.loads, [load_text(load, shown) for load in own.loads])
         slides = [
-            spring.joint is not None
-            and linkage.column_kinds[linkage.column(spring.joint, "joint")] == "slide"
+            spring.joint is not None and not linkage.turns(linkage.column(spring.joint, "joint"))
             for spring in own.springs
         ]
         words = [

@@ -9,8 +9,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.kinematics.rigid import inverse
-from sevenbar.kinematics.word import Place
+from sevenbar.kinematics.factors import Place
+from sevenbar.kinematics.rigid import inverse, placed
 from sevenbar.studio.state.view import View
 
 #: A place that is dragged is rounded to a power of ten that is at most this share of the linkage's size.
@@ -37,15 +37,14 @@ class Grip:
     @property
     def at(self) -> Floats:
         """Where it is in the scene."""
-        return np.asarray(self.frame[:3, :3] @ self.given + self.frame[:3, 3])
+        return placed(self.frame, self.given)
 
     def dragged(self, to: Floats, size: float) -> list[float]:
         """Its coordinates for another place in the scene, rounded as a person would write them.
 
         `size` [length] is the linkage's. Coordinates that stay, up to the rounding, stay to the last digit.
         """
-        back = inverse(self.frame)
-        wanted = back[:3, :3] @ to + back[:3, 3]
+        wanted = placed(inverse(self.frame), to)
         digits = -math.floor(math.log10(size * FINENESS)) if size > 0 else 12
         stays = np.abs(wanted - self.given) < 0.5 * 10.0**-digits
         rounded = [round(float(value), digits) for value in wanted]

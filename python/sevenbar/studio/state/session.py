@@ -10,8 +10,8 @@ import numpy as np
 
 from sevenbar.description.draft import Draft
 from sevenbar.errors import RequestError, SevenbarError
+from sevenbar.kinematics.factors import Place
 from sevenbar.kinematics.motion import Motion
-from sevenbar.kinematics.word import Place
 from sevenbar.reporting.facts import meaning
 from sevenbar.studio.state.acting import SwitchedLoading
 from sevenbar.studio.state.view import View, distance_from_zero, modes_at, nearest, views_of
@@ -128,8 +128,7 @@ class Session:
         ends = (input, output) if input != output else (linkage.drive.output, linkage.drive.joint)
         first = linkage.column(ends[0], "input")
         draft = self.draft.with_value(("drive", "joint"), ends[0]).with_value(("drive", "output"), ends[1])
-        was = linkage.column_kinds[linkage.columns.index(linkage.drive.joint)]
-        if "speed" in draft.raw["drive"] and linkage.column_kinds[first] != was:
+        if "speed" in draft.raw["drive"] and not linkage.driven_alike(first):
             draft = draft.with_value(("drive", "speed"), f"1 {linkage.unit_of(first)}/s")
         self._step(draft)
 
@@ -222,7 +221,7 @@ class Session:
             return
         rows = view.rows_at(value)
         if not rows:
-            slide = view.linkage.column_kinds[view.circuit.input_column] == "slide"
+            slide = not view.linkage.turns(view.circuit.input_column)
             unit, size = (view.linkage.length_unit, 1.0) if slide else ("deg", math.degrees(1))
             low, high = (end * size for end in view.circuit.input_range or (0.0, 0.0))
             raise RequestError(

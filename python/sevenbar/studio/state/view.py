@@ -12,7 +12,8 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.drawing.figure import shown_value
 from sevenbar.drawing.skeleton import Skeleton, skeleton
-from sevenbar.kinematics.circuits import Circuit, Trace
+from sevenbar.kinematics.circuit_values import Trace
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.poses import Walk, along, at_row, frames_of, joint_frames, walk
@@ -146,7 +147,7 @@ class View:
 
         Two passes that meet it are two rows; at the dead centre between them there is one.
         """
-        turns = self.linkage.column_kinds[self.circuit.input_column] == "turn"
+        turns = self.linkage.turns(self.circuit.input_column)
         slack = SAME_INPUT * (1.0 if turns else self.circuit.size)
         last = len(self.path.rows) - 1
         found: set[float] = set()
@@ -232,7 +233,7 @@ class View:
     def input_text(self, row: float) -> str:
         """The input at a row with its unit, an angle within a turn."""
         value, column = self.input_at(row), self.circuit.input_column
-        turns = self.linkage.column_kinds[column] == "turn"
+        turns = self.linkage.turns(column)
         return value_text(self.linkage, column, value % math.tau if turns else value)
 
     def rates(self, point: int, row: float) -> tuple[Floats, Floats, Floats]:
@@ -341,7 +342,7 @@ class _Measure:
         own = motion.linkage
         self._size = motion.circuits[0].size
         self._kept = [i for i, name in enumerate(own.columns) if name in own.drivable()]
-        self._turns = np.array([own.column_kinds[i] == "turn" for i in self._kept])
+        self._turns = own.turning[self._kept]
         self.input = own.columns.index(motion.input)
 
     def _step(self, joints: Floats, q: Floats) -> Floats:
@@ -355,7 +356,7 @@ class _Measure:
 
     def adjoins(self, view: View, row: int, at: float, gap: float) -> bool:
         """Whether a pass leads from a row of a view to another whose input is no more than a gap away."""
-        unit = self._size if view.linkage.column_kinds[self.input] == "slide" else 1.0
+        unit = 1.0 if view.linkage.turns(self.input) else self._size
         return view.input_between(row, at) <= (gap + SAME_INPUT) * unit
 
     def course(self, view: View, row: float) -> Floats:

@@ -15,7 +15,9 @@ from sevenbar.drawing.figure import input_label, range_drawn, shown_value, slide
 from sevenbar.drawing.output_curves import inputs_between, place_of
 from sevenbar.drawing.style import CIRCUIT_COLOURS
 from sevenbar.drawing.ticks import FLAT
-from sevenbar.kinematics.circuits import Extremes
+from sevenbar.kinematics.circuit_path import NotFollowedError
+from sevenbar.kinematics.circuit_values import Extremes
+from sevenbar.kinematics.extents import Flags
 from sevenbar.kinematics.motion import Motion
 from sevenbar.studio.state.view import View
 from sevenbar.studio.svg.panel import Panel
@@ -67,6 +69,15 @@ class ShownCurve:
     def passes(self) -> tuple[slice, ...]:
         """The rows of each pass between input dead centres."""
         return self.view.path.passes
+
+    @property
+    def within(self) -> Flags:
+        """Whether its rows are within the stops of the linkage (n,)."""
+        circuit, rows = self.view.circuit, self.view.path.rows
+        try:
+            return np.asarray(circuit.allowed.within[rows])
+        except NotFollowedError:
+            return np.ones(len(rows), dtype=bool)
 
     def span(self, kind: str) -> Span | None:
         """The range worth showing, without endless rates at input dead centres; `None` without values."""
@@ -158,11 +169,24 @@ def _panel(
         f'<svg x="{left}" y="{top}" width="{wide}" height="{tall}" viewBox="0 0 {wide}0 {tall}0" '
         'fill="none" stroke-linejoin="round">',
         f'<g stroke-width="12">{"".join(faint)}</g>',
-        f'<g stroke-width="20" stroke="{own.colour}">{own.lines(frame, x, y, len(x))}</g></svg>',
+        _strong(own, frame, x, y),
+        "</svg>",
         _marks(quantity, own, frame, below, beside) if own_span[1] - own_span[0] > least else "",
     ]
     svg = frame.svg("".join(content), name=f"{quantity.name}, circuit {circuit}")
     return Panel(frame, svg, x, y, own.values, beside, quantity.unit, own.colour)
+
+
+def _strong(own: ShownCurve, frame: Frame, x: Floats, y: Floats) -> str:
+    """The chosen circuit's line, pale where a stop of the linkage keeps it from going."""
+    whole = own.lines(frame, x, y, len(x))
+    if not own.view.motion.linkage.stops.stops:
+        return f'<g stroke-width="20" stroke="{own.colour}">{whole}</g>'
+    usable = own.lines(frame, x, np.where(own.within, y, np.nan), len(x))
+    return (
+        f'<g stroke-width="20" stroke="{_pale(own.colour)}">{whole}</g>'
+        f'<g stroke-width="20" stroke="{own.colour}">{usable}</g>'
+    )
 
 
 def _empty(frame: Frame, quantity: Quantity, reason: str) -> Panel:
@@ -227,6 +251,8 @@ def _keys(quantity: Quantity, own: ShownCurve) -> list[tuple[str, str]]:
     keys = [("axis cut", "")] if quantity.order and own.view.circuit.turns_back else []
     if len(own.passes) > 1 and own.view.motion.law is None:
         keys += [("rising", "20 0"), ("falling", "5 3")]
+    if own.view.motion.linkage.stops.stops and not own.within.all():
+        keys.append(("pale: beyond a stop", ""))
     return keys
 
 

@@ -80,7 +80,7 @@ class Quantity:
 
     def shift(self, view: View) -> float:
         """The whole turns [deg] that bring the angle's first value into (-180, 180]; 0 for all else."""
-        if self.column is None or self.order or view.linkage.column_kinds[self.column] == "slide":
+        if self.column is None or self.order or not view.linkage.turns(self.column):
             return 0.0
         angles = np.degrees(view.circuit.q[:, self.column])
         known = angles[np.isfinite(angles)]
@@ -90,7 +90,7 @@ class Quantity:
     def natural(self, view: View) -> float:
         """The size of a value that a designer would call neither small nor large, in `unit`."""
         motion, size = view.motion, view.circuit.size
-        turn = self.column is not None and motion.linkage.column_kinds[self.column] == "turn"
+        turn = self.column is not None and motion.linkage.turns(self.column)
         if self.order == 0:
             return 90.0 if turn or self.key == TRANSMISSION else size
         rate = abs(motion.speed) if motion.law is None else float(np.abs(motion.law.dq).max())
@@ -116,7 +116,7 @@ def quantities(motion: Motion) -> tuple[Quantity, ...]:
         found.append(Quantity(key, name, unit, order, column, point))
 
     def add_column(key: str, name: str, column: int) -> None:
-        slide = linkage.column_kinds[column] == "slide"
+        slide = not linkage.turns(column)
         length = linkage.length_unit
         units = (length, f"{length}/s", f"{length}/s²") if slide else ("deg", "rad/s", "rad/s²")
         for order, (word, unit) in enumerate(zip(ORDERS, units, strict=True)):

@@ -134,7 +134,7 @@ impl Curve {
         ends.filter_map(|(at, why)| (why == End::Singular).then_some(at))
     }
 
-    /// The place at which it is told from others best: the farthest from any where it is not smooth.
+    /// The place at which it is distinguished from others best: the farthest from any where it is not smooth.
     pub fn plainest(&self) -> &Configuration {
         let regular = self.nodes.iter().filter(|n| !n.is_crossing());
         let best = regular.min_by(|a, b| a.inverse_norm.total_cmp(&b.inverse_norm));
@@ -436,7 +436,7 @@ pub(crate) fn ahead(chain: &Chain, from: &Node, s: f64) -> Option<Node> {
     (off <= tube(chain, from, s) && node.inverse_norm.is_finite()).then_some(node)
 }
 
-/// Whether the turns of a configuration are near enough for [`passes_through`]: it tells most nodes apart at once.
+/// Whether the turns of a configuration are near enough for [`passes_through`]: it distinguishes most nodes at once.
 pub(super) fn may_pass(chain: &Chain, node: &Node, at: &Configuration) -> bool {
     chain.joints.iter().zip(&chain.first).all(|(joint, &c)| {
         *joint != Joint::Turn || short_way(at.values[c] - node.at.values[c]).abs() <= REACH * node.step

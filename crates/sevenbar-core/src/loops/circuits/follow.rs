@@ -324,7 +324,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Adds the node of a step; tells if the curve ends with it.
+    /// Adds the node of a step; returns whether the curve ends with it.
     fn stepped(&mut self, walker: usize, (step, tube): (f64, f64), next: Node) -> Option<End> {
         let chain = self.chain;
         let curve = &mut self.curves[walker];

@@ -96,7 +96,7 @@ impl Curves {
         }
     }
 
-    /// Follows what leads out of a pose at which the motion may not be smooth; tells whether it is a change point or stands alone.
+    /// Follows what leads out of a pose at which the motion may not be smooth; returns whether it is a change point or stands alone.
     pub fn branches(&mut self, chain: &Chain, pose: &Configuration, stuck: bool) -> bool {
         if self.arcs.learn(chain, pose, &self.wished, stuck).is_none() {
             return false;

@@ -190,7 +190,7 @@ pub(super) fn place_at(chain: &Chain, at: &Configuration, rank: usize) -> Place 
     let placed = chain.place(at);
     let split = Split::new(chain, &placed.screws, rank);
     let count = split.free.len();
-    // each wrench's form as a vector, by which redundant ones are told apart
+    // each wrench's form as a vector, by which redundant ones are distinguished
     let forms: Vec<Vec<f64>> = split
         .left
         .iter()

@@ -235,7 +235,7 @@ impl<H: Homotopy> Follow<'_, H> {
         put(&mut walk.before, &free, from.map(|p| p.before));
     }
 
-    /// One step in each lane; tells which lanes are done with their paths.
+    /// One step in each lane; returns which lanes are done with their paths.
     #[inline(always)]
     fn advance<V: Vector>(&mut self, walk: &mut Walk<V>) -> [bool; LANES] {
         let count = self.starts.len();
@@ -344,7 +344,7 @@ impl<H: Homotopy> Follow<'_, H> {
         self.finished(walk, &accepted, (&first, &last))
     }
 
-    /// Records the ends of ways; tells which lanes are done with their paths or have lost them.
+    /// Records the ends of ways; returns which lanes are done with their paths or have lost them.
     #[inline(always)]
     fn finished<V: Vector>(
         &mut self,

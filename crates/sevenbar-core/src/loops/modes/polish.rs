@@ -140,7 +140,7 @@ fn misfit(chain: &Chain, at: &Configuration) -> Option<f64> {
     }
     let error = &placed.error;
     let left = error.iter().map(|e| e * e).sum::<f64>().sqrt();
-    // turned right round, the error tells nothing
+    // turned right round, the error shows nothing
     if !chain.is_redundant() || left.is_nan() || residual > NEARLY.max(chain.agree) {
         return None;
     }

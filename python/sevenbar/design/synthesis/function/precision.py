@@ -128,7 +128,7 @@ def through(
     # (equations, 2, 2)
     g = np.einsum("ne,jkn->ejk", null, products)
     if count == FREE_ZEROS_MOST:
-        first = _roots(np.outer(g[0, :, 0], g[1, :, 1]) - np.outer(g[0, :, 1], g[1, :, 0]))
+        first = null_angles(np.outer(g[0, :, 0], g[1, :, 1]) - np.outer(g[0, :, 1], g[1, :, 0]))
     u = np.stack([np.cos(first), np.sin(first)])
     w = g[0].T @ u
     pairs = np.column_stack([first, np.arctan2(-w[0], -w[1])])
@@ -167,7 +167,7 @@ def _zero_equations(inputs: Floats, outputs: Floats) -> tuple[Floats, Floats]:
     return left[:, rank:], np.array([[sa * cb, sa * sb], [ca * cb, ca * sb]])
 
 
-def _roots(q: Floats) -> Floats:
+def null_angles(q: Floats) -> Floats:
     """The angles u in (-pi/2, pi/2] with (cos u, sin u) q (cos u, sin u)^T = 0; none, one or two."""
     # q of cos 2u and sin 2u: a level of one sine
     mean, cosine, sine = (q[0, 0] + q[1, 1]) / 2, (q[0, 0] - q[1, 1]) / 2, (q[0, 1] + q[1, 0]) / 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -10,12 +11,13 @@ from matplotlib.figure import Figure
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.synthesis.candidates import Candidate, tally
+from sevenbar.design.synthesis.candidates import Candidate
 from sevenbar.design.synthesis.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
 from sevenbar.design.synthesis.function.generation import Synthesis
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
+from sevenbar.text.words import retold, retold_parts, say
 
 #: Columns of the printed table, by their names in `Candidate.columns`, those that a task has not left out.
 PRINTED = {
@@ -36,17 +38,17 @@ OF_SWING = ("error_greatest_deg", "error_rms_deg")
 def text(found: Synthesis) -> RenderableType:
     """The designs for people."""
     facts = Facts()
-    facts.add("wanted", found.wanted, "bold")
+    facts.add("wanted", retold(found.wanted), "bold")
     if found.wish is not None and found.wish.dials is not None:
-        facts.add("readings", found.wish.dials.text)
+        facts.add("readings", retold(found.wish.dials.text))
     if found.wish is not None:
-        facts.add("", "crank = input zero + reading, rocker = output zero + reading")
-    facts.add("limits", found.limits.text())
-    facts.add("searched", f"{found.searched} designs, {found.fitted} refined, seed {found.seed}")
+        facts.add("", say("crank = input zero + reading, rocker = output zero + reading"))
+    facts.add("limits", retold_parts(found.limits.text(), "; "))
+    facts.add("searched", _searched(found))
     if found.unfinished:
-        facts.add("unfinished", found.unfinished, "bold yellow")
+        facts.add("unfinished", retold(found.unfinished), "bold yellow")
     if found.refusals:
-        facts.add("refused", tally(found.refusals))
+        facts.add("refused", _refused(found))
     rows = [candidate.columns for candidate in found.candidates]
     names = [name for name in PRINTED if name in rows[0] and not (found.wish is None and name in OF_SWING)]
     table = number_table(
@@ -61,7 +63,7 @@ def text(found: Synthesis) -> RenderableType:
         [[str(i), *(_cell(row[f"{key}_{unit}"]) for key in keys)] for i, row in enumerate(rows, 1)],
     )
     parts: list[RenderableType] = [
-        Text("Synthesis of an RSSR", style="bold underline"),
+        Text(say("Synthesis of an RSSR"), style="bold underline"),
         facts.grid,
         Text(),
         table,
@@ -71,8 +73,23 @@ def text(found: Synthesis) -> RenderableType:
     return Group(*parts)
 
 
+def _refused(found: Synthesis) -> str:
+    """What was refused, the commonest first."""
+    counts = Counter(refusal.fault for refusal in found.refusals)
+    return say(", ").join(
+        say("{count} by {fault}", count=count, fault=say(fault)) for fault, count in counts.most_common()
+    )
+
+
+def _searched(found: Synthesis) -> str:
+    return say(
+        "{searched} designs, {refined} refined, seed {seed}",
+        searched=found.searched, refined=found.fitted, seed=found.seed,
+    )  # fmt: skip
+
+
 def _cell(value: object) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
+    return f"{value:.5g}" if isinstance(value, float) else say(str(value))
 
 
 def as_dict(found: Synthesis) -> dict[str, Any]:
@@ -95,7 +112,7 @@ def as_dict(found: Synthesis) -> dict[str, Any]:
 def synthesis_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> Report[Synthesis]:
     """How at most `count` designs are reported; the heads of their files name the `command`."""
     files = design_files(count, figures, head=partial(_head, command), figure=_figure, as_dict=as_dict)
-    return Report(text, as_dict, files)
+    return Report(text, as_dict, files, spoken=True)
 
 
 def _head(command: str, found: Synthesis) -> list[str]:

@@ -16,8 +16,8 @@ from sevenbar.design.synthesis.path.refine import Refined
 from sevenbar.design.synthesis.path.search import SAMPLES
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, RequestError
-from sevenbar.kinematics.circuits import Law
 from sevenbar.kinematics.dimensions import description_of
+from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import rotation_vector
 

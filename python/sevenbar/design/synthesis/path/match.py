@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar.arrays import Floats
-from sevenbar.kinematics.circuits import Integers
+from sevenbar.arrays import Floats, Integers
 
 #: Places along the wanted path, and along a curve, at which shapes are compared.
 SHAPE, CURVE = 24, 96

@@ -10,10 +10,10 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.kinematics.factors import TurnAndSlide
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers, Slopes
-from sevenbar.kinematics.word import TurnAndSlide
 
 
 @dataclass(frozen=True, eq=False)

@@ -67,7 +67,7 @@ class PathProblem:
         self.count = len(task.varied)
         self.start = np.concatenate([seed.varied, self._free(seed)])
         scales = [_unit(task, d.kind) / d.scale for d in task.dimensions]
-        slides = task.draft.linkage.column_kinds[task.closure.input] == "slide"
+        slides = not task.draft.linkage.turns(task.closure.input)
         self.scales = np.array(
             scales + [task.closure.size if slides else 1.0] * (len(self.start) - self.count)
         )

@@ -16,6 +16,7 @@ from sevenbar.design.synthesis.path.figures import path_figure
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
+from sevenbar.text.words import retold, retold_parts, say
 
 #: Dimensions below this part of the path's extent are printed as 0.
 TINY = 1e-9
@@ -41,18 +42,23 @@ def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
     unit = task.draft.linkage.length_unit
     count = len(task.dimensions)
     names = ", ".join(dimension.name for dimension in task.dimensions)
-    inputs = "" if task.timing is None else ", at given inputs" + (" from a free start" if task.phase else "")
+    size = f"{task.extent:.4g} {unit}"
+    places = {"source": source, "count": len(task.wanted), "size": size}
+    wanted = (
+        say("{source}: {count} points of a closed path, {size} across", **places)
+        if task.closed
+        else say("{source}: {count} points of an open path, {size} across", **places)
+    )
+    if task.timing is not None:
+        wanted = say("{path}, at given inputs", path=wanted)
+        wanted = say("{path} from a free start", path=wanted) if task.phase else wanted
     return [
-        (
-            "wanted",
-            f"{source}: {len(task.wanted)} points of {'a closed' if task.closed else 'an open'} path, "
-            f"{task.extent:.4g} {unit} across{inputs}",
-        ),
-        ("point", f"{task.point.name} on link {task.point.link}"),
-        ("varied", f"{count} dimension{'s' * (count != 1)}: {names}"),
+        ("wanted", wanted),
+        ("point", say("{point} on link {link}", point=task.point.name, link=task.point.link)),
+        ("varied", say("{count} dimension{s}: {names}", count=count, s="s" * (count != 1), names=names)),
         *([("held", task.held.text)] if task.held.left_to_the_program else []),
-        ("ground", "anywhere in space" if task.place else "where the description has it"),
-        ("limits", task.limits.text()),
+        ("ground", say("anywhere in space") if task.place else say("where the description has it")),
+        ("limits", retold_parts(task.limits.text(), "; ")),
     ]
 
 
@@ -65,7 +71,7 @@ def path_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> 
         figure=lambda found, design: path_figure(found.task, design),
         as_dict=as_dict,
     )
-    return Report(text, as_dict, files)
+    return Report(text, as_dict, files, spoken=True)
 
 
 def _head(command: str, found: PathDesigns) -> list[str]:
@@ -90,11 +96,11 @@ def text(found: PathDesigns) -> RenderableType:
         facts.add(label, text, "bold" if label == "wanted" else "")
     facts.add("seed", str(found.seed))
     if found.unfinished:
-        facts.add("unfinished", found.unfinished, "bold yellow")
+        facts.add("unfinished", retold(found.unfinished), "bold yellow")
     transmits = any(c.transmission_lowest is not None for c in candidates)
-    heads = [f"greatest\nerror\n[{unit}]", f"RMS\nerror\n[{unit}]"]
-    heads += ["least\ntransm.\n[deg]"] if transmits else []
-    heads += [f"size\n[{unit}]", "motion type", "circuit"]
+    heads = [say("greatest\nerror\n[{unit}]", unit=unit), say("RMS\nerror\n[{unit}]", unit=unit)]
+    heads += [say("least\ntransm.\n[deg]")] if transmits else []
+    heads += [say("size\n[{unit}]", unit=unit), "motion type", "circuit"]
     rows = []
     for i, candidate in enumerate(candidates, 1):
         own = candidate.columns
@@ -103,7 +109,7 @@ def text(found: PathDesigns) -> RenderableType:
         cells += [own[f"size_{unit}"], own["motion_type"], own["circuit"]]
         rows.append([str(i), *map(_cell, cells)])
     parts: list[RenderableType] = [
-        Text(f"Path generation: {linkage.heading}", style="bold underline"),
+        Text(say("Path generation: {linkage}", linkage=linkage.heading), style="bold underline"),
         facts.grid,
         Text(),
         number_table(["design", *heads], rows, words=[heads.index("motion type") + 1]),
@@ -127,7 +133,7 @@ def _cell(value: object, tiny: float = 0.0) -> str:
     if value is None:
         return "-"
     if not isinstance(value, float):
-        return str(value)
+        return say(str(value))
     return "0" if abs(value) < tiny else f"{value:.5g}"
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sevenbar.arrays import Floats, short_way
+from sevenbar.arrays import Floats, Integers, short_way
 from sevenbar.design.synthesis.path.match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
-from sevenbar.kinematics.circuits import Circuit, Integers
+from sevenbar.kinematics.circuits import Circuit
 
 #: Inputs of a turn at which a start's circuits are checked.
 SAMPLES = 72
@@ -134,7 +134,7 @@ def looked_at(task: PathTask, varied: Floats) -> Iterator[Seed]:
     except (DescriptionError, RequestError, NotCoveredError):
         return
     point = next(p for p in linkage.points if p.name == task.point.name)
-    turns = linkage.column_kinds[task.closure.input] == "turn"
+    turns = linkage.turns(task.closure.input)
     for circuit in motion.circuits:
         curve = circuit.point(point.link, point.at).position
         best: Seed | None = None
@@ -182,7 +182,7 @@ def _scaled(task: PathTask, seed: Seed, placing: Placing) -> Seed:
         return seed
     lengths = np.array([d.kind in ("length", "pitch") for d in task.dimensions])
     varied = np.clip(np.where(lengths, placing.scale * seed.varied, seed.varied), task.low, task.high)
-    slides = np.array([kind == "slide" for kind in task.draft.linkage.column_kinds])
+    slides = ~task.draft.linkage.turning
     poses = np.where(slides, placing.scale * seed.poses, seed.poses)
     inputs = seed.inputs * (placing.scale if slides[task.closure.input] else 1.0)
     return Seed(varied, inputs, poses, seed.error, seed.phase)

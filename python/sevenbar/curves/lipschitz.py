@@ -1,0 +1,86 @@
+"""Lowest values and crossings of a quantity of which only a bound of the slope is known: nothing is missed.
+
+Between two places a and b, with |f'| <= B there,
+
+    f >= (f(a) + f(b) - B (b - a)) / 2                                                                    (15)
+
+so a stretch on which this is above the lowest value found is done, and any other is halved.
+
+Source: docs/theory_measures.md, (15).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+
+#: Most stretches at a time; with more the quantity rests near the value that is wanted.
+MOST = 4096
+
+#: Most halvings of a stretch.
+HALVINGS = 40
+
+#: Halvings of a bracket, from any length to rounding.
+TO_ROUNDING = 60
+
+Function = Callable[[Floats], Floats]
+
+
+def lowest(function: Function, edges: Floats, bounds: Floats, small: float) -> tuple[float, float]:
+    """Where a quantity is lowest between `edges` (m + 1,), and its value, up to `small`.
+
+    Slopes are within `bounds` (m,). Of equal values the first place counts.
+    """
+    a, b, slope = edges[:-1], edges[1:], bounds
+    values = function(edges)
+    low, high = values[:-1], values[1:]
+    place, best = edges[int(values.argmin())], float(values.min())
+    for _ in range(HALVINGS):
+        left = (low + high - slope * (b - a)) / 2 < best - small
+        if not left.any() or left.sum() > MOST:
+            break
+        a, b, slope, low, high = a[left], b[left], slope[left], low[left], high[left]
+        middle = (a + b) / 2
+        between = function(middle)
+        if between.min() < best:
+            place, best = middle[int(between.argmin())], float(between.min())
+        a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
+        low, high = np.concatenate([low, between]), np.concatenate([between, high])
+        slope = np.concatenate([slope, slope])
+    return float(place), best
+
+
+def crossings(function: Function, edges: Floats, bounds: Floats, small: float) -> Floats:
+    """Places (j,) at which a quantity passes through zero, rising or falling; slopes are within `bounds`.
+
+    A touch from one side, and two crossings between which it reaches less than `small`, are none.
+    """
+    values = function(edges)
+    found: list[Floats] = []
+    a, b, slope, low, high = edges[:-1], edges[1:], bounds, values[:-1], values[1:]
+    for _ in range(HALVINGS):
+        passes = (low > 0) != (high > 0)
+        found += [np.column_stack([a[passes], b[passes]])]
+        near = (np.abs(low) + np.abs(high) - slope * (b - a)) / 2 < -small
+        left = near & ~passes
+        if not left.any() or left.sum() > MOST:
+            break
+        a, b, slope, low, high = a[left], b[left], slope[left], low[left], high[left]
+        middle = (a + b) / 2
+        between = function(middle)
+        a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
+        low, high = np.concatenate([low, between]), np.concatenate([between, high])
+        slope = np.concatenate([slope, slope])
+    brackets = np.concatenate(found)
+    if not len(brackets):
+        return np.empty(0)
+    start, end = brackets.T
+    above = function(start) > 0
+    for _ in range(TO_ROUNDING):
+        middle = (start + end) / 2
+        same = (function(middle) > 0) == above
+        start, end = np.where(same, middle, start), np.where(same, end, middle)
+    return np.sort((start + end) / 2)

@@ -1,0 +1,141 @@
+"""What keeps a linkage from moving on, as a file has it: the models of [[stop]] and [[rod]]."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationError, ValidationInfo
+
+from sevenbar.description.load_values import Link
+from sevenbar.description.table_form import TableForm, key
+from sevenbar.description.values import (
+    Angle,
+    Component,
+    Direction,
+    Length,
+    NumberKind,
+    Text,
+    number_for,
+    refuse,
+)
+from sevenbar.description.written import Written, entries, named_column
+from sevenbar.errors import Problem, RequestError, shown
+from sevenbar.kinematics.stops import Cone, check_range
+from sevenbar.text.units import ANGLES
+
+
+def stop_kinds(table: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, NumberKind]:
+    """What the numbers of a stop are: those of a range by how its joint moves."""
+    name = table.get("joint")
+    freedom = context.get("freedoms", {}).get(name.strip() if isinstance(name, str) else "")
+    moves: NumberKind = "length" if freedom == "slide" else "angle"
+    return {"range": moves, "cone": "angle", "seat": "number", "stud": "number"}
+
+
+def _range(value: object, info: ValidationInfo) -> tuple[float, float]:
+    """Low and high, angles in radians; `joint` is read before it."""
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        raise refuse(f"{shown(value)} is not a range; give low and high, as in [-30, 60]")
+    context = info.context or {}
+    kind = stop_kinds({"joint": info.data.get("joint")}, context)["range"]
+    size = ANGLES[context.get("angle_unit", "rad")] if kind == "angle" else 1.0
+    low, high = (number_for(end, info, kind) * size for end in value)
+    try:
+        return check_range("range", low, high, turns=kind == "angle")
+    except RequestError as error:
+        raise refuse(f"{shown(list(value))}: {str(error).partition(': ')[2]}") from None
+
+
+class StopForm(TableForm):
+    """How far a joint may go; it changes no motion, but says what part of a circuit can be used."""
+
+    # before the range, whose unit depends on it
+    joint: Annotated[Text, key("the joint, or one of its columns")]
+    range: Annotated[
+        Annotated[tuple[Component, Component], BeforeValidator(_range)] | None,
+        key("low and high of a joint that is no ball, a turn at most", "angle_unit, or length"),
+    ] = None
+    cone: Annotated[
+        Angle | None,
+        key("of S and U: the greatest angle between seat and stud, up to 180 degrees", "angle_unit"),
+    ] = None
+    seat: Annotated[
+        Direction | None,
+        key("of S and U: a direction on the link before, as its points are written; left out, the middle"),
+    ] = None
+    stud: Annotated[
+        Direction | None,
+        key("of S and U: a direction on the link after; left out, towards its other joint"),
+    ] = None
+
+
+class RodForm(TableForm):
+    """How thick a link is, as a rod between its joints."""
+
+    link: Annotated[Link, key("the link, counted from 1; the last is the ground")]
+    radius: Annotated[Length, key("links that share no joint keep the sum of theirs apart", "length")]
+
+
+def stop_contradictions(
+    raw: Mapping[str, Any], joints: Sequence[Written], context: Mapping[str, Any]
+) -> list[Problem]:
+    """What is wrong with stops whose values are each right, or with joints and links that they name."""
+    problems: list[Problem] = []
+    ranged, coned, thick = set[str](), set[str](), set[int]()
+    for i, table in enumerate(entries(raw, "stop"), 1):
+        try:
+            stop = StopForm.model_validate(table, context=dict(context))
+        except ValidationError:
+            continue
+        problems += _of_stop(f"stop[{i}]", stop, joints, ranged, coned)
+    for i, table in enumerate(entries(raw, "rod"), 1):
+        try:
+            rod = RodForm.model_validate(table, context=dict(context))
+        except ValidationError:
+            continue
+        if rod.link > len(joints) > 0:
+            last = f"give 1 to {len(joints)}, the last is the ground"
+            problems.append(Problem(f"rod[{i}].link", f"{rod.link} is not a link; {last}"))
+        if rod.link in thick:
+            problems.append(Problem(f"rod[{i}].link", f"link {rod.link} has a radius already; leave one out"))
+        thick.add(rod.link)
+    return problems
+
+
+def _of_stop(
+    place: str, stop: StopForm, joints: Sequence[Written], ranged: set[str], coned: set[str]
+) -> list[Problem]:
+    of_cone = [name for name in ("cone", "seat", "stud") if getattr(stop, name) is not None]
+    if stop.range is None and not of_cone:
+        return [Problem(place, "says nothing; give a range, a cone of S or U, or leave it out")]
+    owner = next((joint for joint in joints if joint.name == stop.joint), None)
+    problems = []
+    if stop.range is not None and joints:
+        column, wrong = named_column(stop.joint, joints)
+        if wrong:
+            ball = owner is not None and owner.is_ball
+            remedy = "give it a cone in place of a range" if ball else ""
+            message = f"joint {shown(stop.joint)} is a ball; {remedy}" if ball else wrong
+            problems.append(Problem(f"{place}.{'range' if ball else 'joint'}", message))
+        elif column in ranged:
+            problems.append(Problem(f"{place}.range", f"joint {shown(column)} has a range already"))
+        ranged.add(column)
+    for name in of_cone if joints else ():
+        if owner is None or not owner.bends:
+            known = [joint.name for joint in joints if joint.bends]
+            remedy = f"give it to {' or '.join(known)}" if known else "leave it out, the loop has none"
+            problems.append(
+                Problem(
+                    f"{place}.{name}", f"is of joints S and U, which {shown(stop.joint)} is not; {remedy}"
+                )
+            )
+    if of_cone and stop.joint in coned:
+        problems.append(Problem(f"{place}.{of_cone[0]}", f"joint {shown(stop.joint)} has a cone already"))
+    coned.update([stop.joint] if of_cone else [])
+    if not problems and stop.cone is not None:
+        try:
+            Cone(stop.cone)
+        except RequestError as error:
+            problems.append(Problem(f"{place}.cone", str(error).partition(": ")[2]))
+    return problems

@@ -1,0 +1,129 @@
+"""All answers to a task whose number theory counts: how many there are, and what each of them does."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
+from sevenbar.design.exact.dyads import Dyad
+from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.text.printing import Printed, lines, text_of
+
+#: Inputs of a full turn at which poses are sought. A long crank moves by a hundredth of a turn, and less.
+CHECKED_AT, LITTLE_CHECKED_AT = (CHECK_SAMPLES, 16 * CHECK_SAMPLES), 256 * CHECK_SAMPLES
+
+#: Range of the claimed inputs [rad] that is little.
+LITTLE = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class ExactAnswer:
+    """One linkage that meets a task: its draft, what is claimed of it, and what its circuits say.
+
+    `claim.errors` are the closure errors at the wanted poses by substitution [length]. `verdict` is a
+    `Candidate` where all poses lie on one pass of one circuit in their order, and else a `Refusal` that names
+    the defect ("circuit", "dead centre", "order"); `None` where a loop has two freedoms, and no circuits.
+    """
+
+    draft: Draft
+    claim: Claim
+    verdict: Candidate | Refusal | None
+    #: All joints' values at the wanted poses (n, columns); `None` where only input and output are wanted.
+    poses: Floats | None = None
+
+    @property
+    def linkage(self) -> Linkage:
+        """The linkage."""
+        return self.draft.linkage
+
+    @property
+    def fault(self) -> str | None:
+        """The kind of defect; `None` without one."""
+        return self.verdict.fault if isinstance(self.verdict, Refusal) else None
+
+    @property
+    def error(self) -> float:
+        """The greatest closure error at the wanted poses, relative to the size of the linkage."""
+        return self.claim.figures["closure_error"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ExactAnswers(Printed):
+    """All answers to a task: their number by theory, over the complex numbers, and the real ones.
+
+    `counted` names what theory counts ("dyads", "linkages"); `theory` is their number over the complex
+    numbers and `found` how many were found, with multiplicity (`None` where the answers are a family, of
+    which `answers` are members). `real` of these are real numbers, all different. `answers` are the
+    linkages that they make: one for each way to drive each.
+    """
+
+    task: str
+    counted: str
+    theory: int | None
+    found: int | None
+    real: int
+    answers: tuple[ExactAnswer, ...]
+    #: How the number was found, and what was left out.
+    how: str
+    #: The real dyads themselves, in ground coordinates.
+    dyads: tuple[Dyad, ...] = ()
+
+    @property
+    def assemblable(self) -> tuple[ExactAnswer, ...]:
+        """The answers whose circuits hold all wanted poses, whatever lies between them."""
+        return tuple(a for a in self.answers if a.fault != "assembly")
+
+    @property
+    def defect_free(self) -> tuple[ExactAnswer, ...]:
+        """The answers that take all wanted poses in order on one pass of one circuit."""
+        return tuple(a for a in self.answers if isinstance(a.verdict, Candidate))
+
+    @property
+    def complete(self) -> bool:
+        """Whether as many were found as theory counts."""
+        return self.found is not None and self.found == self.theory
+
+    @property
+    def sliders(self) -> int:
+        """How many real dyads have a slider in place of a crank: a point at infinity."""
+        return sum("P" in dyad.kind for dyad in self.dyads)
+
+    @property
+    def faults(self) -> dict[str, int]:
+        """How many answers have each kind of defect."""
+        return dict(Counter(a.fault for a in self.answers if a.fault is not None))
+
+
+def judged(draft: Draft, claim: Claim, poses: Floats | None = None) -> ExactAnswer:
+    """An answer with what its circuits say; `poses` (n, columns) as `checked` takes them."""
+    little = float(np.ptp(claim.inputs)) < LITTLE
+    for samples in (*CHECKED_AT, *([LITTLE_CHECKED_AT] if little else [])):
+        verdict = checked(draft, claim, poses=poses, samples=samples)
+        if not isinstance(verdict, Refusal) or verdict.fault != "assembly":
+            break
+    return ExactAnswer(draft, claim, verdict, poses)
+
+
+@text_of.register(ExactAnswers)
+def _(found: ExactAnswers) -> str:
+    faults = ", ".join(f"{count} by {fault}" for fault, count in found.faults.items())
+    unjudged = sum(a.verdict is None for a in found.answers)
+    number = "a family" if found.theory is None else f"{found.found} of {found.theory} {found.counted}"
+    return lines(
+        f"Answers to {found.task}",
+        [
+            ("over the complex numbers", number),
+            ("real", f"{found.real}"),
+            ("linkages", f"{len(found.answers)}"),
+            ("assemblable", f"{len(found.assemblable)}"),
+            ("free of defects", f"{len(found.defect_free)}"),
+            ("defects", faults or "none"),
+            *([("without a verdict", f"{unjudged}: two freedoms")] if unjudged else []),
+            ("how", found.how),
+        ],
+    )

@@ -1,0 +1,118 @@
+"""Spatial linkages RCCC and CCCC whose coupler takes given poses: dyads of cylindrical joints.
+
+A dyad is two lines, eight numbers. The angle and the distance of the lines stay (CC), so does the place on
+the fixed line (RC), so does that on the moving line (RR): 2, 3, 4 equations for each pose after the first,
+
+    CC    5 poses: 6 dyads, as many as spherical ones of the directions; the places are linear equations
+    RC    3 poses: one dyad for each direction of the moving line, two numbers free; none for 4 poses
+    RR    3 poses: 2 real dyads, which make a Bennett linkage (`bennett`)
+
+So five general poses give CCCC linkages, which have two freedoms, and none with an R joint. Chen and Roth
+counted so which binary links meet how many poses.
+
+Source: P. Chen and B. Roth, "Design equations for the finitely and infinitesimally separated position
+synthesis of binary links and combined link chains", J. Eng. Ind. 91 (1969), 209; docs/theory_design.md, (33)
+to (35).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers
+from sevenbar.design.exact.bilinear import POINTS, solutions
+from sevenbar.design.exact.draws import directions
+from sevenbar.design.exact.dyads import Dyad
+from sevenbar.design.exact.given import Displacements, poses_given
+from sevenbar.design.exact.lines import line_dyad, places
+from sevenbar.design.exact.loops import all_loops, drawn, loop
+from sevenbar.design.exact.spherical import NOTHING, refuse_one_axis
+from sevenbar.errors import RequestError, ends_here
+from sevenbar.kinematics.rigid import unit
+
+#: Dyads CC of five poses over the complex numbers.
+DYADS = POINTS
+
+
+@ends_here
+def cc_dyads(poses: npt.ArrayLike, *, length_unit: str = "mm") -> ExactAnswers:
+    """The dyads CC, up to 6 real ones, that take five poses (5, 4, 4), and every pair as a linkage CCCC.
+
+    These linkages have two freedoms: they take all poses, and no input alone leads them from one to the
+    next, so they have no verdict. Raises `RequestError` where poses are equal, their rotations have one axis
+    or infinitely many dyads.
+
+        >>> from sevenbar.kinematics.rigid import about, pose
+        >>> places = [(0, 0, 0), (10, 4, 2), (15, 9, 8), (22, 8, 9), (30, 5, 20)]
+        >>> turns = [about(2, 0.3 * i) @ about(0, 0.2 * i * i) @ about(1, 0.1 * i) for i in range(5)]
+        >>> found = cc_dyads(pose(turns, places))
+        >>> found.complete, found.real, found.answers[0].linkage.kind
+        (True, 2, 'CCCC')
+
+    Source: docs/theory_design.md, (33) to (35).
+    """
+    task = poses_given(poses, 5, 5)
+    _refuse_special(task)
+    found = solutions(task.turns - np.eye(3))
+    if found is None:
+        raise RequestError(
+            "poses: infinitely many directions of dyads take these five orientations; change one of them"
+        )
+    dyads: list[Dyad] = []
+    for i in np.flatnonzero(found.real):
+        a, b = unit(found.a[i].real), unit(found.b[i].real)
+        b = b if a @ b >= 0 else -b
+        if np.linalg.norm(np.cross(a, b)) < NOTHING:
+            continue
+        both = places(a, b, "CC", task)
+        if both is not None:
+            dyads.append(line_dyad(a, b, *both, "CC", task))
+    answers = all_loops(dyads, task, "Linkage CCCC", length_unit)
+    how = f"{POINTS} pairs of directions as of spherical dyads, the places of each from 4 linear equations"
+    known = int(found.multiplicity.sum())
+    return ExactAnswers(
+        "5 poses in space", "dyads", DYADS, known, len(dyads), answers, how, drawn(dyads, task)
+    )
+
+
+@ends_here
+def rccc_poses(
+    poses: npt.ArrayLike, *, samples: int = 8, seed: int = 0, length_unit: str = "mm"
+) -> ExactAnswers:
+    """Linkages RCCC whose coupler takes three poses (3, 4, 4): members of their family, drawn by `seed`.
+
+    The direction of the moving line of the dyad RC is free, all else of it follows; the dyad CC has its
+    direction and two more numbers free. Four poses leave no dyad RC. Raises `RequestError` where poses are
+    equal or their rotations have one axis.
+    """
+    task = poses_given(poses, 3, 3)
+    _refuse_special(task)
+    forms = task.turns - np.eye(3)
+    answers: list[ExactAnswer] = []
+    for draw in directions(samples, 8, seed):
+        dyads: list[Dyad] = []
+        for kind, b, free in (("RC", draw[:3], None), ("CC", draw[3:6], 3 * draw[6:])):
+            a, b = unit(np.cross(*(forms @ b))), unit(b)
+            b = b if a @ b >= 0 else -b
+            both = places(a, b, kind, task, free)
+            if both is not None:
+                dyads.append(line_dyad(a, b, *both, kind, task))
+        if len(dyads) == 2:
+            title = f"Linkage RCCC {len(answers) + 1}"
+            answers.append(loop(dyads[0], dyads[1], task, title, length_unit))
+    how = f"one dyad RC for each direction of its moving line, drawn with seed {seed}"
+    return ExactAnswers("3 poses in space", "linkages", None, None, len(answers), tuple(answers), how)
+
+
+def _refuse_special(task: Displacements) -> None:
+    """`RequestError` for poses whose rotations have one axis, or that leave a point where it is."""
+    refuse_one_axis(task.turns, "poses")
+    sides, right = np.concatenate(np.eye(3) - task.turns), np.concatenate(task.shifts)
+    centre = np.linalg.lstsq(sides, right, rcond=None)[0]
+    if np.abs(sides @ centre - right).max() < NOTHING:
+        x, y, z = centre * task.reach + task.origin
+        raise RequestError(
+            f"poses: all are turns about one point, ({x:.6g}, {y:.6g}, {z:.6g}), which spherical linkages "
+            "take: give their rotations to spherical_orientations"
+        )

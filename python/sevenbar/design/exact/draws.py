@@ -1,0 +1,41 @@
+"""Members of families of dyads: points on a cubic of moving points, or any moving points."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.exact.bilinear import on_cubic, partner
+from sevenbar.design.synthesis.function.generation import need_scipy
+from sevenbar.errors import RequestError
+
+#: A pair of points (a, b), both (3,), that bilinear forms make zero.
+Pair = tuple[Floats, Floats]
+
+
+def directions(samples: int, size: int, seed: int) -> Floats:
+    """Directions (samples, size) all round, from a Sobol sequence: those of normal deviates."""
+    need_scipy()
+    from scipy.special import ndtri
+    from scipy.stats import qmc
+
+    if samples < 1:
+        raise RequestError(f"samples: {samples} is no number of members; give 1 or more")
+    # a sequence is even in powers of two only
+    draws = qmc.Sobol(size, seed=seed).random_base2(max(samples - 1, 1).bit_length())[:samples]
+    found = ndtri(np.clip(draws, 1e-9, 1 - 1e-9))
+    return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
+
+
+def on_curve(forms: Floats, samples: int, seed: int) -> list[Pair]:
+    """Pairs of three forms (3, 3, 3), whose b lie on a cubic: where lines of a Sobol sequence meet it."""
+    found: list[Pair] = []
+    for line in directions(samples, 6, seed):
+        for b in on_cubic(forms, line[:3], line[3:]):
+            found.append((partner(forms, b).real, b))
+    return found[:samples]
+
+
+def anywhere(forms: Floats, moving: Floats) -> list[Pair]:
+    """Pairs of two forms (2, 3, 3): each b of `moving` (k, 3) has its a, `T_1 b x T_2 b`."""
+    return [(np.cross(*(forms @ b)), b) for b in moving]

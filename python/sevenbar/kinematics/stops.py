@@ -1,0 +1,79 @@
+"""What keeps a linkage from moving on: ranges of joints, cones of balls, thick links."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from sevenbar.arrays import finite_number
+from sevenbar.errors import RequestError, shown
+
+Three = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Cone:
+    """How far a ball or universal joint may be bent, and from where.
+
+    `angle` [rad] is the greatest between `seat` and `stud`, directions of the link before and of the link
+    after, written as points of these are; `None` for no limit. A direction left out: of an idle link that of
+    its rod; else the stud is the rod of the link after, and the seat the middle of the motion.
+    """
+
+    angle: float | None = None
+    seat: Three | None = None
+    stud: Three | None = None
+
+    def __post_init__(self) -> None:
+        for key in ("seat", "stud"):
+            value = getattr(self, key)
+            if value is not None:
+                three = tuple(finite_number(key, each) for each in value)
+                if len(three) != 3 or not any(three):
+                    raise RequestError(
+                        f"{key}: {shown(value)} is not a direction; give three numbers, not all 0"
+                    )
+                object.__setattr__(self, key, three)
+        if self.angle is not None and not 0 < finite_number("cone", self.angle) <= math.pi:
+            raise RequestError(
+                f"cone: {math.degrees(self.angle):.6g} deg is no cone; give an angle above 0, up to 180 deg"
+            )
+
+
+@dataclass(frozen=True)
+class Stops:
+    """The stops of a linkage.
+
+    `ranges` of columns by name, each low and high [rad, or length], a turn at most; `cones` by joint; `radii`
+    [length] of links by number, the ground last.
+    """
+
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    cones: Mapping[str, Cone] = field(default_factory=dict)
+    radii: Mapping[int, float] = field(default_factory=dict)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is given."""
+        return not (self.ranges or self.cones or self.radii)
+
+    @property
+    def stops(self) -> bool:
+        """Whether anything is given that a motion can run into: not directions of seats alone."""
+        return bool(self.ranges or self.radii or any(c.angle is not None for c in self.cones.values()))
+
+
+NO_STOPS = Stops()
+
+
+def check_range(key: str, low: float, high: float, *, turns: bool) -> tuple[float, float]:
+    """A range of a joint [rad, or length], or `RequestError`."""
+    ends = finite_number(key, low), finite_number(key, high)
+    if not ends[0] < ends[1]:
+        raise RequestError(f"{key}: the low end is not below the high end; give [low, high]")
+    # a few rounding errors beyond a turn are a turn
+    if turns and ends[1] - ends[0] > math.tau * (1 + 1e-12):
+        degrees = math.degrees(ends[1] - ends[0])
+        raise RequestError(f"{key}: {degrees:.6g} deg is more than a turn; a stop is within one")
+    return ends

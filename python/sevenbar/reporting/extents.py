@@ -1,0 +1,154 @@
+"""Ranges of joints, bends, distances of links and what stops leave of a circuit, in tables and values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, TypeVar
+
+from sevenbar.curves.curve import Peak
+from sevenbar.kinematics.circuit_path import NotFollowedError
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.extents import Allowed
+from sevenbar.kinematics.geometry import Loop
+from sevenbar.kinematics.motion import Motion
+from sevenbar.reporting.shown import Shown, degrees
+from sevenbar.text.words import say
+
+T = TypeVar("T")
+
+#: Circuits whose usable parts are in one line.
+MOST_LISTED = 8
+
+Row = tuple[str, ...]
+
+
+def known(of: Callable[[], T]) -> T | None:
+    """What is found along a circuit, `None` where it cannot be followed by its own length."""
+    try:
+        return of()
+    except NotFollowedError:
+        return None
+
+
+def extent_rows(motion: Motion) -> tuple[Row, list[Row]]:
+    """Heads, and a row for each joint, ball and pair of links of each circuit, with its stop."""
+    heads = (
+        say("circuit"),
+        say("joint"),
+        say("least @ {joint}", joint=motion.input),
+        say("greatest @ {joint}", joint=motion.input),
+        say("between"),
+        say("stop"),
+    )
+    return heads, [row for circuit in motion for row in _of_circuit(motion.linkage, circuit)]
+
+
+def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
+    place = Shown("rad" if circuit.input_turns else linkage.length_unit)
+    number, stops = f"{circuit.index}", linkage.stops
+
+    def at(peak: Peak, show: Callable[[float], str]) -> str:
+        return f"{show(peak.value)} @ {place(peak.input, whole=True)}"
+
+    ranges = known(lambda: circuit.joint_ranges)
+    if ranges is None:
+        yield (number, say("cannot be followed by its own length"), "-", "-", "-", "-")
+        return
+    for name, found in ranges.items():
+        show = Shown("rad" if found.turns else linkage.length_unit)
+        stop = say(" to ").join(map(show, stops.ranges[name])) if name in stops.ranges else "-"
+        if found.low is None or found.high is None or found.extent is None:
+            yield (number, name, "-", "-", say("without end"), stop)
+        else:
+            yield (number, name, at(found.low, show), at(found.high, show), show(found.extent), stop)
+    for name, cone in (known(lambda: circuit.ball_cones) or {}).items():
+        stop = "-" if cone.limit is None else degrees(cone.limit)
+        middle = say("{angle} from the middle", angle=degrees(cone.spread))
+        bend = say("bend of {joint}", joint=name)
+        yield (number, bend, at(cone.least, degrees), at(cone.greatest, degrees), middle, stop)
+    length = Shown(linkage.length_unit)
+    for one in (known(lambda: circuit.clearances) or ()) if stops.radii else ():
+        if one.radii:
+            pair = say("links {first} and {second}", first=one.links[0], second=one.links[1])
+            left = say("{gap} left", gap=length(one.gap))
+            yield (number, pair, at(one.distance, length), "-", left, length(one.radii))
+
+
+def span_rows(motion: Motion) -> tuple[Row, list[Row]]:
+    """Heads, and a row for each part of each circuit that its stops allow."""
+    heads = (say("circuit"), say("usable part"), say("from"), say("to"), say("ended by"))
+    place = Shown("rad" if motion.linkage.unit_of(motion.input) == "rad" else motion.linkage.length_unit)
+    rows: list[Row] = []
+    for circuit in motion:
+        found = known(lambda circuit=circuit: circuit.allowed)  # type: ignore[misc]
+        if found is None or not found.spans:
+            rows.append((f"{circuit.index}", say("none") if found else "-", "-", "-", _reasons(found)))
+        for span in found.spans if found else ():
+            ends = (place(span.start, whole=True), place(span.end, whole=True))
+            if found and found.whole:
+                ends = ("-", "-")
+            by = "; ".join(dict.fromkeys(filter(None, (span.first_stop, span.last_stop)))) or "-"
+            rows.append((f"{circuit.index}", _percent(span.share), *ends, by))
+    return heads, rows
+
+
+def _reasons(found: Allowed | None) -> str:
+    if found is None:
+        return "-"
+    return "; ".join(sorted({str(name) for name in found.stopped_by if name})) or "-"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %"
+
+
+def usable_text(circuits: Sequence[Circuit]) -> str:
+    """What part of each circuit is within the stops: "circuit 0: 43.9 %, circuit 1: none"."""
+    parts = []
+    for circuit in circuits[:MOST_LISTED]:
+        found = known(lambda circuit=circuit: circuit.allowed)  # type: ignore[misc]
+        part = "-" if found is None else say("all") if found.whole else _percent(found.share)
+        if found is not None and not found.spans:
+            part = say("none")
+        parts.append(say("circuit {number}: {part}", number=circuit.index, part=part))
+    return say(", ").join(parts) + (" .." if len(circuits) > MOST_LISTED else "")
+
+
+def extents_dict(circuit: Circuit, linkage: Loop) -> dict[str, Any]:
+    """All of it as plain values: radians, lengths in the linkage's unit; null where it cannot be followed.
+
+    Distances are those of links with a radius.
+    """
+    ranges = known(lambda: circuit.joint_ranges)
+    cones = known(lambda: circuit.ball_cones)
+    gaps = known(lambda: circuit.clearances) if linkage.stops.radii else ()
+    found = known(lambda: circuit.allowed) if linkage.stops.stops else None
+    return {
+        "joint_ranges": None
+        if ranges is None
+        else {name: _ends("low", one.low) | _ends("high", one.high) for name, one in ranges.items()},
+        "ball_cones": None
+        if cones is None
+        else {
+            name: _ends("least", one.least)
+            | _ends("greatest", one.greatest)
+            | {key: getattr(one, key) for key in ("seat", "stud", "middle", "middle_of", "spread", "limit")}
+            for name, one in cones.items()
+        },
+        "clearances": None
+        if gaps is None
+        else [
+            {"links": one.links, "gap": one.gap, "radii": one.radii} | _ends("distance", one.distance)
+            for one in gaps
+            if one.radii
+        ],
+        "allowed": None
+        if found is None
+        else {"share": found.share, "spans": [vars(span) for span in found.spans]},
+    }
+
+
+def _ends(name: str, peak: Peak | None) -> dict[str, float | None]:
+    if peak is None:
+        return {name: None, f"{name}_at": None}
+    return {name: peak.value, f"{name}_at": peak.input}
