@@ -145,7 +145,7 @@ least = "1cm"
     np.testing.assert_allclose(poses.poses[0, :2, 0], [np.sqrt(3) / 2, 0.5])
     np.testing.assert_allclose(poses.poses[1, :3, :3], [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
     assert swing.value == pytest.approx(np.degrees(0.5))
-    assert dwell.range == pytest.approx((np.radians(100), np.radians(140)))
+    assert dwell.inputs == pytest.approx((np.radians(100), np.radians(140)))
     assert dwell.level is None
     turned, ratio, most, apart, exact = task.musts
     assert (turned.low, turned.high) == pytest.approx((-np.pi / 2, np.pi / 2))

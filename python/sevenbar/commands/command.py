@@ -71,6 +71,10 @@ EXAMPLES = {
     ),
     "map": ("sevenbar map rssr --over L1=100:400 --over L3=300:800 --measure transmission_lowest -o maps",),
     "tolerance": ("sevenbar tolerance rssr --tolerance 'L*=0.5mm' --tolerance M=1 -o tolerance",),
+    "survey": (
+        "sevenbar design survey --output-range 0:23.75deg --ball-angle 15deg --motion-type crank-rocker",
+        "sevenbar design survey --y 'x^2' --count 1e8 --journal parts --out designs",
+    ),
     "swing": ("sevenbar design swing --swing 60deg --time-ratio 1.2 -o swing",),
     "path": (
         "sevenbar design path planar_4r --path examples/coupler_curve.csv --link 2 --at 0,-50,20 "

@@ -155,10 +155,10 @@ def _of_want(task: DesignTask, want: Want, *, exact: bool) -> Flaws:
         case FigureWant():
             yield from _figure(task, want)
         case DwellWant():
-            yield from _range(task.draft.linkage, want.range)
+            yield from _range(task.draft.linkage, want.inputs)
         case StraightWant():
             yield from _point(task.draft.linkage, want.point)
-            yield from _range(task.draft.linkage, want.range)
+            yield from _range(task.draft.linkage, want.inputs)
 
 
 def _function(task: DesignTask, want: FunctionWant, *, exact: bool) -> Flaws:

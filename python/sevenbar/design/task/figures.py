@@ -42,13 +42,13 @@ def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -
     x = along.ways[number].inputs - zeros[0]
     if linkage.turns(drive.joint):
         # on the turn of the readings
-        begin = float(want.input[0] if isinstance(want, FunctionWant) else want.range[0])
+        begin = float(want.input[0] if isinstance(want, FunctionWant) else want.inputs[0])
         x = x - math.tau * np.round((x[0] - begin) / math.tau)
     y = along.outputs(number)
     if isinstance(want, FunctionWant):
         at, wanted = want.input, want.output
     else:
-        at = np.linspace(*want.range, want.samples)
+        at = np.linspace(*want.inputs, want.samples)
         wanted = np.zeros(want.samples)
     order = np.argsort(x)
     errors = np.interp(at, x[order], y[order]) - wanted

@@ -105,13 +105,13 @@ class FigureWant:
 
 @dataclass(frozen=True)
 class DwellWant:
-    """The output rests while the input goes over a range (low, high) [rad, or length].
+    """The output rests while the input goes over `inputs` (low, high) [rad, or length].
 
     It stays at `level`, a free one where that is `None`. Residuals: what it is off at `samples` inputs
     [rad, or relative to the size]. A tolerated deviation is a `Most` as well.
     """
 
-    range: tuple[float, float]
+    inputs: tuple[float, float]
     level: float | None = None
     samples: int = 41
     weight: float = 1.0
@@ -127,7 +127,7 @@ class StraightWant:
     """
 
     point: str
-    range: tuple[float, float]
+    inputs: tuple[float, float]
     length: float | None = None
     samples: int = 41
     weight: float = 1.0

@@ -80,12 +80,12 @@ def want_words(want: Want, linkage: Linkage) -> str:
             return f"{want.name} {value}{_unit_of(want.name, linkage) if value == f'{want.value}' else ''}"
         case DwellWant():
             level = "" if want.level is None else f" at {_value(want.level, linkage, drive.output)}"
-            return f"{drive.output} still{level} over {_ends(np.array(want.range), linkage, drive.joint)}"
+            return f"{drive.output} still{level} over {_ends(np.array(want.inputs), linkage, drive.joint)}"
         case StraightWant():
             length = "" if want.length is None else f", {want.length:g} {unit} or longer"
             return (
                 f"{want.point} along a straight line over "
-                f"{_ends(np.array(want.range), linkage, drive.joint)}{length}"
+                f"{_ends(np.array(want.inputs), linkage, drive.joint)}{length}"
             )
 
 

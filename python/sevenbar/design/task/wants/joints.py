@@ -24,7 +24,7 @@ class ReadingsWanted:
         if isinstance(want, FunctionWant):
             inputs, self.readings, (first, second) = want.input, want.output, want.zeros
         else:
-            inputs = np.linspace(*want.range, want.samples)
+            inputs = np.linspace(*want.inputs, want.samples)
             self.readings, first, second = np.zeros(want.samples), 0.0, want.level
         self._turns = bool(loop.numbers.turns[loop.output])
         self.unit = float(loop.units[loop.output])

@@ -26,7 +26,7 @@ class LineWanted:
         self._number, self._name = loop.named(want.point), want.point
         self._length = want.length
         self.unit = loop.size if want.length is None else want.length
-        inputs = np.linspace(*want.range, want.samples)
+        inputs = np.linspace(*want.inputs, want.samples)
         self.stations = Stations(inputs, np.zeros((want.samples, 6)), np.full(6, loop.size))
         self.count = 3 * want.samples + (want.length is not None)
 
