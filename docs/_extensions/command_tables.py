@@ -31,6 +31,8 @@ PAGES = {
     "tolerance": "tolerance.md",
     "design function": "synthesis.md",
     "design swing": "synthesis.md",
+    "design task": "design-task.md",
+    "design survey": "synthesis.md",
     "design path": "path.md",
     "design point": "points.md",
     "design inertia": "points.md",

@@ -1,24 +1,43 @@
-"""The keys of linkage files, from the schema that checks them."""
+"""The keys of linkage files and of task files, from the schemas that check them."""
 
 import json
 from pathlib import Path
 from typing import Any
 
 from page_tables import code, table
-from sevenbar.description.schema import TABLES, LinkageForm, json_schema
+from sevenbar.description.schema import TABLES, LinkageForm, TomlSchema, json_schema
+from sevenbar.design.task.file.schema import MUSTS, WANTS, LimitsForm, PoseForm, TaskForm
 
 #: Where the JSON schema is written, below the pages' folder; pages link it from there.
 SCHEMA = "_made/sevenbar.description.schema.json"
 
 #: What JSON calls the values, in words.
-KINDS = {"number": "number", "integer": "whole number", "string": "text", "object": "table", "array": "rows"}
+KINDS = {
+    "boolean": "true or false",
+    "number": "number",
+    "integer": "whole number",
+    "string": "text",
+    "object": "table",
+    "array": "rows",
+}
 
 
 def keys_of(_pages: Path, head: str) -> str:
     """A table of the keys of `[head]`, of the whole file without one."""
     schema = json_schema()
     form = TABLES[head] if head else LinkageForm
-    described = schema["$defs"][form.__name__] if head else schema
+    return _table(schema["$defs"][form.__name__] if head else schema)
+
+
+def task_keys_of(_pages: Path, head: str) -> str:
+    """A table of the keys of a task file, of its `limits`, of a `pose`, or of a want or must: `must_cone`."""
+    forms = {f"want_{kind}": form for kind, form in WANTS.items()}
+    forms |= {f"must_{kind}": form for kind, form in MUSTS.items()}
+    form = (forms | {"": TaskForm, "limits": LimitsForm, "pose": PoseForm})[head]
+    return _table(form.model_json_schema(schema_generator=TomlSchema))
+
+
+def _table(described: dict[str, Any]) -> str:
     required = described.get("required", [])
     rows = [
         (code(name), _allowed(key), key.get("unit", ""), _default(name, key, required), key["description"])
@@ -41,6 +60,8 @@ def _allowed(key: dict[str, Any]) -> str:
         return " ".join(code(f'"{word}"') for word in key["enum"])
     if "$ref" in key:
         return "table"
+    if "anyOf" in key:
+        return " or ".join(map(_allowed, key["anyOf"]))
     if key["type"] == "array":
         return _listed(key)
     limits = {"exclusiveMinimum": " > ", "minimum": " >= "}
@@ -52,7 +73,8 @@ def _allowed(key: dict[str, Any]) -> str:
 def _listed(key: dict[str, Any]) -> str:
     items = key.get("prefixItems")
     if items is None:
-        return "tables"
+        kind = key.get("items", {})
+        return "names" if kind.get("type") == "string" else "tables" if kind else "rows"
     inner = items[0]
     return f"{len(items)} times {_listed(inner)}" if inner["type"] == "array" else f"{len(items)} numbers"
 

@@ -23,6 +23,7 @@ PARTS: dict[str, Callable[[Path, str], str]] = {
     "keys": key_tables.keys_of,
     "modules": module_map.module_map,
     "schema": key_tables.written_schema,
+    "task_keys": key_tables.task_keys_of,
 }
 
 _MARK = re.compile(r"<!-- made: (\w+)(?: (\w+))? -->")

@@ -78,6 +78,10 @@ EXAMPLES = {
     ),
     "point": ("sevenbar design point seven_r --link 4 --box=-200:200,-200:200,-200:200 -o point",),
     "inertia": ("sevenbar design inertia seven_r --mass P=2.5 -o torque",),
+    "task": (
+        "sevenbar design task examples/design/steering_task.toml -o steering",
+        "sevenbar design task examples/design/nozzle_task.toml --designs 3 --json",
+    ),
     "function": ("sevenbar design function --y 'x^2' --x 0:1 -o parabola",),
 }
 
@@ -88,11 +92,11 @@ STYLE_HELP = "Style of the figures: screen, paper or ieee."
 
 #: Commands with the options of `_shared`, besides those that have one of their own.
 _DRAWING = (
-    *("modes", "map", "tolerance", "function", "swing", "path", "point", "inertia"),
+    *("modes", "map", "tolerance", "task", "function", "swing", "path", "point", "inertia"),
     *("compare", "calibrate", "simulate"),
 )
 SHARED = {
-    "--view": ("modes", "path", "point"),
+    "--view": ("modes", "task", "path", "point"),
     "--style": _DRAWING,
     "--lang": ("analyze", "plot", "forces", "free", "sweep", *_DRAWING),
 }

@@ -6,7 +6,7 @@ import os
 import re
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sevenbar.description.angle_doubts import warn_of_angles
 from sevenbar.description.forms import from_description
@@ -88,22 +88,27 @@ def loads(content: str, source: str = "text") -> Linkage:
     >>> sb.loads(gallery.text("bennett")).name
     'Bennett linkage'
     """
+    raw = toml_tables(content, source)
+    linkage = from_description(raw, source)
+    warn_of_angles(raw, source)
+    return linkage
+
+
+def toml_tables(content: str, source: str) -> dict[str, Any]:
+    """The tables of a TOML text; `DescriptionError` with the line where it is none."""
     for number, line in enumerate(content.splitlines(), 1):
         if len(line) > LONGEST_LINE:
             raise DescriptionError.of_all(
                 source, f"line {number} has {len(line)} characters; a linkage file has at most {LONGEST_LINE}"
             )
     try:
-        raw = tomllib.loads(content)
+        return tomllib.loads(content)
     except ValueError as error:  # not TOML, or an integer of thousands of digits
         raise DescriptionError.of_all(source, _syntax_problem(error, content.split("\n"))) from None
     except RecursionError:
         raise DescriptionError.of_all(
             source, "nested too deep; a linkage file has tables of plain keys only"
         ) from None
-    linkage = from_description(raw, source)
-    warn_of_angles(raw, source)
-    return linkage
 
 
 #: How files of other programs begin, and what to do with them.

@@ -1,11 +1,11 @@
 """What a linkage description may hold, checked with pydantic: every mistake at once, each with its place.
 
-This is the only model of the file format; `check` turns its errors into the messages that people read.
+This is the only model of the file format; `mistakes` turns its errors into the messages that people read.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -16,16 +16,16 @@ from pydantic import (
     WithJsonSchema,
 )
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
-from pydantic_core import ErrorDetails, core_schema
+from pydantic_core import core_schema
 
 from sevenbar.description.contradictions import contradictions, grounds
 from sevenbar.description.load_contradictions import load_contradictions
 from sevenbar.description.load_schema import BodyForm, ForcesForm, LoadForm, SpringForm
 from sevenbar.description.load_tables import folder_of
+from sevenbar.description.mistakes import FileForms, path_of
 from sevenbar.description.stop_schema import RodForm, StopForm, stop_contradictions
 from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import (
-    EXAMPLE_OF_AXES,
     Angle,
     Direction,
     Length,
@@ -47,7 +47,7 @@ from sevenbar.description.written import (
     joints_of,
     meant_kind,
 )
-from sevenbar.errors import DescriptionError, Problem, bare, shown, suggestion
+from sevenbar.errors import DescriptionError, Problem, shown
 from sevenbar.kinematics.geometry import following_coupler
 from sevenbar.kinematics.joints import JOINT_KINDS, KINDS, ROW_KINDS, letters_with
 from sevenbar.text.units import ANGLES, LENGTHS, MASSES
@@ -229,13 +229,15 @@ class LinkageForm(TableForm):
 FORMS = ("rssr", "link", "joint")
 
 
-class _TomlSchema(GenerateJsonSchema):
+class TomlSchema(GenerateJsonSchema):
     """JSON schema of a TOML file, in which a key that is not given is left out: there is no null."""
 
     def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
+        """Of a key that may be left out, that of its values."""
         return self.generate_inner(schema["schema"])
 
     def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        """With the default where it is a plain value."""
         inner = self.generate_inner(schema["schema"])
         plain = isinstance(schema.get("default"), (str, int, float))
         return {**inner, "default": schema["default"]} if plain else inner
@@ -249,7 +251,7 @@ def json_schema() -> dict[str, Any]:
         >>> json_schema()["properties"]["length_unit"]["enum"]
         ['um', 'mm', 'cm', 'm', 'in', 'ft']
     """
-    schema = LinkageForm.model_json_schema(schema_generator=_TomlSchema)
+    schema = LinkageForm.model_json_schema(schema_generator=TomlSchema)
     one_form = [{"required": [form]} for form in FORMS]
     return {"$schema": GenerateJsonSchema.schema_dialect, **schema, "oneOf": one_form}
 
@@ -264,7 +266,9 @@ def check(raw: object, *, source: str = "") -> LinkageForm:
     except ValidationError as error:
         details = [(tuple(detail["loc"]), detail) for detail in error.errors(include_url=False)]
         problems = [
-            Problem(_path(place), ground_places[place]) if place in ground_places else _problem(detail)
+            Problem(path_of(place), ground_places[place])
+            if place in ground_places
+            else _FORMS.problem(detail)
             for place, detail in details
             # an entry that is nothing but a second ground is reported once
             if place in ground_places or place[:2] not in ground_places
@@ -302,55 +306,6 @@ def context_of(raw: Mapping[str, Any], source: str = "") -> dict[str, Any]:
     }
 
 
-def _problem(detail: ErrorDetails) -> Problem:
-    location = [part for part in detail["loc"] if part != "tuple"]
-    value = shown(detail["input"])
-    owner = _form_at(location[:-1])
-    keys = ", ".join(owner.model_fields) if owner else ""
-    match detail["type"]:
-        case "sevenbar":
-            message = str(detail["ctx"]["message"])
-        case "missing":
-            message = _missing(location, owner)
-        case "extra_forbidden":
-            near = suggestion(str(location[-1]), owner.model_fields if owner else ())
-            home = "" if near else _home(str(location[-1]))
-            message = home or f"is not known here; {near}allowed: {keys}"
-        case "literal_error" | "int_parsing_size":
-            message = f"{value} is not a format of this version; give format = 1"
-        case "model_type" | "dict_type":
-            message = f"{value} is not a table; give keys with values"
-        case "tuple_type" | "too_short" | "too_long":
-            message = f"{value} does not fit here; {_array_hint(location)}"
-        case "int_type" | "int_from_float" | "greater_than_equal":
-            message = f"{value} is not a link; give its number, counted from 1"
-        case _:
-            message = f"{value} is not allowed; {detail['msg'].lower()}"
-    return Problem(_path(location), message)
-
-
-def _path(location: Sequence[int | str]) -> str:
-    path = ""
-    for part in location:
-        path += f"[{part + 1}]" if isinstance(part, int) else f".{bare(part)}"
-    return path.lstrip(".")
-
-
-def _missing(location: list[int | str], owner: type[TableForm] | None) -> str:
-    if location[-1] == "format":
-        return "is missing; give format = 1"
-    if isinstance(location[-1], int):
-        return f"is missing; {_array_hint(location[:-1])}"
-    needed = [name for name, field in owner.model_fields.items() if field.is_required()] if owner else []
-    return f"is missing; needed here: {', '.join(needed)}"
-
-
-def _array_hint(location: list[int | str]) -> str:
-    if location and location[-1] == "axes":
-        return f"give two directions, {EXAMPLE_OF_AXES}"
-    return f"write [[{location[-1] if location else 'joint'}]] before each one"
-
-
 #: The form of each table, by its head without brackets.
 TABLES: dict[str, type[TableForm]] = {
     "rssr": RssrForm,
@@ -366,22 +321,4 @@ TABLES: dict[str, type[TableForm]] = {
     "rod": RodForm,
 }
 
-
-def _form_at(location: list[int | str]) -> type[TableForm] | None:
-    """The form that owns a place: the file's own, or that of the table that the path enters."""
-    words = [part for part in location if isinstance(part, str)]
-    if not words:
-        return LinkageForm
-    return TABLES.get(words[0]) if len(words) == 1 else None
-
-
-def _home(key: str) -> str:
-    """Where a key belongs that stands elsewhere, if it can belong to one place only."""
-    homes = [table for table, form in TABLES.items() if key in form.model_fields]
-    if key in LinkageForm.model_fields and not homes:
-        return "is a key of the whole file; write it above the first table"
-    if len(homes) != 1 or key in LinkageForm.model_fields:
-        return ""
-    (table,) = homes
-    head = f"[{table}]" if table in ("rssr", "drive", "forces") else f"[[{table}]]"
-    return f"is a key of {head}; write it below that head"
+_FORMS = FileForms(LinkageForm, TABLES, once=("rssr", "drive", "forces"))

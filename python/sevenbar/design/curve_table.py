@@ -67,7 +67,12 @@ def _place(table: TextTable, letter: str, point: str, unit: str) -> int | None:
     for wanted in (plain_name(f"{point} {letter}"), letter):
         if wanted in names:
             return names.index(wanted)
-    found = [place for place, name in enumerate(names) if name.endswith(f" {letter}")]
+    # turn_x and the like are of a rotation
+    found = [
+        place
+        for place, name in enumerate(names)
+        if name.endswith(f" {letter}") and not name.startswith("turn ")
+    ]
     if len(found) > 1:
         both = " and ".join(table.labels[place] for place in found[:2])
         raise table.wrong(

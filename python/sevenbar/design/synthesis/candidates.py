@@ -42,7 +42,21 @@ LIMIT_ROUNDING = 1e-9
 #: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
 
-Fault = Literal["assembly", "circuit", "dead centre", "order", "error", "transmission", "size", "motion type"]
+Fault = Literal[
+    "assembly",
+    "circuit",
+    "dead centre",
+    "order",
+    "error",
+    "transmission",
+    "size",
+    "motion type",
+    "range",
+    "cone",
+    "box",
+    "distance",
+    "figure",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,10 +115,11 @@ class Candidate(Printed):
         """What is reported of it, column by column; each number's name ends in its unit."""
         linkage, unit = self.draft.linkage, self.claim.error_unit
         scale = 180 / math.pi if unit == "deg" else 1.0
+        ending = f"_{unit}" if unit else ""
         lowest = self.transmission_lowest
         return {
-            f"error_greatest_{unit}": self.error_greatest * scale,
-            f"error_rms_{unit}": self.error_rms * scale,
+            f"error_greatest{ending}": self.error_greatest * scale,
+            f"error_rms{ending}": self.error_rms * scale,
             "transmission_lowest_deg": None if lowest is None else math.degrees(lowest),
             f"size_{linkage.length_unit}": self.size,
             "motion_type": self.motion_type,

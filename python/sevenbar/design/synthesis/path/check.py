@@ -112,7 +112,7 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
     if torn is not None:
         return torn
     best = found[0]
-    figures = _standing(best.placing, linkage.length_unit) if task.place else {}
+    figures = standing(best.placing, linkage.length_unit) if task.place else {}
     if task.place and task.draft.linkage.form == "drawn":
         draft, figures = moved(draft, best.placing), {}
     outputs = best.poses[:, linkage.columns.index(linkage.drive.output)]
@@ -129,7 +129,7 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
     return candidate
 
 
-def _standing(placing: Placing, unit: str) -> Mapping[str, float]:
+def standing(placing: Placing, unit: str) -> Mapping[str, float]:
     """Where the linkage stands so that its point goes through the wanted points: a turn, then a shift.
 
     `turn_x`, `turn_y`, `turn_z` is the axis of one turn times its angle.

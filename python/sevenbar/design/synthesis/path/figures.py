@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +21,7 @@ from sevenbar.drawing.names import short
 from sevenbar.drawing.page import place_picture
 from sevenbar.drawing.style import COMPUTED, OTHER, letters, styled
 from sevenbar.drawing.view import view_of
+from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.words import say
 
 USED: dict[str, Any] = {"color": COMPUTED, "lw": 1.8, "zorder": 2, "label": "path, used part"}
@@ -86,22 +88,59 @@ def drawn(task: PathTask, candidate: Candidate) -> Drawn:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class PathPage:
+    """What a page of a path shows: wanted places (n, 3), the used path (m, 3), `errors` (n,) at the places.
+
+    `frames` are poses (k, 4, 3), an origin and the ends of three axes, each with a colour; `whole` (j, 3) all
+    of the circuit's path.
+    """
+
+    wanted: Floats
+    used: Floats
+    errors: Floats
+    title: str
+    frames: Sequence[tuple[Floats, str]] = ()
+    whole: Floats | None = None
+
+    @property
+    def lines(self) -> list[tuple[Floats, dict[str, Any]]]:
+        """The lines of every view, each as it is drawn."""
+        rest = [] if self.whole is None else [(self.whole, WHOLE)]
+        axes = [
+            (np.stack([frame[0], end]), {"color": colour, "lw": 1.2, "zorder": 2})
+            for frames, colour in self.frames
+            for frame in frames
+            for end in frame[1:]
+        ]
+        return [*rest, (self.used, USED), *axes, (self.wanted, WANTED)]
+
+
 def path_figure(task: PathTask, candidate: Candidate) -> Figure:
     """Wanted points and path in space (a) and from three sides (b to d), the error at each point (e)."""
     path = drawn(task, candidate)
-    unit = task.draft.linkage.length_unit
-    errors = candidate.claim.errors
+    near = _near(path.whole, np.concatenate([task.wanted, path.used]))
+    title = say(
+        "{linkage}: {motion_type}, circuit {number}",
+        linkage=short(candidate.name, 70),
+        motion_type=say(candidate.motion_type),
+        number=candidate.circuit,
+    )
+    page = PathPage(task.wanted, path.used, candidate.claim.errors, title, whole=near)
+    return path_page(task.draft.linkage, page)
+
+
+def path_page(linkage: Linkage, page: PathPage) -> Figure:
+    """Wanted places and path in space (a) and from three sides (b to d), the distance at each place (e)."""
+    unit, errors = linkage.length_unit, page.errors
     with styled():
         figure = page_figure(10.4, 7.6)
-        seen = np.concatenate([task.wanted, path.used])
-        near = _near(path.whole, seen)
-        every = np.concatenate([seen, near[np.isfinite(near).all(axis=1)]])
+        every = np.concatenate([line for line, _ in page.lines])
+        every = every[np.isfinite(every).all(axis=1)]
         width, height = figure.get_size_inches()
         room = (0.015 * width, 0.35 * height, 0.47 * width, 0.53 * height)
-        space = place_picture(
-            figure, every, room, unit, view_of(asked_view() or "space", task.draft.linkage, every)
-        )
-        for line, look in ((near, WHOLE), (path.used, USED), (task.wanted, WANTED)):
+        space = place_picture(figure, every, room, unit, view_of(asked_view() or "space", linkage, every))
+        for line, look in page.lines:
             space.line(line, **_named(look))
         figure.text(0.25, 0.885, "(a) " + say("in space"), fontsize=letters() + 1, ha="center", va="bottom")
         sides = (
@@ -111,7 +150,7 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
         )
         for letter, across, up, place in sides:
             axes = figure.add_axes(place)
-            _side(axes, task, path, near, (across, up))
+            _side(axes, page, (across, up))
             axes.set_title(f"({letter}) " + say(" and ").join(("xyz"[across], "xyz"[up])))
             axes.set_xlabel(f"{'xyz'[across]} [{unit}]", labelpad=1)
             axes.set_ylabel(f"{'xyz'[up]} [{unit}]", labelpad=1)
@@ -128,25 +167,18 @@ def path_figure(task: PathTask, candidate: Candidate) -> Figure:
             "(e) "
             + say(
                 "error: greatest {greatest:.3g} {unit}, root mean square {rms:.3g} {unit}",
-                greatest=candidate.error_greatest, rms=candidate.error_rms, unit=unit,
+                greatest=float(np.abs(errors).max()), rms=float(np.sqrt((errors**2).mean())), unit=unit,
             )
         )  # fmt: skip
         handles, labels = space.axes.get_legend_handles_labels()
         figure.legend(handles[::-1], labels[::-1], loc="center", bbox_to_anchor=(0.90, 0.325), frameon=False)
-        figure.suptitle(
-            say(
-                "{linkage}: {motion_type}, circuit {number}",
-                linkage=short(candidate.name, 70),
-                motion_type=say(candidate.motion_type),
-                number=candidate.circuit,
-            )
-        )
+        figure.suptitle(page.title)
     return figure
 
 
 def _named(look: dict[str, Any]) -> dict[str, Any]:
     """A look with its label in the language that is spoken."""
-    return {**look, "label": say(look["label"])}
+    return {**look, "label": say(look["label"])} if "label" in look else look
 
 
 def _near(whole: Floats, seen: Floats) -> Floats:
@@ -157,15 +189,15 @@ def _near(whole: Floats, seen: Floats) -> Floats:
     return rows
 
 
-def _side(axes: Axes, task: PathTask, path: Drawn, near: Floats, plane: tuple[int, int]) -> None:
+def _side(axes: Axes, page: PathPage, plane: tuple[int, int]) -> None:
     """Wanted points and path, seen along an axis."""
-    for line, look in ((near, WHOLE), (path.used, USED), (task.wanted, WANTED)):
+    for line, look in page.lines:
         axes.plot(line[:, plane[0]], line[:, plane[1]], **_named(look))
-    count = len(task.wanted)
+    wanted, count = page.wanted, len(page.wanted)
     # only where the path is not seen from its edge
-    flat = np.ptp(task.wanted[:, list(plane)], axis=0).min() < EDGE * task.extent
+    flat = np.ptp(wanted[:, list(plane)], axis=0).min() < EDGE * float(np.ptp(wanted, axis=0).max())
     for i in () if flat else np.unique(np.linspace(0, count - 1, min(NUMBERED, count)).astype(int)):
-        x, y = task.wanted[i, list(plane)]
+        x, y = wanted[i, list(plane)]
         axes.annotate(
             str(i + 1),
             (x, y),

@@ -58,10 +58,15 @@ class Match:
     error: float
 
 
-def placed(wanted: Floats, found: Floats, *, scaled: bool = False) -> Placing:
-    """The similarity that brings `found` (n, 3) nearest to `wanted` (n, 3); `scaled` where it may scale."""
-    far, near = wanted.mean(axis=0), found.mean(axis=0)
-    rotation, scale, _ = _turns((wanted - far)[None], (found - near)[None], scaled=scaled)
+def placed(wanted: Floats, found: Floats, *, scaled: bool = False, shares: Floats | None = None) -> Placing:
+    """The similarity that brings `found` (n, 3) nearest to `wanted` (n, 3); `scaled` where it may scale.
+
+    Squares count by their `shares` (n,), alike where none are given.
+    """
+    share = np.ones((len(wanted), 1)) if shares is None else shares[:, None]
+    far, near = ((share * places).sum(axis=0) / share.sum() for places in (wanted, found))
+    root = np.sqrt(share)
+    rotation, scale, _ = _turns((root * (wanted - far))[None], (root * (found - near))[None], scaled=scaled)
     turn, size = rotation[0], float(scale[0])
     return Placing(turn, far - size * turn @ near, size)
 

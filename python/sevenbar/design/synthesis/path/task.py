@@ -136,8 +136,8 @@ def path_task(
     """
     draft = linkage if isinstance(linkage, Draft) else Draft.of_linkage(linkage)
     draft, own = _with_point(draft.holding(follow), point)
-    wanted, closed = _wanted(points)
-    inputs = _timing(timing, wanted, closed)
+    wanted, closed = wanted_places(points)
+    inputs = wanted_inputs(timing, wanted, closed)
     if phase and inputs is None:
         raise RequestError("phase: the path has no inputs whose start could be free; give timing, too")
     wanted = wanted[:-1] if closed else wanted
@@ -194,7 +194,7 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
     return made, next(p for p in made.linkage.points if p.name == name)
 
 
-def _wanted(points: npt.ArrayLike) -> tuple[Floats, bool]:
+def wanted_places(points: npt.ArrayLike) -> tuple[Floats, bool]:
     """The wanted points (n, 3), and whether the last repeats the first."""
     try:
         wanted = np.array(points, dtype=np.float64)
@@ -221,7 +221,7 @@ def _wanted(points: npt.ArrayLike) -> tuple[Floats, bool]:
     return wanted, closed
 
 
-def _timing(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) -> Floats | None:
+def wanted_inputs(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) -> Floats | None:
     """The inputs of the points, that of the closing one left out."""
     if timing is None:
         return None

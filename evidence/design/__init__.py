@@ -1,0 +1,1 @@
+"""Design tasks with a known answer, and whether the search finds it."""

@@ -1,0 +1,81 @@
+"""The command `sevenbar design task`: designs of any loop for what a task file asks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+import typer.core
+
+from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.given import agreed
+from sevenbar.commands.options import Agree, Figures, Force, Json, figure_formats, words
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.unfinished import end_of_work
+from sevenbar.errors import RequestError
+
+
+class TaskGroup(typer.core.TyperGroup):
+    """The commands of `sevenbar design`; a TOML file in place of a command is a task."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """As usual; `design my_task.toml ..` is `design task my_task.toml ..`."""
+        if args and args[0] not in self.commands and args[0].lower().endswith(".toml"):
+            args = ["task", *args]
+        return super().resolve_command(ctx, args)
+
+
+def task(
+    file: Annotated[Path, typer.Argument(metavar="TASK", help="A task file (TOML).")],
+    designs: Annotated[int, typer.Option(help="How many designs that differ.")] = 5,
+    starts: Annotated[int, typer.Option(help="Linkages within the bounds that are tried.")] = 256,
+    seed: Annotated[int, typer.Option(help="Seed of the starts.")] = 0,
+    pareto: Annotated[
+        str | None,
+        typer.Option(help="Two wants to trade off, by number or measure, as in 1,2 or 1,peak_torque."),
+    ] = None,
+    points: Annotated[int, typer.Option(help="With --pareto: how many points of the front.")] = 9,
+    agree: Agree = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder for design_1.toml, .., figures of wants and musts, summary.csv and summary.json."
+        ),
+    ] = None,
+    figures: Figures = None,
+    force: Force = False,
+    json: Json = False,
+) -> None:
+    """Designs of any loop for what a task file asks (extra 'design')."""
+    from sevenbar.design.synthesis.path.generation import check_counts
+    from sevenbar.design.task.file.reader import task_file
+    from sevenbar.design.task.report import TaskDesigns, task_report
+    from sevenbar.design.task.search import designed
+
+    formats = figure_formats(figures, out)
+    check_counts(designs, starts, seed)
+    read = task_file(file, agree=agreed(agree))
+    if pareto is not None:
+        from sevenbar.design.task.front import pareto as front_of
+        from sevenbar.design.task.front_report import FrontFound, front_report
+
+        pair = words([pareto])
+        if len(pair) != 2:
+            raise RequestError(f"--pareto: '{pareto}' are not two wants; give two, as in 1,2")
+        report = front_report(read.task, points, command_line(), formats)
+        check_out(report, out, force=force)
+        with progress_bar(f"searching a front of {read.name}") as progress:
+            front = front_of(read.task, *pair, points=points, starts=starts, seed=seed, progress=progress)
+        deliver(FrontFound(front, read.name, read.source, starts, seed), report, out, json=json, force=force)
+        end_of_work(front.unfinished)
+        return
+    single = task_report(read.task, designs, command_line(), formats)
+    check_out(single, out, force=force)
+    with progress_bar(f"searching designs of {read.name}") as progress:
+        search = designed(read.task, count=designs, starts=starts, seed=seed, progress=progress)
+        found = TaskDesigns(search, read.name, read.source, starts, seed)
+        # a search that found nothing says why
+        found.required()
+    deliver(found, single, out, json=json, force=force)
+    end_of_work(found.unfinished)

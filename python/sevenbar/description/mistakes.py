@@ -1,0 +1,113 @@
+"""What is wrong with a file, in the words that people read: pydantic's errors with their places."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from pydantic_core import ErrorDetails
+
+from sevenbar.description.table_form import TableForm
+from sevenbar.description.values import EXAMPLE_OF_AXES
+from sevenbar.errors import Problem, bare, shown, suggestion
+
+#: What pydantic adds to the keys and numbers of a place.
+_NO_PLACE = ("tuple",)
+
+
+@dataclass(frozen=True)
+class FileForms:
+    """The forms of a kind of file: of the `whole`, and of each table by its head without brackets.
+
+    Tables in `once` are written `[head]`, others `[[head]]`. `kinds` has the forms of tables whose key `kind`
+    decides, by their heads and kinds.
+    """
+
+    whole: type[TableForm]
+    tables: Mapping[str, type[TableForm]]
+    once: tuple[str, ...]
+    kinds: Mapping[str, Mapping[str, type[TableForm]]] = field(default_factory=dict)
+
+    def problem(self, detail: ErrorDetails) -> Problem:
+        """What an error says, and where."""
+        location = [part for part in detail["loc"] if part not in _NO_PLACE]
+        owner = self._form_at(location[:-1])
+        if location and location[0] in self.kinds and len(location) > 2:
+            # pydantic names the kind after the number of the table
+            owner = self.kinds[str(location[0])].get(str(location[2])) if len(location) == 4 else None
+            del location[2]
+        value = shown(detail["input"])
+        keys = ", ".join(owner.model_fields) if owner else ""
+        match detail["type"]:
+            case "sevenbar":
+                message = str(detail["ctx"]["message"])
+            case "missing":
+                message = _missing(location, owner)
+            case "extra_forbidden":
+                near = suggestion(str(location[-1]), owner.model_fields if owner else ())
+                home = "" if near else self._home(str(location[-1]))
+                message = home or f"is not known here; {near}allowed: {keys}"
+            case "literal_error" | "int_parsing_size":
+                message = f"{value} is not a format of this version; give format = 1"
+            case "union_tag_invalid" | "union_tag_not_found":
+                message = self._kind(str(location[0]), detail["input"])
+                location.append("kind")
+            case "model_type" | "dict_type" | "model_attributes_type":
+                message = f"{value} is not a table; give keys with values"
+            case "tuple_type" | "too_short" | "too_long":
+                message = f"{value} does not fit here; {_array_hint(location)}"
+            case "int_type" | "int_from_float" | "greater_than_equal":
+                message = f"{value} is not a link; give its number, counted from 1"
+            case "bool_type" | "bool_parsing":
+                message = f"{value} is neither true nor false; give one of the two, without quotes"
+            case _:
+                message = f"{value} is not allowed; {detail['msg'].lower()}"
+        return Problem(path_of(location), message)
+
+    def _form_at(self, location: Sequence[int | str]) -> type[TableForm] | None:
+        """The form that owns a place: the file's own, or that of the table that the path enters."""
+        words = [part for part in location if isinstance(part, str)]
+        if not words:
+            return self.whole
+        return self.tables.get(words[0]) if len(words) == 1 else None
+
+    def _kind(self, head: str, table: object) -> str:
+        """What is wrong with the key that decides what a table is."""
+        known = self.kinds[head]
+        given = table.get("kind") if isinstance(table, Mapping) else None
+        what = "is missing; " if given is None else f"{shown(given)} is none; {suggestion(str(given), known)}"
+        return f"{what}give one of {', '.join(known)}"
+
+    def _home(self, key: str) -> str:
+        """Where a misplaced key belongs, if it can belong to one place only."""
+        homes = [table for table, form in self.tables.items() if key in form.model_fields]
+        if key in self.whole.model_fields and not homes:
+            return "is a key of the whole file; write it above the first table"
+        if len(homes) != 1 or key in self.whole.model_fields:
+            return ""
+        (table,) = homes
+        head = f"[{table}]" if table in self.once else f"[[{table}]]"
+        return f"is a key of {head}; write it below that head"
+
+
+def path_of(location: Sequence[int | str]) -> str:
+    """A place in a file as messages have it: `joint[2].at`."""
+    path = ""
+    for part in location:
+        path += f"[{part + 1}]" if isinstance(part, int) else f".{bare(part)}"
+    return path.lstrip(".")
+
+
+def _missing(location: list[int | str], owner: type[TableForm] | None) -> str:
+    if location[-1] == "format":
+        return "is missing; give format = 1"
+    if isinstance(location[-1], int):
+        return f"is missing; {_array_hint(location[:-1])}"
+    needed = [name for name, field in owner.model_fields.items() if field.is_required()] if owner else []
+    return f"is missing; needed here: {', '.join(needed)}"
+
+
+def _array_hint(location: list[int | str]) -> str:
+    if location and location[-1] == "axes":
+        return f"give two directions, {EXAMPLE_OF_AXES}"
+    return f"write [[{location[-1] if location else 'joint'}]] before each one"

@@ -1,0 +1,157 @@
+"""What a design does along its wants, between stations too: poses, readings, places, rooms of musts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sevenbar.arrays import Floats, short_way
+from sevenbar.design.task.check import TaskDesign
+from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.problem import TaskModel
+from sevenbar.design.task.task import (
+    Apart,
+    DesignTask,
+    DwellWant,
+    FigureWant,
+    FunctionWant,
+    InBox,
+    Must,
+    Want,
+)
+from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.design.task.wants.wanted import Wanted
+
+#: Poses along a want, at least, and the longest step of an input from one to the next [rad].
+DENSE, STEP = 240, math.radians(1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class UsedWay:
+    """Inputs (n,) along a want in the order they are passed, and the poses (n, columns) there."""
+
+    inputs: Floats
+    q: Floats
+
+
+class DesignAlong:
+    """A design of a task and what it does along each want."""
+
+    def __init__(self, task: DesignTask, design: TaskDesign) -> None:
+        self.task, self.design = task, design
+        self.model = TaskModel(task)
+        self.loop = self.model.loop
+        self.values = design.solution.seed.values
+
+    @property
+    def wants(self) -> list[tuple[int, Want, Wanted]]:
+        """The wants with poses along a way, each with its place among all."""
+        own = [(i, want) for i, want in enumerate(self.task.wants) if not isinstance(want, FigureWant)]
+        return [(i, want, one) for (i, want), one in zip(own, self.model.wanted, strict=True)]
+
+    @cached_property
+    def ways(self) -> list[UsedWay]:
+        """The used way of each want that has one."""
+        ends = np.cumsum([0, *(len(inputs) for inputs in self.design.solution.inputs)])
+        poses = self.design.solution.seed.poses
+        return [
+            self._way(inputs, poses[first:last], round=one.stations.round)
+            for inputs, first, last, one in zip(
+                self.design.solution.inputs, ends[:-1], ends[1:], self.model.wanted, strict=True
+            )
+        ]
+
+    def _way(self, inputs: Floats, poses: Floats, *, round: bool) -> UsedWay:
+        """From each station to the next in small steps, all at once."""
+        first, last = inputs[:-1], inputs[1:]
+        begin = poses[:-1]
+        if round:
+            turn = math.copysign(math.tau, inputs[-1] - inputs[0])
+            gain = turn * math.ceil(abs(inputs[-1] - inputs[0]) / math.tau)
+            first, last, begin = inputs, np.append(last, inputs[0] + gain), poses
+        if not len(first):
+            return UsedWay(inputs, poses)
+        longest = float(np.abs(last - first).max()) / float(self.loop.units[self.loop.input])
+        steps = max(math.ceil(DENSE / len(first)), math.ceil(longest / STEP))
+        found = [begin]
+        for k in range(1, steps):
+            found.append(self.loop.closed(self.values, first + (last - first) * k / steps, found[-1]))
+        shares = np.arange(steps) / steps
+        x = (first[:, None] + (last - first)[:, None] * shares).ravel()
+        q = np.stack(found, axis=1).reshape(len(x), -1)
+        if not round:
+            x, q = np.append(x, inputs[-1]), np.concatenate([q, poses[-1:]])
+        return UsedWay(x, q)
+
+    def zeros(self, place: int) -> tuple[float, float]:
+        """The input's and the output's values at the readings 0 of a function or a dwell [rad, or length].
+
+        Angles in (-pi, pi].
+        """
+        want = self.task.wants[self.wants[place][0]]
+        own = self.design.solution.seed.own[place]
+        first, second = want.zeros if isinstance(want, FunctionWant) else (0.0, _level(want))
+        zeros = float(own[0]) if first is None else first, float(own[-1]) if second is None else second
+        drive = self.loop.linkage.drive
+        turns = self.loop.linkage.turns(drive.joint), self.loop.linkage.turns(drive.output)
+        first, second = (
+            float(short_way(zero)) if turn else zero for zero, turn in zip(zeros, turns, strict=True)
+        )
+        return first, second
+
+    def outputs(self, place: int) -> Floats:
+        """The output's readings (n,) along a function or a dwell, near those wanted."""
+        read = self.ways[place].q[:, self.loop.output] - self.zeros(place)[1]
+        if not bool(self.loop.numbers.turns[self.loop.output]):
+            return read
+        want = self.task.wants[self.wants[place][0]]
+        begin = float(want.output[0]) if isinstance(want, FunctionWant) else 0.0
+        read = np.unwrap(read)
+        return np.asarray(read - math.tau * np.round((read[0] - begin) / math.tau))
+
+    def places(self, place: int) -> Floats:
+        """Where the points of a path or of poses, or the point of a straight line go (n, points, 3)."""
+        one = self.model.wanted[place]
+        return self._put(one, self.ways[place].q)
+
+    def stations(self, place: int) -> Floats:
+        """Where these points are at the stations (n, points, 3)."""
+        first = sum(len(inputs) for inputs in self.design.solution.inputs[:place])
+        count = len(self.design.solution.inputs[place])
+        return self._put(self.model.wanted[place], self.design.solution.seed.poses[first : first + count])
+
+    def _put(self, one: Wanted, q: Floats) -> Floats:
+        numbers = one.numbers if isinstance(one, PlacesWanted) else [one._number]  # type: ignore[attr-defined]
+        found = self.loop.here(self.values, q).points[:, numbers]
+        flat = found.reshape(-1, 3)
+        if isinstance(one, PlacesWanted):
+            flat = self.design.placing.put(flat)
+        return flat.reshape(found.shape)
+
+    def rooms(self) -> list[tuple[int, int, Floats, Floats]]:
+        """The least room of each must about poses along each want: must, want, inputs (n,), rooms (n,).
+
+        Rooms [rad, or length].
+        """
+        found = []
+        for number, way in enumerate(self.ways):
+            here = self.loop.here(self.values, way.q)
+            for place, room in pose_rooms(self.loop, self.task.musts):
+                values = room(here)[0].min(axis=1)
+                found.append((place, number, way.inputs, values * self._unit(self.task.musts[place])))
+        return found
+
+    def room_unit(self, must: Must) -> str:
+        """The unit of a must's room: "deg", or the length unit."""
+        turns = getattr(must, "column", None) is None or self.loop.linkage.turns(str(must.column))  # type: ignore[union-attr]
+        return self.loop.linkage.length_unit if isinstance(must, (InBox, Apart)) or not turns else "deg"
+
+    def _unit(self, must: Must) -> float:
+        return self.loop.size if self.room_unit(must) != "deg" else 1.0
+
+
+def _level(want: Want) -> float | None:
+    return want.level if isinstance(want, DwellWant) else 0.0

@@ -1,0 +1,311 @@
+"""A design as the ordinary analysis finds it: its written file is opened and its motion asked again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
+from sevenbar.design.synthesis.candidates import (
+    CHECK_SAMPLES,
+    Candidate,
+    Claim,
+    Fault,
+    Refusal,
+    checked,
+    within_limits,
+)
+from sevenbar.design.synthesis.path.check import moved, standing
+from sevenbar.design.synthesis.path.match import Placing
+from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.problem import TaskModel
+from sevenbar.design.task.solve import Solved
+from sevenbar.design.task.task import Apart, FigureMust, InBox, InCone, InRange, Most
+from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.design.task.wants.wanted import Wanted
+from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.law import Law
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.motion import Motion
+
+#: By how much errors may be greater in the analysis than was solved for, relative to them and to their unit:
+#: more, and the solution lies on several passes.
+TORN = 1e-6
+
+#: Inputs over the used range at which musts are checked, and by how much one may be missed between those at
+#: which it was held [rad, or relative to the size].
+DENSE, MISSED = 361, 1e-4
+
+#: By how much a measure may miss its limit through rounding, relative to it.
+ROUNDING = 1e-6
+
+FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
+
+
+@dataclass(frozen=True, eq=False)
+class Met:
+    """How well a want is met: the greatest error and the root mean square [rad, or length]."""
+
+    greatest: float
+    rms: float
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class TaskDesign:
+    """A linkage that does what a task asks, with what the ordinary analysis says of it.
+
+    `candidate` is that of the first want. `cost` is the root of the weighted mean squares, or the greatest
+    weighted residual; `optimality` by how much the conditions of a local optimum are missed, relative;
+    `met` how well each want is met at poses, `figures` the measures that are wanted or limited;
+    `room` the least room of a must (infinite where there is none); `placing` where the linkage is;
+    `solution` what was solved for, with the inputs and own unknowns of each want.
+    """
+
+    candidate: Candidate
+    cost: float
+    optimality: float
+    met: tuple[Met, ...]
+    figures: Mapping[str, float]
+    room: float
+    placing: Placing
+    values: Floats
+    solution: Solved
+
+    @property
+    def draft(self) -> Draft:
+        """Its description."""
+        return self.candidate.draft
+
+
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """A pass of the analysis at the inputs of a want: poses (n, columns), and what it is off."""
+
+    circuit: int
+    branch: int
+    poses: Floats
+    outputs: Floats
+    errors: Floats
+
+
+def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
+    """The design with its errors found anew from what is written, or why it does not do what is asked."""
+    draft = model.loop.drawn(solution.seed.values)
+    try:
+        linkage = Draft.of(draft.toml(), "design", agree=draft.agree).linkage
+        ways = [
+            _ways(one, linkage, inputs, u, solution.seed.placing)
+            for one, inputs, u in zip(model.wanted, solution.inputs, solution.seed.own, strict=True)
+        ]
+        motion = linkage.motion(CHECK_SAMPLES)
+    except (DescriptionError, RequestError, NotCoveredError) as error:
+        return Refusal("assembly", str(error))
+    candidate = _candidate(model, draft, solution, ways, motion)
+    if isinstance(candidate, Refusal):
+        return candidate
+    figures = _figures(model, motion, motion.circuits[candidate.circuit])
+    if isinstance(figures, Refusal):
+        return figures
+    room = _room(model, solution, ways, linkage)
+    if isinstance(room, Refusal):
+        return room
+    met = tuple(
+        Met(
+            float(np.abs(w[0].errors).max()),
+            float(np.sqrt((w[0].errors ** 2).mean())),
+            _unit(model.loop, one),
+        )
+        for one, w in zip(model.wanted, ways, strict=True)
+    )
+    return TaskDesign(
+        candidate,
+        solution.cost,
+        solution.optimality,
+        met,
+        figures,
+        room,
+        solution.seed.placing,
+        solution.seed.values,
+        solution,
+    )
+
+
+def _unit(loop: TaskLoop, one: Wanted) -> str:
+    turns = bool(loop.numbers.turns[loop.output])
+    return "rad" if turns and hasattr(one, "readings") else loop.linkage.length_unit
+
+
+def _ways(one: Wanted, linkage: Linkage, inputs: Floats, u: Floats, placing: Placing) -> list[_Way]:
+    """What each pass of the analysis makes of a want, best first; those that do not reach it are left out."""
+    count = len(inputs)
+    law = Law.of(np.arange(count, dtype=np.float64), inputs, 1.0, 0.0)
+    found = []
+    for circuit in linkage.motion(law=law).circuits:
+        for begin in range(0, len(circuit.q), count):
+            rows = slice(begin, begin + count)
+            if not np.isfinite(circuit.q[rows]).all() or len(circuit.q[rows]) < count:
+                continue
+            errors = one.errors(circuit, rows, u, placing)
+            found.append(_Way(circuit.index, begin // count, circuit.q[rows], circuit.output[rows], errors))
+    return sorted(found, key=lambda way: float((way.errors**2).sum()))
+
+
+def _candidate(
+    model: TaskModel, draft: Draft, solution: Solved, ways: list[list[_Way]], motion: Motion
+) -> Candidate | Refusal:
+    limits, linkage = model.task.limits, model.loop.linkage
+    if not model.wanted:
+        return _of_figures(model, draft, solution, motion)
+    found: list[Candidate] = []
+    for number, (one, own) in enumerate(zip(model.wanted, ways, strict=True)):
+        if not own:
+            return Refusal(
+                "dead centre", "no pass reaches the inputs of a want without a dead centre between"
+            )
+        torn = _torn(model, number, solution, own)
+        if torn is not None:
+            return torn
+        places = isinstance(one, PlacesWanted)
+        figures = standing(solution.seed.placing, linkage.length_unit) if places and model.placed else {}
+        if places and model.placed and linkage.form == "drawn":
+            draft, figures = moved(draft, solution.seed.placing), {}
+        unit = linkage.length_unit if _unit(model.loop, one) != "rad" else "deg"
+        claim = Claim(solution.inputs[number], own[0].outputs, own[0].errors, unit, figures)
+        if one.stations.ordered:
+            candidate = checked(draft, claim, limits, poses=own[0].poses)
+            if isinstance(candidate, Refusal):
+                return candidate
+            found.append(candidate)
+            if one.stations.round and not motion.circuits[candidate.circuit].goes_round:
+                return Refusal(
+                    "dead centre",
+                    "the path is closed, and a dead centre lies between its last point and its first",
+                )
+    other = next(
+        (one for one in found if (one.circuit, one.branch) != (found[0].circuit, found[0].branch)), None
+    )
+    if other is not None:
+        return Refusal(
+            "circuit",
+            f"wants lie on circuits {found[0].circuit} and {other.circuit}, or on two passes of one",
+        )
+    return found[0]
+
+
+def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> Refusal | None:
+    """Why no pass holds all poses that were solved for: each is compared with those of the best pass."""
+    loop, q = model.loop, solution.seed.poses
+    begin = sum(len(inputs) for inputs in solution.inputs[:number])
+    poses = q[begin : begin + len(solution.inputs[number])]
+    one = model.wanted[number]
+    here = loop.here(solution.seed.values, poses)
+    left, _ = one.left(here.along(one.stations.by), solution.seed.own[number])
+    if isinstance(one, PlacesWanted):
+        off = (solution.seed.placing.put(left) - one.places.reshape(-1, 3)).ravel()
+        expected, unit = float(np.sqrt(3 * (off**2).mean())), one.unit
+    else:
+        unit = float(getattr(one, "unit", 1.0))
+        expected = float(np.sqrt((left**2).mean())) * unit
+    best = float(np.sqrt((own[0].errors ** 2).mean()))
+    if best <= 2 * expected * (1 + TORN) + TORN * unit:
+        return None
+    return Refusal(
+        "circuit", "no pass goes through all the poses that were solved for: it must be taken apart"
+    )
+
+
+def _of_figures(model: TaskModel, draft: Draft, solution: Solved, motion: Motion) -> Candidate | Refusal:
+    """The candidate of a task about figures alone."""
+    found = model.figures.circuit(solution.seed.values, solution.seed.anchor)
+    if found is None:
+        return Refusal("assembly", "its circuit is lost")
+    circuit = found[1].index
+    none = np.empty(0)
+    read = model.figures.at(solution.seed.values, solution.seed.anchor, slopes=False)
+    if read is None or circuit >= len(motion.circuits):
+        return Refusal("figure", "a measure has no value there")
+    values = dict(zip(model.figures.names, read[0], strict=True))
+    wanted = [want for want in model.figure_wants if not isinstance(want.value, str)]
+    errors = np.array([(values[want.name] - float(want.value)) / want.unit for want in wanted] or [0.0])
+    lowest = motion.circuits[circuit].transmission
+    lengths = [abs(d.value) for d in draft.dimensions if d.kind == "length"]
+    candidate = Candidate(
+        draft,
+        Claim(none, none, errors, "", {}, whole_turn=True),
+        float(np.abs(errors).max()),
+        float(np.sqrt((errors**2).mean())),
+        motion.motion_type,
+        None if lowest is None else lowest.lowest,
+        max(lengths),
+        circuit,
+        0,
+        none,
+    )
+    return within_limits(candidate, model.task.limits)
+
+
+def _figures(model: TaskModel, motion: Motion, circuit: Circuit) -> Mapping[str, float] | Refusal:
+    """The measures as the analysis has them, or which misses its limit."""
+    found = model.figures.read(motion, circuit)
+    for must in model.task.musts:
+        if not isinstance(must, FigureMust):
+            continue
+        value = found[must.name]
+        slack = ROUNDING * max(abs(value), 1.0)
+        for way, end, word in ((1, must.least, "at least"), (-1, must.most, "at most")):
+            if end is not None and way * (value - end) < -slack:
+                return Refusal("figure", f"{must.name} is {value:.6g}, {word} {end:g} is required")
+    return found
+
+
+def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage) -> float | Refusal:
+    """The least room of the musts over all that is used, or which is missed."""
+    rooms = pose_rooms(model.loop, model.task.musts)
+    least = math.inf
+    for one, own, inputs in zip(model.wanted, ways, solution.inputs, strict=True):
+        if not rooms:
+            break
+        low, high = float(inputs.min()), float(inputs.max())
+        dense = np.linspace(low, low + math.tau if one.stations.round else high, DENSE)
+        poses = _dense(model.loop, linkage, own[0], dense)
+        here = model.loop.here(solution.seed.values, model.loop.poses(solution.seed.values, poses))
+        for place, room in rooms:
+            worst = float(room(here)[0].min())
+            if not worst >= -MISSED:
+                must = model.task.musts[place]
+                return Refusal(FAULTS[type(must)], f"{must} is missed by {-worst:.3g}")
+            least = min(least, worst)
+    for must in model.task.musts:
+        if isinstance(must, Most):
+            number = model.sampled.index(must.want)
+            unit = float(getattr(model.wanted[number], "unit", 1.0))
+            worst = must.most - float(np.abs(ways[number][0].errors).max()) / unit
+            if worst < -MISSED:
+                return Refusal(
+                    "error", f"a residual is {must.most - worst:.4g}, at most {must.most:g} is asked"
+                )
+            least = min(least, worst)
+    return least
+
+
+def _dense(loop: TaskLoop, linkage: Linkage, way: _Way, dense: Floats) -> Floats:
+    """The rows of the analysis at many inputs on the pass of a want."""
+    law = Law.of(np.arange(len(dense), dtype=np.float64), dense, 1.0, 0.0)
+    circuit = linkage.motion(law=law).circuits[way.circuit]
+    best, least = circuit.q[: len(dense)], math.inf
+    first = way.poses[int(np.argmin(way.poses[:, loop.input]))]
+    columns = [c for c, ball in enumerate(loop.numbers.is_ball) if not ball and c != loop.input]
+    for begin in range(0, len(circuit.q), len(dense)):
+        rows = circuit.q[begin : begin + len(dense)]
+        if np.isfinite(rows).all():
+            off = float(np.abs(np.sin((rows[0] - first)[columns] / 2)).max(initial=0.0))
+            if off < least:
+                best, least = rows, off
+    return np.asarray(best)

@@ -1,0 +1,305 @@
+"""What of a task contradicts itself or its linkage, found before the long work begins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.idle_link import refuse_idle_link
+from sevenbar.design.synthesis.path.task import wanted_inputs, wanted_places
+from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must
+from sevenbar.design.task.task import (
+    DesignTask,
+    DwellWant,
+    FigureWant,
+    FunctionWant,
+    InBox,
+    Most,
+    PathWant,
+    PoseWant,
+    StraightWant,
+    Want,
+)
+from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
+from sevenbar.kinematics.linkage import Linkage
+
+#: The most that residuals are where points are to be met exactly.
+EXACT = 1e-6
+
+#: Inputs of a turn at which numbers that open the loop show.
+OPENINGS = 12
+
+#: By how much a rotation's matrix may miss being one.
+ROTATION = 1e-3
+
+
+def refuse_contradictions(task: DesignTask) -> None:
+    """Raises `RequestError` with every contradiction of a task, a line each."""
+    if found := list(contradictions(task)) or list(start_flaws(task)):
+        raise RequestError("\n".join(map(str, found)))
+
+
+def contradictions(task: DesignTask) -> Iterator[Problem]:
+    """What is wrong with a task, as people may put it right: "want[1].point", and the message."""
+    yield from _free(task)
+    if not task.wants:
+        yield Problem("want", "none given; say what is wanted, as in [[want]] with kind = 'path'")
+    for i, want in enumerate(task.wants):
+        for key, message in _of_want(task, want, exact=_exact(task, i)):
+            yield Problem(f"want[{i + 1}]{key and '.' + key}", message)
+    for i, must in enumerate(task.musts):
+        for key, message in of_must(task, must):
+            yield Problem(f"must[{i + 1}]{key and '.' + key}", message)
+    places = [want for want in task.wants if isinstance(want, (PathWant, PoseWant))]
+    if task.placement != "fixed" and task.wants and not places:
+        yield Problem(
+            "placement", f"{task.placement!r} changes nothing: no path and no poses are wanted; leave it out"
+        )
+    if task.limits.transmission_lowest and task.draft.linkage.form != "rssr":
+        yield Problem(
+            "limits.transmission",
+            "its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out",
+        )
+
+
+def start_flaws(task: DesignTask) -> Iterator[Problem]:
+    """What is wrong with a task's linkage as a start: it moves nowhere, or a free number opens its loop.
+
+    For a task without other contradictions, since its linkage is moved.
+    """
+    loop = TaskLoop(task.draft.holding(task.follow), task.names)
+    for circuit in loop.linkage.motion(OPENINGS).circuits:
+        good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
+        if good.size:
+            q = loop.closed(loop.start, circuit.input[good], loop.poses(loop.start, circuit.q[good]))
+            q = q[np.isfinite(q).all(axis=1)]
+            if len(q):
+                for number in loop.openings(loop.start, q):
+                    yield Problem(
+                        f"free.{task.free[number].name}",
+                        "cannot change alone without opening the loop; leave it out",
+                    )
+                return
+    yield Problem(
+        "linkage",
+        "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
+    )
+
+
+def _free(task: DesignTask) -> Iterator[Problem]:
+    """What is wrong with the free numbers."""
+    if not task.free:
+        names = ", ".join(d.name for d in task.draft.dimensions if d.kind != "speed")
+        yield Problem("free", f"no number may change; give bounds of some of {names}")
+    used = _used_points(task)
+    seen: set[str] = set()
+    for one in task.free:
+        place = f"free.{one.name}"
+        try:
+            d = task.draft.dimension(one.name)
+        except RequestError as error:
+            yield Problem(place, str(error).removeprefix("dimension: "))
+            continue
+        low, high = one.low, one.high
+        if d.name in seen:
+            yield Problem(place, "is given twice; leave one out")
+        seen.add(d.name)
+        if d.kind == "speed":
+            yield Problem(place, "the speed moves no joint elsewhere; leave it out")
+        elif not (math.isfinite(low) and math.isfinite(high) and low < high):
+            yield Problem(
+                place, f"{low:g}:{high:g} are no bounds; give the least value first, then the greatest"
+            )
+        elif d.positive and not low > 0:
+            yield Problem(place, f"{low:g} is no length of a link; give bounds > 0")
+        elif not low <= d.value <= high:
+            unit = f" {d.unit}" if d.unit else ""
+            yield Problem(
+                place,
+                f"begins at {d.value:g}{unit}, outside {low:g}:{high:g}; "
+                "give bounds that hold it, or another start",
+            )
+        if d.name in task.follow:
+            yield Problem(place, "is to follow from the others; leave it out here, or in follow")
+        owner = _owner(task, d.place)
+        if owner is not None and owner not in used:
+            yield Problem(
+                place, f"point '{owner}' is in no want and no must, so this changes nothing; leave it out"
+            )
+
+
+def _owner(task: DesignTask, place: tuple[object, ...]) -> str | None:
+    """The point that a number belongs to."""
+    return task.draft.raw["point"][int(str(place[1]))]["name"] if place[0] == "point" else None
+
+
+def _used_points(task: DesignTask) -> set[str]:
+    used = {want.point for want in task.wants if isinstance(want, (PathWant, StraightWant))}
+    return used | {name for must in task.musts if isinstance(must, InBox) for name in must.names}
+
+
+def _of_want(task: DesignTask, want: Want, *, exact: bool) -> Flaws:
+    if not (math.isfinite(want.weight) and want.weight > 0):
+        yield "weight", f"{want.weight:g} is no weight; give a number > 0"
+    match want:
+        case FunctionWant():
+            yield from _function(task, want, exact=exact)
+        case PathWant():
+            yield from _path(task, want, exact=exact)
+        case PoseWant():
+            yield from _poses(task, want, exact=exact)
+        case FigureWant():
+            yield from _figure(task, want)
+        case DwellWant():
+            yield from _range(task.draft.linkage, want.range)
+        case StraightWant():
+            yield from _point(task.draft.linkage, want.point)
+            yield from _range(task.draft.linkage, want.range)
+
+
+def _function(task: DesignTask, want: FunctionWant, *, exact: bool) -> Flaws:
+    linkage = task.draft.linkage
+    x, y = want.input, want.output
+    if x.ndim != 1 or x.shape != y.shape or x.size < 2 or not np.isfinite([x, y]).all():
+        yield "", f"{x.size} inputs and {y.size} outputs; give two finite pairs or more"
+        return
+    yield from _going_one_way(x, "", "input")
+    if linkage.turns(linkage.drive.joint) and np.ptp(x) > math.tau * (1 + 1e-12):
+        yield "", f"the inputs go over {math.degrees(float(np.ptp(x))):g} deg; give a turn at most"
+    free = sum(zero is None for zero in want.zeros)
+    yield from _too_many(task, x.size if exact else 0, free)
+
+
+def _path(task: DesignTask, want: PathWant, *, exact: bool) -> Flaws:
+    yield from _point(task.draft.linkage, want.point)
+    rows = np.concatenate([want.places, want.places[:1]]) if want.closed else want.places
+    try:
+        wanted_places(rows)
+        wanted_inputs(want.timing, rows, want.closed)
+    except RequestError as error:
+        key, _, message = str(error).partition(": ")
+        yield {"points": "places"}.get(key, key), message
+        return
+    yield from _phase(want)
+    timed = want.timing is not None
+    count = len(want.places) * (2 if timed else 1)
+    yield from _too_many(task, count if exact else 0, _placing(task) + want.phase)
+
+
+def _poses(task: DesignTask, want: PoseWant, *, exact: bool) -> Flaws:
+    linkage = task.draft.linkage
+    count = len(linkage.joints)
+    if not 1 <= want.link < count:
+        yield "link", f"{want.link} is no moving link; give 1 to {count - 1}, link {count} is the ground"
+        return
+    yield from _idle(linkage, want.link, "a pose of it")
+    if not (math.isfinite(want.arm) and want.arm > 0):
+        yield "arm", f"{want.arm:g} is no length; give a number > 0"
+    poses = want.poses
+    if poses.ndim != 3 or poses.shape[1:] != (4, 4) or not len(poses) or not np.isfinite(poses).all():
+        yield "poses", f"an array of shape {poses.shape} holds no poses; give finite ones (n, 4, 4)"
+        return
+    for i, pose in enumerate(poses):
+        turn = pose[:3, :3]
+        off = float(np.abs(turn @ turn.T - np.eye(3)).max())
+        if off > ROTATION or np.linalg.det(turn) < 0:
+            what = "mirrors" if off <= ROTATION else f"misses one by {off:.2g}"
+            yield f"poses[{i + 1}]", f"is no rotation: it {what}; give a rotation, or axis and angle"
+    if want.timing is not None:
+        if want.timing.size != len(poses):
+            yield "timing", f"{want.timing.size} inputs for {len(poses)} poses; give one for each"
+        else:
+            yield from _going_one_way(want.timing, "timing", "input of pose")
+    yield from _phase(want)
+    timed = want.timing is not None
+    count = len(poses) * (3 if timed else 2)
+    yield from _too_many(task, count if exact else 0, _placing(task) + want.phase)
+
+
+def _phase(want: PathWant | PoseWant) -> Flaws:
+    if want.phase and want.timing is None:
+        yield "phase", "there are no inputs whose start could be free; give timing, too"
+
+
+def _figure(task: DesignTask, want: FigureWant) -> Flaws:
+    flaw = figure_flaw(task.draft.linkage, want.name)
+    if flaw:
+        yield "name", flaw
+        return
+    if not (math.isfinite(want.unit) and want.unit > 0):
+        yield "unit", f"{want.unit:g} is no unit; give a number > 0"
+    if isinstance(want.value, str):
+        if want.value not in ("small", "great"):
+            yield (
+                "value",
+                f"{shown(want.value)} is neither a number nor 'small' nor 'great'; give one of them",
+            )
+    elif not math.isfinite(want.value):
+        yield "value", f"{want.value} is no value; give a finite number"
+    elif want.name == "time_ratio" and want.value < 1:
+        yield "value", f"{want.value:g} is no time ratio; the slower stroke over the quicker is at least 1"
+    elif want.name in ("swing", "peak_torque", "rms_torque") and want.value < 0:
+        yield "value", f"{want.value:g} cannot be: {want.name} is never below 0; give another value"
+
+
+def _range(linkage: Linkage, ends: tuple[float, float]) -> Flaws:
+    low, high = ends
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        yield "range", "its first end is not below its second one; give the lower end first"
+    elif linkage.turns(linkage.drive.joint) and high - low > math.tau * (1 + 1e-12):
+        yield "range", f"goes over {math.degrees(high - low):g} deg of the input; give a turn at most"
+
+
+def _point(linkage: Linkage, name: str) -> Flaws:
+    known = {point.name: point.link for point in linkage.points}
+    moving = [point for point, link in known.items() if link < len(linkage.joints)]
+    if name not in known:
+        has = (
+            f"this linkage has {', '.join(moving)}" if moving else "the linkage names none, so add one to it"
+        )
+        yield "point", f"no point {shown(name)}; {suggestion(name, known)}{has}"
+    elif known[name] == len(linkage.joints):
+        yield "point", f"'{name}' is on the ground, which stands still; give one of {', '.join(moving)}"
+    else:
+        for key, message in _idle(linkage, known[name], "a path on it"):
+            yield "point" if key == "link" else key, message
+
+
+def _idle(linkage: Linkage, link: int, what: str) -> Flaws:
+    try:
+        refuse_idle_link(linkage, link, what)
+    except NotCoveredError as error:
+        yield "link", str(error).partition(": ")[2]
+
+
+def _going_one_way(values: Floats, key: str, what: str) -> Flaws:
+    steps = np.diff(values)
+    if (steps > 0).all() or (steps < 0).all():
+        return
+    back = np.flatnonzero(np.sign(steps) != np.sign(steps[0])) if steps[0] else np.array([0])
+    number = int(back[0]) + 2
+    yield key, f"the {what} {number} turns back; inputs must rise, or fall, from one to the next"
+
+
+def _placing(task: DesignTask) -> int:
+    return {"fixed": 0, "free": 6, "free with scale": 7}[task.placement]
+
+
+def _exact(task: DesignTask, place: int) -> bool:
+    """Whether a want must be met exactly."""
+    return any(isinstance(must, Most) and must.want == place and must.most <= EXACT for must in task.musts)
+
+
+def _too_many(task: DesignTask, conditions: int, own: int) -> Flaws:
+    """More that must be met exactly than numbers could meet; `own` are the want's own free numbers."""
+    count = len(task.free) + own
+    if conditions > count:
+        yield (
+            "exact",
+            f"{conditions} conditions are to be met exactly, and {count} numbers are free; leave points out, "
+            "free more numbers, or leave exact out",
+        )

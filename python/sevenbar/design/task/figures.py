@@ -1,0 +1,163 @@
+"""Figures of a task's designs: each want as it is met, and how much room the musts leave on the way."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from sevenbar.arrays import Floats
+from sevenbar.design.synthesis.path.figures import PathPage, path_page
+from sevenbar.design.task.along import DesignAlong
+from sevenbar.design.task.task import DwellWant, FunctionWant, PathWant, PoseWant
+from sevenbar.design.task.words import must_words
+from sevenbar.drawing.figure import page_figure
+from sevenbar.drawing.names import short
+from sevenbar.drawing.style import COMPUTED, OTHER, styled
+from sevenbar.text.words import say
+
+#: Wanted readings beyond which they are a line.
+MANY = 40
+
+#: Colours of musts, one after the other.
+COLOURS = (COMPUTED, OTHER, "#2a7f3f", "#8a4fa8", "#b8860b", "#404040")
+
+
+def want_figure(along: DesignAlong, number: int) -> Figure:
+    """A want with a way, by its place among those: readings and error, or the path and its distances."""
+    want = along.wants[number][1]
+    if isinstance(want, (FunctionWant, DwellWant)):
+        return _readings(along, number, want)
+    return _places(along, number)
+
+
+def _readings(along: DesignAlong, number: int, want: FunctionWant | DwellWant) -> Figure:
+    """The output's readings over the input's; below, the design's less those wanted."""
+    place = along.wants[number][0]
+    linkage = along.task.draft.linkage
+    drive = linkage.drive
+    zeros = along.zeros(number)
+    x = along.ways[number].inputs - zeros[0]
+    if linkage.turns(drive.joint):
+        # on the turn of the readings
+        begin = float(want.input[0] if isinstance(want, FunctionWant) else want.range[0])
+        x = x - math.tau * np.round((x[0] - begin) / math.tau)
+    y = along.outputs(number)
+    if isinstance(want, FunctionWant):
+        at, wanted = want.input, want.output
+    else:
+        at = np.linspace(*want.range, want.samples)
+        wanted = np.zeros(want.samples)
+    order = np.argsort(x)
+    errors = np.interp(at, x[order], y[order]) - wanted
+    across, up = (_scale(linkage.turns(column)) for column in (drive.joint, drive.output))
+    units = [_unit(along, column) for column in (drive.joint, drive.output)]
+    points = len(at) <= MANY
+    mark = (
+        {"ls": "", "marker": "o", "mfc": "white", "ms": 5.0} if points else {"ls": (0, (4, 2.5)), "lw": 1.3}
+    )
+    line = {"ls": "", "marker": "o", "ms": 4.0} if points else {"lw": 1.6}
+    met = along.design.met[number]
+    with styled():
+        figure = page_figure(6.4, 6.0, pads=(0.05, 0.06))
+        top, below = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (3.0, 1.6)})
+        top.plot(across * x, up * y, color=COMPUTED, lw=1.8, zorder=2, label=say("generated"))
+        top.plot(across * at, up * wanted, color=OTHER, zorder=3, label=say("wanted"), **mark)
+        below.axhline(0.0, color="#505050", lw=0.8, zorder=1)
+        below.plot(across * at, up * errors, color=COMPUTED, **line)
+        if np.abs(up * errors).max() < 1e-9:
+            below.set_ylim(-1.0, 1.0)
+        top.set_ylabel(say("output reading [{unit}]", unit=units[1]))
+        below.set_ylabel(say("generated less\nwanted [{unit}]", unit=units[1]))
+        below.set_xlabel(say("input reading [{unit}]", unit=units[0]))
+        for axes in (top, below):
+            axes.grid(lw=0.6)
+            axes.xaxis.set_major_locator(MaxNLocator(9))
+        below.yaxis.set_major_locator(MaxNLocator(5))
+        figure.align_ylabels()
+        reached = say(
+            "error at most {greatest:.3g} {unit}, RMS {rms:.3g} {unit}",
+            greatest=up * met.greatest, rms=up * met.rms, unit=units[1],
+        )  # fmt: skip
+        figure.suptitle(f"{_title(along)}\n{say('want {number}', number=place + 1)}: {reached}")
+        handles, labels = top.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
+    return figure
+
+
+def _places(along: DesignAlong, number: int) -> Figure:
+    """The path in space and from three sides, or the frames of poses, and the distance at each."""
+    place, want, _ = along.wants[number]
+    way, found = along.places(number), along.stations(number)
+    frames: list[tuple[Floats, str]] = []
+    if isinstance(want, PathWant):
+        wanted = want.places
+    elif isinstance(want, PoseWant):
+        ends = np.vstack([np.zeros(3), want.arm * np.eye(3)])
+        every = np.einsum("nij,pj->npi", want.poses[:, :3, :3], ends) + want.poses[:, None, :3, 3]
+        wanted = every[:, 0]
+        frames = [(every, OTHER), (found, COMPUTED)]
+    else:
+        # the places on the line through the ends of the way
+        own = along.design.solution.seed.own[number]
+        begin, line = own[:3], own[3:] - own[:3]
+        along_line = (found[:, 0] - begin) @ line / float(line @ line)
+        wanted = begin + along_line[:, None] * line
+    errors = np.linalg.norm(found[:, 0] - wanted, axis=1)
+    page = PathPage(
+        wanted,
+        way[:, 0],
+        errors,
+        f"{_title(along)}, {say('want {number}', number=place + 1)}",
+        frames,
+    )
+    return path_page(along.task.draft.linkage, page)
+
+
+def musts_figure(along: DesignAlong) -> Figure | None:
+    """The room that each must about poses leaves over the input; below 0 it is missed. `None` without any."""
+    rooms = along.rooms()
+    if not rooms:
+        return None
+    linkage, task = along.task.draft.linkage, along.task
+    units = list(dict.fromkeys(along.room_unit(task.musts[place]) for place, *_ in rooms))
+    across = _scale(linkage.turns(linkage.drive.joint))
+    with styled():
+        figure = page_figure(6.4, 2.6 + 2.4 * len(units), pads=(0.05, 0.06))
+        every = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
+        seen: set[int] = set()
+        for place, _, inputs, values in rooms:
+            unit = along.room_unit(task.musts[place])
+            axes = every[units.index(unit)]
+            label = None if place in seen else short(must_words(task.musts[place], linkage), 60)
+            seen.add(place)
+            order = np.argsort(inputs)
+            scale = math.degrees(1.0) if unit == "deg" else 1.0
+            colour = COLOURS[place % len(COLOURS)]
+            axes.plot(across * inputs[order], scale * values[order], color=colour, lw=1.6, label=label)
+        for axes, unit in zip(every, units, strict=True):
+            axes.axhline(0.0, color="#505050", lw=0.8, zorder=1)
+            axes.set_ylabel(say("room [{unit}]", unit=unit))
+            axes.grid(lw=0.6)
+            axes.yaxis.set_major_locator(MaxNLocator(5))
+            axes.legend(loc="best", frameon=True)
+        every[-1].set_xlabel(
+            say("input: {joint}", joint=f"{linkage.drive.joint} [{_unit(along, linkage.drive.joint)}]")
+        )
+        figure.suptitle(f"{_title(along)}\n{say('what must hold, with its room')}")
+    return figure
+
+
+def _title(along: DesignAlong) -> str:
+    return short(along.design.candidate.name, 60)
+
+
+def _scale(turns: bool) -> float:
+    return math.degrees(1.0) if turns else 1.0
+
+
+def _unit(along: DesignAlong, column: str) -> str:
+    linkage = along.task.draft.linkage
+    return "deg" if linkage.turns(column) else linkage.length_unit

@@ -1,0 +1,199 @@
+"""A task file read: its linkage found, values in radians and lengths, each mistake with its place."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from sevenbar.description.draft import Draft
+from sevenbar.description.files import toml_tables, toml_text
+from sevenbar.description.gallery import names as gallery_names
+from sevenbar.description.table_form import TableForm
+from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
+from sevenbar.design.task.file.musts import must_of
+from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
+from sevenbar.design.task.file.units import length_span
+from sevenbar.design.task.file.wants import want_of
+from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
+from sevenbar.errors import (
+    DescriptionError,
+    Problem,
+    RequestError,
+    SevenbarError,
+    ends_here,
+    shown,
+    suggestion,
+)
+from sevenbar.kinematics.linkage import Linkage
+
+
+@dataclass(frozen=True, eq=False)
+class TaskFile:
+    """A task as its file has it: its `name`, and where it came from."""
+
+    task: DesignTask
+    name: str
+    source: str
+
+
+@ends_here
+def read_task(path: str | os.PathLike[str], *, agree: float | None = None) -> DesignTask:
+    """The design task of a TOML file, checked whole: `docs/design-task.md` has its keys.
+
+    Redundant constraints of its linkages `agree` up to a closure error (`Linkage.agreeing`). Raises
+    `DescriptionError` with every mistake, each with its place.
+    """
+    return task_file(path, agree=agree).task
+
+
+def task_file(path: str | os.PathLike[str], *, agree: float | None = None) -> TaskFile:
+    """The same with the task's name and source."""
+    source = str(path)
+    if not Path(path).is_file():
+        raise DescriptionError.of_all(source, "no such file; give the path of a task file (TOML)")
+    return task_of_text(toml_text(path), source, agree=agree)
+
+
+def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskFile:
+    """The task of a TOML text; files that it names lie in its folder, that of `source`."""
+    raw = toml_tables(text, source)
+    folder = Path(source).parent
+    draft = _draft(raw, source, folder, agree)
+    form = check_form(raw, draft.linkage.length_unit, source)
+    mistakes = _Mistakes()
+    with mistakes.of("follow"):
+        draft = draft.holding(form.follow or ())
+    free = _free(draft, form, mistakes)
+    wants, exact = _wants(draft.linkage, form, folder, mistakes)
+    musts = [*_musts(draft.linkage, form, wants, mistakes), *exact]
+    limits = Limits()
+    with mistakes.of("limits", LimitsForm):
+        limits = _limits(form.limits, draft.linkage)
+    if not mistakes.found:
+        task = DesignTask(
+            draft,
+            tuple(free),
+            tuple(wants),
+            tuple(musts),
+            form.placement,  # type: ignore[arg-type]
+            form.goal,  # type: ignore[arg-type]
+            limits,
+            form.follow or (),
+        )
+        mistakes.found += list(contradictions(task)) or list(start_flaws(task))
+    if mistakes.found:
+        raise DescriptionError(list(dict.fromkeys(mistakes.found)), source)
+    return TaskFile(task, form.name or draft.linkage.heading, source)
+
+
+class _Mistakes:
+    """The mistakes of a file as they are found."""
+
+    def __init__(self) -> None:
+        self.found: list[Problem] = []
+
+    @contextmanager
+    def of(self, place: str, form: type[TableForm] | None = None) -> Iterator[None]:
+        """Keeps what is wrong with a table: a message that begins with a key of its form is of that key."""
+        try:
+            yield
+        except SevenbarError as error:
+            key, colon, message = str(error).partition(": ")
+            if colon and form is not None and key.partition("[")[0] in form.model_fields:
+                self.found.append(Problem(f"{place}.{key}", message))
+            else:
+                self.found.append(Problem(place, str(error).removeprefix(f"{place}: ")))
+
+
+def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) -> Draft:
+    """The linkage that a task is about; `DescriptionError` where there is none."""
+    given = raw.get("linkage")
+    if isinstance(given, dict):
+        import tomlkit
+
+        return Draft.of(tomlkit.dumps(given), f"{source}: [linkage]", agree=agree)
+    if not isinstance(given, str) or not given.strip():
+        what = "is missing" if given is None else f"{shown(given)} is none"
+        hint = (
+            "give a file in the folder of this one, as in 'rssr.toml', a name of the gallery, "
+            "or a table [linkage]"
+        )
+        raise DescriptionError([Problem("linkage", f"{what}; {hint}")], source)
+    name = given.strip()
+    path = folder / name
+    if not path.exists() and name in gallery_names():
+        return Draft.of(toml_text(name), name, agree=agree)
+    if not path.is_file():
+        near = suggestion(name, gallery_names())
+        raise DescriptionError(
+            [
+                Problem(
+                    "linkage",
+                    f"{shown(name)}: no such file in the folder of this one, nor such a name in the "
+                    f"gallery; {near}give one",
+                )
+            ],
+            source,
+        )
+    return Draft.of(toml_text(path), str(path), agree=agree)
+
+
+def _free(draft: Draft, form: TaskForm, mistakes: _Mistakes) -> list[FreeNumber]:
+    """The free numbers in the order of the linkage's file; a name goes before a pattern."""
+    every = [d for d in draft.dimensions if d.kind != "speed"]
+    chosen: dict[str, tuple[str, FreeNumber]] = {}
+    for name, ends in sorted(form.free.items(), key=lambda item: _is_pattern(item[0])):
+        with mistakes.of(f"free.{name}"):
+            found = [d for d in every if name in (d.name, d.key) or fnmatchcase(d.name, name)]
+            if not found:
+                known = [d.name for d in every]
+                raise RequestError(
+                    f"is not a number of the linkage; {suggestion(name, known)}give some of "
+                    f"{', '.join(known)}, or a pattern as 'L*'"
+                )
+            if len({d.unit for d in found}) > 1 and any(isinstance(end, str) for end in ends):
+                raise RequestError("names numbers of several units; give them one by one")
+            for d in found:
+                low, high = (d.read(end) if isinstance(end, str) else end for end in ends)
+                if d.name not in chosen:
+                    chosen[d.name] = name, FreeNumber(d.name, low, high)
+                elif _is_pattern(chosen[d.name][0]):
+                    raise RequestError(f"{d.name} is matched by '{chosen[d.name][0]}', too; leave one out")
+    return [chosen[d.name][1] for d in every if d.name in chosen]
+
+
+def _is_pattern(name: str) -> bool:
+    return any(sign in name for sign in "*?[")
+
+
+def _wants(
+    linkage: Linkage, form: TaskForm, folder: Path, mistakes: _Mistakes
+) -> tuple[list[Want], list[Must]]:
+    """The wants, and that some of them are met exactly."""
+    wants: list[Want] = []
+    exact: list[Must] = []
+    for i, one in enumerate(form.want):
+        with mistakes.of(f"want[{i + 1}]", type(one)):
+            wants.append(want_of(one, linkage, folder))
+            if getattr(one, "exact", False):
+                exact.append(Most(i, EXACT))
+    return wants, exact
+
+
+def _musts(linkage: Linkage, form: TaskForm, wants: list[Want], mistakes: _Mistakes) -> list[Must]:
+    found: list[Must] = []
+    for i, one in enumerate(form.must):
+        with mistakes.of(f"must[{i + 1}]", type(one)):
+            found.append(must_of(one, linkage, wants))
+    return found
+
+
+def _limits(form: LimitsForm, linkage: Linkage) -> Limits:
+    size = None if form.size is None else length_span("size", form.size, linkage.length_unit)
+    return Limits(form.transmission, size, form.motion_type)

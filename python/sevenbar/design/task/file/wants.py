@@ -1,0 +1,230 @@
+"""Wants of a task file as values of a task."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal, TypeVar, cast
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.curve_table import read_curve
+from sevenbar.design.synthesis.function.precision import chebyshev
+from sevenbar.design.synthesis.function.wish import read_pairs, wish_of_function
+from sevenbar.design.synthesis.path.task import wanted_inputs, wanted_places
+from sevenbar.design.task.file.musts import linkage_size
+from sevenbar.design.task.file.pose_table import read_poses
+from sevenbar.design.task.file.schema import (
+    DwellForm,
+    FigureForm,
+    FunctionForm,
+    PathForm,
+    PoseForm,
+    PosesForm,
+    StraightForm,
+    WantForm,
+)
+from sevenbar.design.task.file.units import figure_value, reading, reading_span
+from sevenbar.design.task.file.values import Given
+from sevenbar.design.task.task import (
+    DwellWant,
+    FigureWant,
+    FunctionWant,
+    PathWant,
+    PoseWant,
+    StraightWant,
+    Want,
+)
+from sevenbar.errors import RequestError, TableError
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.text.expression import function_of
+
+T = TypeVar("T")
+
+#: What a figure may be wanted to be, other than a value.
+Way = Literal["small", "great"]
+
+
+def want_of(form: WantForm, linkage: Linkage, folder: Path) -> Want:
+    """The want of a table; files lie in `folder`. Raises `RequestError` with the key at fault."""
+    match form:
+        case FunctionForm():
+            return _function(form, linkage, folder)
+        case PathForm():
+            return _path(form, linkage, folder)
+        case PosesForm():
+            return _poses(form, linkage, folder)
+        case FigureForm():
+            word = form.value if form.value in ("small", "great") else None
+            value = 0.0 if word else figure_value("value", form.value, linkage, form.name)
+            return FigureWant(form.name, cast(Way, word) if word else value, form.unit, form.weight)
+        case DwellForm():
+            level = _zero("level", form.level, linkage, _output(linkage))
+            return DwellWant(_of_input("range", form.range, linkage), level, form.samples, form.weight)
+        case StraightForm():
+            ends = _of_input("range", form.range, linkage)
+            return StraightWant(form.point, ends, form.length, form.samples, form.weight)
+
+
+def _function(form: FunctionForm, linkage: Linkage, folder: Path) -> FunctionWant:
+    ways = {"y": form.y, "pairs": form.pairs, "table": form.table}
+    given = [name for name, value in ways.items() if value is not None]
+    if len(given) != 1:
+        what = "y, pairs and table are missing" if not given else f"{' and '.join(given)} are given"
+        raise RequestError(f"{what}; give one of the three")
+    if form.y is None:
+        for name in ("input", "output", "points"):
+            if getattr(form, name) is not None:
+                raise RequestError(f"{name}: belongs to y; {given[0]} says it all, so leave it out")
+    columns = linkage.columns.index(linkage.drive.joint), _output(linkage)
+    if form.y is not None:
+        x, y = _of_formula(form, linkage, columns)
+    elif form.pairs is not None:
+        x, y = (
+            np.array(
+                [reading(f"pairs[{i + 1}]", row[side], linkage, column) for i, row in enumerate(form.pairs)]
+            )
+            for side, column in enumerate(columns)
+        )
+    else:
+        if not all(map(linkage.turns, columns)):
+            raise RequestError("table: holds angles, and a joint of the drive slides; give pairs")
+        x, y = _read("table", read_pairs, folder / str(form.table))
+    zeros = (
+        _zero("input_zero", form.input_zero, linkage, columns[0]),
+        _zero("output_zero", form.output_zero, linkage, columns[1]),
+    )
+    return FunctionWant(x, y, zeros, form.weight)
+
+
+def _of_formula(form: FunctionForm, linkage: Linkage, columns: tuple[int, int]) -> tuple[Floats, Floats]:
+    """Readings of input and output that y(x) wants, over the ranges of both or as x and y are."""
+    y = str(form.y)
+    low, high = form.x
+    if not low < high:
+        raise RequestError(f"x: {low:g}:{high:g} does not rise; give the lower end first")
+    wish = wish_of_function(function_of(y), form.x, (0.0, 1.0), (0.0, 1.0), title=y, formula=y)
+    share = wish.input if form.points is None else chebyshev(0.0, 1.0, form.points)
+    if form.input is None and form.output is None:
+        x = low + (high - low) * share
+        if linkage.turns(columns[0]) and high - low >= math.tau:
+            raise RequestError(
+                f"x: goes over {math.degrees(high - low):g} deg, for it counts in radians; "
+                "give a part of a turn"
+            )
+        return x, function_of(y)(x)
+    ranges = []
+    for name, ends, column in (("input", form.input, columns[0]), ("output", form.output, columns[1])):
+        if ends is None:
+            raise RequestError(
+                f"{name}: is missing; give both ranges of readings, or neither where x and y are the readings"
+            )
+        first, last = reading_span(name, ends, linkage, column)
+        if first == last:
+            raise RequestError(f"{name}: both ends are one; give a range, as in '0:90deg'")
+        if linkage.turns(column) and abs(last - first) >= math.tau:
+            raise RequestError(
+                f"{name}: goes over {math.degrees(abs(last - first)):g} deg; give a part of a turn"
+            )
+        ranges.append((first, last))
+    assert wish.function is not None
+    (a, b), (c, d) = ranges
+    return a + (b - a) * share, c + (d - c) * wish.function(share)
+
+
+def _path(form: PathForm, linkage: Linkage, folder: Path) -> PathWant:
+    _one_of({"places": form.places, "table": form.table})
+    inputs: Floats | None = None
+    if form.table is not None:
+        drive = linkage.drive.joint
+        rows, inputs = _read(
+            "table", lambda path: read_curve(path, linkage, drive, point=form.point), folder / form.table
+        )
+    else:
+        rows = np.array(form.places, dtype=float)
+    timing = _timing(form.timing, inputs, linkage)
+    try:
+        rows, closed = wanted_places(rows)
+        timing = wanted_inputs(timing, rows, closed)
+    except RequestError as error:
+        raise RequestError(_of_key(error, "table" if form.table is not None else "places")) from None
+    return PathWant(form.point, rows[:-1] if closed else rows, closed, timing, form.phase, form.weight)
+
+
+def _of_key(error: RequestError, key: str) -> str:
+    """A message of `points` as one of the key that holds them."""
+    text = str(error)
+    return f"{key}: {text.removeprefix('points: ')}" if text.startswith("points: ") else text
+
+
+def _poses(form: PosesForm, linkage: Linkage, folder: Path) -> PoseWant:
+    _one_of({"poses": form.poses, "table": form.table})
+    inputs: Floats | None = None
+    if form.table is not None:
+        poses, inputs = _read("table", lambda path: read_poses(path, linkage), folder / form.table)
+    else:
+        poses = np.array([_pose(f"poses[{i + 1}]", one) for i, one in enumerate(form.poses or ())])
+    if form.frame is not None:
+        poses = poses @ inverse(_pose("frame", form.frame))
+    arm = linkage_size(linkage) if form.arm is None else form.arm
+    timing = _timing(form.timing, inputs, linkage)
+    return PoseWant(form.link, poses, arm, timing, form.phase, form.weight)
+
+
+def _pose(key: str, form: PoseForm) -> Floats:
+    """A pose (4, 4)."""
+    from scipy.spatial.transform import Rotation
+
+    if form.matrix is None:
+        axis = np.array(form.axis) / math.hypot(*form.axis)
+        return pose(Rotation.from_rotvec(form.angle * axis).as_matrix(), form.at)
+    if {"axis", "angle"} & form.model_fields_set:
+        raise RequestError(f"{key}: a matrix, and axis or angle; give one of the two")
+    # to all digits what was written with some
+    return pose(Rotation.from_matrix(np.array(form.matrix)).as_matrix(), form.at)
+
+
+def _one_of(ways: dict[str, object]) -> None:
+    given = [name for name, value in ways.items() if value is not None]
+    if len(given) != 1:
+        both = " and ".join(ways)
+        raise RequestError(f"{both} are {'both given' if given else 'missing'}; give one of the two")
+
+
+def _timing(given: object, of_table: Floats | None, linkage: Linkage) -> Floats | None:
+    """The inputs [rad, or length] of places or poses, those of the table where `given` says so."""
+    if given is None:
+        return None
+    if given is True:
+        if of_table is None:
+            raise RequestError(
+                f"timing: no table has a column for the input '{linkage.drive.joint}'; "
+                "give the inputs, as in [0, 10, 20]"
+            )
+        return of_table
+    column = linkage.columns.index(linkage.drive.joint)
+    assert isinstance(given, tuple)
+    return np.array([reading(f"timing[{i + 1}]", value, linkage, column) for i, value in enumerate(given)])
+
+
+def _of_input(key: str, ends: tuple[Given, Given], linkage: Linkage) -> tuple[float, float]:
+    return reading_span(key, ends, linkage, linkage.columns.index(linkage.drive.joint))
+
+
+def _output(linkage: Linkage) -> int:
+    return linkage.columns.index(linkage.drive.output)
+
+
+def _zero(key: str, value: Given, linkage: Linkage, column: int) -> float | None:
+    return None if value == "free" else reading(key, value, linkage, column)
+
+
+def _read(key: str, reader: Callable[[Path], T], path: Path) -> T:
+    """What a reader finds in a table; its mistakes are those of the key."""
+    try:
+        return reader(path)
+    except TableError as error:
+        raise RequestError(f"{key}: {error}") from None

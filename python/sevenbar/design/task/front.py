@@ -1,0 +1,254 @@
+"""Trade-offs of two wants: designs of which none is better in both, by bounding one and improving the other.
+
+With f the greatest error of a want, or what a measure is off, each point of the front solves
+
+    least f1    with f2 <= e                                                                          (1)
+
+for a bound e between what f2 is where f1 alone is best, and its own best (the epsilon constraint). Each
+begins at the designs found before it, next to it along the front.
+
+Source: Y. Haimes, L. Lasdon and D. Wismer, "On a bicriterion formulation of the problems of integrated system
+identification and system optimization", IEEE Trans. Systems, Man, and Cybernetics 1 (1971), 296-297.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.course import SearchCourse
+from sevenbar.design.task.check import TaskDesign
+from sevenbar.design.task.contradictions import refuse_contradictions
+from sevenbar.design.task.search import STARTS, DesignsFound, designed
+from sevenbar.design.task.task import (
+    DesignTask,
+    DwellWant,
+    FigureMust,
+    FigureWant,
+    FunctionWant,
+    Most,
+    Must,
+    PathWant,
+    PoseWant,
+    StraightWant,
+)
+from sevenbar.errors import RequestError, shown
+from sevenbar.kinematics.sensitivity import Numbers
+from sevenbar.text.progress import Progress, silent
+
+#: Points of a front, by default and at most.
+POINTS, MOST_POINTS = 9, 50
+
+#: The weight of a want that is bounded, not improved: enough to choose among equals.
+BESIDES = 1e-6
+
+#: Two points are one, and one is as good as the other, within this share of the front's extent.
+SAME = 1e-4
+
+#: Ends of a front this many times apart are joined by bounds in equal ratios.
+RATIO = 20.0
+
+
+@dataclass(frozen=True, eq=False)
+class ParetoPoint:
+    """A design of a front and its two values: errors [rad, or length], measures as they are read."""
+
+    values: tuple[float, float]
+    design: TaskDesign
+
+
+@dataclass(frozen=True, eq=False)
+class ParetoFront:
+    """The points of a front by rising first value; `wants` are the places of the two wants among the task's.
+
+    `solved` bounds were tried, `missing` of them without a design; `unfinished` says that the search was
+    stopped.
+    """
+
+    task: DesignTask
+    wants: tuple[int, int]
+    points: tuple[ParetoPoint, ...]
+    solved: int
+    missing: int
+    unfinished: str = ""
+
+    @property
+    def found(self) -> DesignsFound:
+        """The designs as those of a search."""
+        title = self.task.draft.linkage.name
+        designs = tuple(
+            replace(
+                point.design,
+                candidate=replace(
+                    point.design.candidate,
+                    draft=point.design.draft.with_value(("name",), f"{title}, front {i}"),
+                ),
+            )
+            for i, point in enumerate(self.points, 1)
+        )
+        return DesignsFound(self.task, designs, (), self.solved, self.unfinished)
+
+    @property
+    def values(self) -> Floats:
+        """The two values of each point (n, 2)."""
+        return np.array([point.values for point in self.points]).reshape(-1, 2)
+
+
+def pareto(
+    task: DesignTask,
+    first: int | str,
+    second: int | str,
+    *,
+    points: int = POINTS,
+    starts: int = STARTS,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> ParetoFront:
+    """The front of two wants of a task, each by its place, counted from 1, or by the name of its measure.
+
+    Errors count by the greatest, whatever the task's goal. `starts` linkages are tried for each end of the
+    front; between them each search begins at its neighbours. Raises `RequestError` for wants that there are
+    not, and where an end has no design. Ctrl+C ends it with what it has.
+    """
+    refuse_contradictions(task)
+    one, other = (_place(task, key, name) for key, name in (("first", first), ("second", second)))
+    if one == other:
+        raise RequestError(f"pareto: want {one + 1} is named twice; give two wants")
+    if not 3 <= points <= MOST_POINTS:
+        raise RequestError(f"points: {points} points make no front; give 3 to {MOST_POINTS}")
+    course = SearchCourse(points, progress)
+    kept: list[ParetoPoint] = []
+    solved = missing = 0
+    unfinished = ""
+
+    def search(bounded: int | None, bound: float, improved: int, given: Sequence[Floats], tries: int) -> int:
+        own = _bounded(task, (one, other), improved, bounded, bound)
+        found = designed(own, count=1, starts=tries, seed=seed, given=given)
+        for design in found.designs:
+            kept.append(ParetoPoint((_value(task, one, design), _value(task, other, design)), design))
+        course.step(f"{len(kept)} points")
+        return len(found.designs)
+
+    try:
+        for improved in (one, other):
+            if not search(None, math.inf, improved, [p.design.values for p in kept], starts):
+                raise RequestError(
+                    f"pareto: no design is found for want {improved + 1} alone; solve the task first, "
+                    "and ease what must hold"
+                )
+        low, high = sorted(point.values[1] for point in kept)
+        for bound in _bounds(low, high, points):
+            given = sorted(kept, key=lambda point: abs(point.values[1] - bound))
+            solved += 1
+            missing += not search(other, bound, one, [p.design.values for p in given[:3]], 0)
+    except KeyboardInterrupt:
+        if len(kept) < 2:
+            raise
+        unfinished = course.unfinished
+    return ParetoFront(task, (one, other), _front(task, (one, other), kept), solved + 2, missing, unfinished)
+
+
+def _place(task: DesignTask, key: str, given: int | str) -> int:
+    """The place of a want among the task's, counted from 0."""
+    names = [want.name if isinstance(want, FigureWant) else "" for want in task.wants]
+    count = len(task.wants)
+    if isinstance(given, str) and given in names:
+        return names.index(given)
+    number = int(given) if isinstance(given, int) or given.strip().isdecimal() else 0
+    if not 1 <= number <= count:
+        named = "".join(f", or {name}" for name in names if name)
+        raise RequestError(f"{key}: {shown(given)} is no want of the task; give 1 to {count}{named}")
+    return number - 1
+
+
+def _bounded(
+    task: DesignTask, pair: tuple[int, int], improved: int, bounded: int | None, bound: float
+) -> DesignTask:
+    """The task in which one want is improved, and another, perhaps, within a bound."""
+    wants = tuple(
+        replace(want, weight=BESIDES) if i in pair and i != improved else want
+        for i, want in enumerate(task.wants)
+    )
+    musts: tuple[Must, ...] = task.musts
+    if bounded is not None:
+        musts = (*musts, _must(task, bounded, bound))
+    return replace(task, wants=wants, musts=musts, goal="minimax")
+
+
+def _must(task: DesignTask, place: int, bound: float) -> Must:
+    """That a want's value is at most so great."""
+    want = task.wants[place]
+    if not isinstance(want, FigureWant):
+        return Most(place, bound / _unit(task, place))
+    if want.value == "small":
+        return FigureMust(want.name, most=bound)
+    if want.value == "great":
+        return FigureMust(want.name, least=-bound)
+    return FigureMust(want.name, float(want.value) - bound, float(want.value) + bound)
+
+
+def _value(task: DesignTask, place: int, design: TaskDesign) -> float:
+    """What a design makes of a want, the less the better: its greatest error, or its measure."""
+    want = task.wants[place]
+    if not isinstance(want, FigureWant):
+        return design.met[_sampled(task).index(place)].greatest
+    value = float(design.figures[want.name])
+    if want.value == "small":
+        return value
+    return -value if want.value == "great" else abs(value - float(want.value))
+
+
+def _sampled(task: DesignTask) -> list[int]:
+    return [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
+
+
+def _unit(task: DesignTask, place: int) -> float:
+    """What a want's residuals are relative to [rad, or length]."""
+    want = task.wants[place]
+    linkage = task.draft.linkage
+    match want:
+        case FigureWant():
+            return want.unit
+        case PathWant():
+            return float(np.ptp(want.places, axis=0).max())
+        case PoseWant():
+            return want.arm
+        case StraightWant(length=length) if length is not None:
+            return length
+        case FunctionWant() | DwellWant() if linkage.turns(linkage.drive.output):
+            return 1.0
+        case _:
+            return float(Numbers(linkage).size)
+
+
+def _bounds(low: float, high: float, points: int) -> Floats:
+    """Bounds between the ends of a front, from the wide one to the narrow one, the ends left out."""
+    if 0 < low * RATIO < high:
+        return np.geomspace(high, low, points)[1:-1]
+    return np.linspace(high, low, points)[1:-1]
+
+
+def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint]) -> tuple[ParetoPoint, ...]:
+    """The points of which none is better in both, each once, by rising first value.
+
+    Of a measure that shall be great the value is its negative here, and the measure itself in the answer.
+    """
+    ordered = sorted(kept, key=lambda point: point.values)
+    every = np.array([point.values for point in ordered]).reshape(-1, 2)
+    slack = SAME * np.ptp(every, axis=0) if len(every) else np.zeros(2)
+    best = math.inf
+    front: list[ParetoPoint] = []
+    for point in ordered:
+        if point.values[1] < best - slack[1]:
+            if front and point.values[0] - front[-1].values[0] <= slack[0]:
+                front.pop()
+            front.append(point)
+            best = point.values[1]
+    signs = [-1.0 if getattr(task.wants[place], "value", None) == "great" else 1.0 for place in pair]
+    return tuple(
+        replace(point, values=(signs[0] * point.values[0], signs[1] * point.values[1])) for point in front
+    )

@@ -1,0 +1,153 @@
+"""The loop of a task at any values of its free numbers: poses, and what is there with exact slopes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
+from sevenbar.kinematics.factors import Product
+from sevenbar.kinematics.following import Following
+from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
+from sevenbar.kinematics.word import Carried
+
+
+@dataclass(frozen=True, eq=False)
+class Here:
+    """A loop at closed poses (n, columns): columns and points (n, points, 3), with slopes (.., k + 1).
+
+    Slopes are by the k free numbers, then by the input. A ball's columns are its rotation in their slopes.
+    """
+
+    q: Floats
+    q_by: Floats
+    points: Floats
+    points_by: Floats
+
+    def part(self, rows: slice) -> Here:
+        """Some of its poses."""
+        return Here(self.q[rows], self.q_by[rows], self.points[rows], self.points_by[rows])
+
+    def along(self, inputs_by: Floats) -> Here:
+        """The same with slopes by free numbers and unknowns, by which the inputs change so (n, unknowns)."""
+
+        def chained(by: Floats) -> Floats:
+            own = inputs_by.reshape(len(inputs_by), *(1,) * (by.ndim - 2), -1)
+            return np.concatenate([by[..., :-1], by[..., -1:] * own], axis=-1)
+
+        return Here(self.q, chained(self.q_by), self.points, chained(self.points_by))
+
+
+class TaskLoop:
+    """The loop of a draft whose `free` numbers, by name, may change; `values` (k,) are theirs.
+
+    Points of which something is wanted are known by their number.
+    A coupler that the draft leaves out follows unless it is one of the free numbers.
+    """
+
+    def __init__(self, draft: Draft, free: Sequence[str]) -> None:
+        self.draft, self.linkage = draft, draft.linkage
+        self.numbers = Numbers(self.linkage)
+        places = {d.name: i for i, d in enumerate(self.numbers.dimensions)}
+        self.free = [places[name] for name in free]
+        self.input = self.linkage.columns.index(self.linkage.drive.joint)
+        self.output = self.linkage.columns.index(self.linkage.drive.output)
+        #: The longest dimension [length], and what is 1 of each column: a radian, or the size.
+        self.size, self.units = self.numbers.size, self.numbers.scales
+        #: What is 1 of each free number, as a radian is of an angle.
+        self.scales = self.numbers.units[self.free]
+        self.coupler = Following.among(self.numbers.dimensions, self.free)
+        self._points: dict[Carried, int] = {}
+        self._loop: tuple[bytes, NumberedLoop] | None = None
+
+    @property
+    def start(self) -> Floats:
+        """The description's own values (k,)."""
+        return self.numbers.nominal[self.free]
+
+    def named(self, name: str) -> int:
+        """The number of a named point."""
+        return [point.name for point in self.linkage.points].index(name)
+
+    def place(self, link: int, at: tuple[float, float, float]) -> int:
+        """The number of a place on a link, as points of it are written."""
+        steps, frame = self.numbers.word.carrier(link)
+        return self._number(Carried(steps, frame, None, at))
+
+    def joint(self, place: int, *, ahead: bool) -> int:
+        """The number of the place of a joint, counted from 0, on the link `ahead` of it, or behind it."""
+        word = self.numbers.word
+        first = sum(map(len, word.freedoms[:place]))
+        if ahead:
+            return self._number(Carried(first + len(word.freedoms[place]), Product(())))
+        return self._number(Carried(first, word.fixed[first]))
+
+    def _number(self, carried: Carried) -> int:
+        if carried not in self._points:
+            self._points[carried] = len(self.numbers.points)
+            self.numbers.points.append(carried)
+            self._loop = None
+        return self._points[carried]
+
+    def whole(self, values: Floats) -> Floats:
+        """All numbers of the description (all,)."""
+        found = self.numbers.nominal.copy()
+        found[self.free] = values
+        return found if self.coupler is None else self.coupler.whole(found)
+
+    def at(self, values: Floats) -> NumberedLoop:
+        """The loop of these values, kept for the next question."""
+        key = values.tobytes()
+        if self._loop is None or self._loop[0] != key:
+            only = [*self.free, *([self.coupler.own] if self.coupler else ())]
+            self._loop = key, self.numbers.loop(self.input, self.whole(values), only)
+        return self._loop[1]
+
+    def poses(self, values: Floats, q: Floats) -> Floats:
+        """Rows of the analysis (n, columns) as poses of the loop."""
+        return self.numbers.poses(q, self.whole(values))
+
+    def closed(self, values: Floats, x: Floats, q: Floats) -> Floats:
+        """The poses (n, columns) at inputs x (n,), by Newton's method from those nearby; NaN where lost."""
+        return np.asarray(self.at(values).followed(x, q)[0][0])
+
+    def here(self, values: Floats, q: Floats) -> Here:
+        """What is at closed poses (n, columns); NaN at dead centres of the input."""
+        found = self.at(values).slopes(q, 0)
+        by_q = np.moveaxis(found.by_number[:, 0], 1, 2)
+        by_points = np.moveaxis(found.points_by_number[:, :, 0], 2, 3)
+        return Here(
+            q,
+            np.concatenate([self._led(values, by_q), found.by_input[:, 0, :, None]], axis=2),
+            found.points[:, :, 0],
+            np.concatenate([self._led(values, by_points), found.points_by_input[:, :, 0, :, None]], axis=3),
+        )
+
+    def _led(self, values: Floats, by: Floats) -> Floats:
+        """Slopes (.., k + 1), those by the coupler passed on to what it follows from."""
+        if self.coupler is None:
+            return by
+        found = by[..., :-1].copy()
+        whole = self.whole(values)
+        for number, part in zip(self.coupler.leaders, self.coupler.slopes(whole), strict=True):
+            if number in self.free:
+                found[..., self.free.index(number)] += part * by[..., -1]
+        return found
+
+    def all_slopes(self, values: Floats, by: Floats) -> Floats:
+        """Slopes (.., all) by all numbers of the description, as slopes (.., k) by the free ones."""
+        by = by if self.coupler is None else self.coupler.chained(by, self.whole(values))
+        return np.asarray(by[..., self.free])
+
+    def openings(self, values: Floats, q: Floats) -> list[int]:
+        """The free numbers that cannot change alone without opening the loop, at closed poses."""
+        opening = self.at(values).slopes(q, 0).opening
+        return [i for i, opens in enumerate(opening[: len(self.free)]) if opens]
+
+    def drawn(self, values: Floats) -> Draft:
+        """The draft with these values (k,)."""
+        names = [self.numbers.names[i] for i in self.free]
+        return self.draft.with_values(dict(zip(names, map(float, values), strict=True)))

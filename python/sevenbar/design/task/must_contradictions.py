@@ -1,0 +1,176 @@
+"""What of a task's musts contradicts itself, its linkage, or its wants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from sevenbar.design.task.task import (
+    Apart,
+    DesignTask,
+    FigureMust,
+    FigureWant,
+    FunctionWant,
+    InBox,
+    InCone,
+    InRange,
+    Most,
+    Must,
+    PathWant,
+)
+from sevenbar.errors import RequestError, no_joint, shown, suggestion
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.measures import FORCE_MEASURES, JOINT_MEASURES, MEASURES, measures_named
+
+#: Messages, each with the key that it is of; "" for a whole table.
+Flaws = Iterator[tuple[str, str]]
+
+#: Kinds of joints that have a cone.
+BENDING = ("S", "U")
+
+
+def of_must(task: DesignTask, must: Must) -> Flaws:
+    """What is wrong with a must."""
+    linkage = task.draft.linkage
+    match must:
+        case InRange():
+            yield from _range(task, must)
+        case InCone():
+            yield from _cone(linkage, must)
+        case InBox():
+            yield from _box(task, must)
+        case Apart():
+            yield from _apart(linkage, must)
+        case FigureMust():
+            yield from _figure(task, must)
+        case Most():
+            yield from _most(task, must)
+
+
+def figure_flaw(linkage: Linkage, name: str) -> str:
+    """Why a measure cannot be wanted; empty for one that can."""
+    try:
+        (measure,) = measures_named([name])
+    except RequestError:
+        numbers = [n for n, m in MEASURES.items() if m.quantity != "word"]
+        known = [*numbers, *FORCE_MEASURES, *(f"{kind}:JOINT" for kind in JOINT_MEASURES)]
+        return f"{shown(name)} is not a measure; {suggestion(name, known)}give one of {', '.join(known)}"
+    if measure.quantity == "word":
+        return f"'{name}' is a word, not a number; give limits.motion_type"
+    kind, _, joint = name.partition(":")
+    names = [known.name for known in linkage.joints]
+    if kind in JOINT_MEASURES and joint not in names:
+        return no_joint(joint, names)
+    if (name in FORCE_MEASURES or kind in JOINT_MEASURES) and linkage.loading.is_empty:
+        return "nothing acts on the linkage: no body, load or spring; write them into its file"
+    if name.startswith("transmission") and linkage.form != "rssr" and not _transmits(linkage):
+        return "this linkage has no transmission angle; leave it out"
+    return ""
+
+
+def _transmits(linkage: Linkage) -> bool:
+    """Whether the linkage has a transmission angle: as its circuits have it."""
+    return any(circuit.transmission is not None for circuit in linkage.motion(12).circuits)
+
+
+def _range(task: DesignTask, must: InRange) -> Flaws:
+    linkage = task.draft.linkage
+    try:
+        column = linkage.column(must.column, "joint")
+    except RequestError as error:
+        yield "joint", str(error).removeprefix("joint: ")
+        return
+    if not must.low < must.high:
+        yield "range", "its first end is not below its second one; give the lower end first"
+        return
+    drive = (linkage.drive.joint, linkage.drive.output)
+    name = linkage.columns[column]
+    for i, want in enumerate(task.wants):
+        if not isinstance(want, FunctionWant) or name not in drive or linkage.turns(column):
+            # angles may be a turn further
+            continue
+        which = drive.index(name)
+        zero = want.zeros[which]
+        values = want.input if which == 0 else want.output
+        if zero is not None and (zero + values.min() < must.low or zero + values.max() > must.high):
+            yield "range", f"want {i + 1} needs {name} outside it; widen it, or want less"
+
+
+def _cone(linkage: Linkage, must: InCone) -> Flaws:
+    kinds = {joint.name: joint.kind for joint in linkage.joints}
+    bending = [name for name, kind in kinds.items() if kind in BENDING]
+    if must.joint not in kinds:
+        yield "joint", no_joint(must.joint, list(kinds))
+    elif must.joint not in bending:
+        has = f"give one of {', '.join(bending)}" if bending else "this linkage has none; give a range"
+        yield "joint", f"'{must.joint}' is neither a ball nor a U joint, so it has no cone; {has}"
+    if not 0 < must.angle < math.pi:
+        yield "angle", f"{math.degrees(must.angle):g} deg is no cone; give an angle above 0 and below 180 deg"
+    for key, direction in (("seat", must.seat), ("stud", must.stud)):
+        if direction is not None and not math.hypot(*direction) > 0:
+            yield key, "has no direction; give three numbers, not all 0"
+
+
+def _box(task: DesignTask, must: InBox) -> Flaws:
+    linkage = task.draft.linkage
+    for axis, low, high in zip("xyz", must.low, must.high, strict=True):
+        if not low < high:
+            yield "low", f"empty along {axis}: {low:g} is not below {high:g}; give the lower corner in low"
+    known = [*(p.name for p in linkage.points), *(j.name for j in linkage.joints)]
+    if not must.names:
+        yield "names", f"none given; give some of {', '.join(known)}"
+    for name in must.names:
+        if name not in known:
+            yield (
+                "names",
+                f"no point or joint {shown(name)}; {suggestion(name, known)}"
+                f"this linkage has {', '.join(known)}",
+            )
+    for i, want in enumerate(task.wants):
+        if isinstance(want, PathWant) and want.point in must.names and task.placement == "fixed":
+            out = ((want.places < must.low) | (want.places > must.high)).any(axis=1)
+            if out.any():
+                place = int(np.flatnonzero(out)[0]) + 1
+                yield "names", f"place {place} of want {i + 1} lies outside the box; widen it, or want less"
+
+
+def _apart(linkage: Linkage, must: Apart) -> Flaws:
+    count = len(linkage.joints)
+    first, second = must.links
+    outside = [link for link in must.links if not 1 <= link <= count]
+    if outside:
+        yield "links", f"{outside[0]} is not a link; give 1 to {count}, the last is the ground"
+    elif first == second:
+        yield "links", f"{first} is named twice; give two links"
+    elif (first - second) % count in (1, count - 1):
+        yield "links", f"{first} and {second} meet in a joint, so their distance is 0; give links that do not"
+    if not must.least > 0:
+        yield "least", f"{must.least:g} is no distance; give a length > 0"
+
+
+def _figure(task: DesignTask, must: FigureMust) -> Flaws:
+    if flaw := figure_flaw(task.draft.linkage, must.name):
+        yield "name", flaw
+        return
+    least = -math.inf if must.least is None else must.least
+    most = math.inf if must.most is None else must.most
+    if must.least is None and must.most is None:
+        yield "", "has no end; give least, most, or both"
+    elif not least <= most:
+        yield "least", f"{least:g} is above the most, {most:g}; give the lower end in least"
+    for i, want in enumerate(task.wants):
+        same = isinstance(want, FigureWant) and want.name == must.name and not isinstance(want.value, str)
+        if same and not least <= want.value <= most:  # type: ignore[union-attr, operator]
+            yield "name", f"want {i + 1} wants it outside these ends; widen them, or want another value"
+
+
+def _most(task: DesignTask, must: Most) -> Flaws:
+    count = len(task.wants)
+    if not 0 <= must.want < count:
+        yield "want", f"{must.want + 1} is not a want; give its place, 1 to {count}"
+    elif isinstance(task.wants[must.want], FigureWant):
+        yield "want", "is a figure; bound it by a must with kind = 'figure', least and most"
+    if not must.most > 0:
+        yield "most", f"{must.most:g} is no bound; give a number > 0"

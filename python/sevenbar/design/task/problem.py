@@ -1,0 +1,478 @@
+"""A task at its unknowns: residuals and rooms with exact slopes, about poses that are followed.
+
+The unknowns z are the free numbers, then the own ones of each want (free inputs, phases, zeros), each
+relative to its unit. Where the linkage may stand anywhere, each evaluation is placed anew. What is left is
+then square to every small rigid motion B of the places, so with the part of the slopes along B taken off the
+gradient of the sum of squares stays exact (variable projection). For the greatest residual, where that does
+not hold, the placing is six unknowns more.
+
+Source: docs/theory_design.md, (29).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.synthesis.limits import INPUT_TURNS, transmission_room, turning_room
+from sevenbar.design.synthesis.path.match import STILL, Placing, placed
+from sevenbar.design.task.loop import Here, TaskLoop
+from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
+from sevenbar.design.task.task import (
+    DesignTask,
+    FigureMust,
+    FigureWant,
+    Most,
+    PathWant,
+    PoseWant,
+    SampledWant,
+    StraightWant,
+)
+from sevenbar.design.task.wants.figures import Figures, figure_left
+from sevenbar.design.task.wants.joints import ReadingsWanted
+from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.design.task.wants.straight import LineWanted
+from sevenbar.design.task.wants.wanted import Stations, Wanted
+
+#: A step after which a passive joint is further away [rad, or of the size] has left its branch.
+LONGEST_STEP = 1.2
+
+#: Poses of a want, with those between its stations, at which musts are held.
+HELD = 73
+
+#: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
+FLAT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class TaskSeed:
+    """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
+
+    `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
+    input gains in a round of the circuit, 0 where it does not go round.
+    """
+
+    values: Floats
+    own: tuple[Floats, ...]
+    poses: Floats
+    anchor: Floats
+    error: float
+    placing: Placing = STILL
+    period: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class TaskValues:
+    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes, and the placing."""
+
+    left: Floats
+    left_by: Floats
+    room: Floats
+    room_by: Floats
+    placing: Placing
+
+
+class TaskModel:
+    """The parts of a task that stay as they are: its loop, its wants and musts in it."""
+
+    def __init__(self, task: DesignTask) -> None:
+        self.task = task
+        self.loop = loop = TaskLoop(task.draft.holding(task.follow), task.names)
+        self.wanted: list[Wanted] = [
+            self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
+        ]
+        self.figure_wants = [want for want in task.wants if isinstance(want, FigureWant)]
+        #: The places among the task's wants of those at poses.
+        self.sampled = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
+        self.figure_musts = [must for must in task.musts if isinstance(must, FigureMust)]
+        names = [w.name for w in self.figure_wants] + [m.name for m in self.figure_musts]
+        self.figures = Figures(loop, list(dict.fromkeys(names)))
+        self.rooms = pose_rooms(loop, task.musts)
+        self.placed = task.placement != "fixed"
+        linkage = loop.linkage
+        closed_form = linkage.form == "rssr" and loop.input == 0
+        self.transmits = closed_form and task.limits.transmission_lowest > 0
+        self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
+        #: Which of the wants have been asked to stay within a greatest residual.
+        self.most = {self.sampled.index(m.want): m.most for m in task.musts if isinstance(m, Most)}
+
+    @staticmethod
+    def _wanted(loop: TaskLoop, want: SampledWant) -> Wanted:
+        if isinstance(want, (PathWant, PoseWant)):
+            return PlacesWanted(loop, want)
+        if isinstance(want, StraightWant):
+            return LineWanted(loop, want)
+        return ReadingsWanted(loop, want)
+
+    @property
+    def holds(self) -> bool:
+        """Whether anything must hold at poses between the stations."""
+        return bool(self.rooms or self.transmits)
+
+
+class TaskProblem:
+    """A task about a seed; `minimax` for the greatest residual, with the placing among the unknowns."""
+
+    def __init__(self, model: TaskModel, seed: TaskSeed, *, minimax: bool = False) -> None:
+        self.model, self.loop = model, model.loop
+        self._poses, self._anchor = seed.poses, seed.anchor
+        self._period = seed.period
+        self._base, self._turned = seed.placing, minimax and model.placed
+        self._k = k = len(seed.values)
+        scales = [model.loop.scales, *(one.stations.scales for one in model.wanted)]
+        starts = [seed.values, *seed.own]
+        if self._turned:
+            scales.append(np.array([1.0, 1.0, 1.0, *[model.loop.size] * 3]))
+            starts.append(np.zeros(6))
+        self.scales = np.concatenate(scales)
+        self.start = np.concatenate(starts) / self.scales
+        ends = np.cumsum([k, *(len(own) for own in seed.own)])
+        self._own = [slice(a, b) for a, b in pairwise(ends)]
+        self.low, self.high = (np.full(len(self.start), way * math.inf) for way in (-1, 1))
+        self.low[:k], self.high[:k] = (
+            bound / model.loop.scales for bound in (model.task.low, model.task.high)
+        )
+        #: Which way the inputs of each want go, and by how much they may in all [rad].
+        self._senses = [
+            _sense(one.stations.inputs(own)) for one, own in zip(model.wanted, seed.own, strict=True)
+        ]
+        self._periods = [way * seed.period for way in self._senses]
+        self._stations = self._all_stations()
+        if len(self._poses) < len(self._stations.fixed):
+            self._poses = self._between(seed)
+        places = [one.places.reshape(-1, 3) for _, one in self._places()]
+        self._middle = np.concatenate(places).mean(axis=0) if places else np.zeros(3)
+        self._taken: tuple[bytes, TaskValues | None] = b"", None
+        self._asked: tuple[bytes, Floats | None] | None = None
+        self._known: tuple[bytes, TaskValues | None] | None = None
+
+    # ---- the inputs at which the linkage is seen
+
+    def _all_stations(self) -> Stations:
+        """Those of the wants, then those between them where something must hold there."""
+        width = len(self.start)
+        fixed, by = [np.empty(0)], [np.empty((0, width))]
+        held: list[tuple[Floats, Floats]] = []
+        self._rows: list[slice] = []
+        count = 0
+        for one, place in zip(self.model.wanted, self._own, strict=True):
+            steady = one.stations.fixed
+            matrix = np.zeros((len(steady), width))
+            matrix[:, place] = one.stations.by * one.stations.scales
+            fixed.append(steady)
+            by.append(matrix)
+            self._rows.append(slice(count, count + len(steady)))
+            count += len(steady)
+            if self.model.holds and one.stations.ordered:
+                held += _spread(steady, matrix, one.stations, self._periods[len(self._rows) - 1])
+        self._count = count
+        return Stations(
+            np.concatenate([*fixed, *(part for part, _ in held)]),
+            np.concatenate([*by, *(part for _, part in held)]),
+            np.ones(width),
+        )
+
+    def _between(self, seed: TaskSeed) -> Floats:
+        """Poses of all stations, those between followed from the nearest."""
+        inputs = self._stations.inputs(self.start)
+        known = self.loop.closed(seed.values, inputs[: self._count], seed.poses)
+        more = inputs[self._count :]
+        from_row = np.abs(more[:, None] - inputs[: self._count]).argmin(axis=1)
+        return np.concatenate([known, self.loop.at(seed.values).closed(more, known[from_row])])
+
+    def size(self, z: Floats) -> float:
+        """The root of the weighted mean squares at z; infinite where there are none."""
+        here = self.at(z)
+        return math.inf if here is None else float(np.linalg.norm(here.left))
+
+    def values(self, z: Floats) -> Floats:
+        """The free numbers (k,)."""
+        return np.asarray(z[: self._k] * self.scales[: self._k])
+
+    def own(self, z: Floats) -> tuple[Floats, ...]:
+        """The unknowns of each want."""
+        return tuple(z[place] * self.scales[place] for place in self._own)
+
+    def inputs(self, z: Floats) -> list[Floats]:
+        """The inputs (n,) of each want."""
+        inputs = self._stations.inputs(z)
+        return [inputs[rows] for rows in self._rows]
+
+    def poses(self, z: Floats) -> Floats | None:
+        """The closed poses (n, columns) of all stations, from those last taken; `None` off the branch."""
+        key = z.tobytes()
+        if self._asked is None or self._asked[0] != key:
+            poses = self.loop.closed(self.values(z), self._stations.inputs(z), self._poses)
+            step = np.abs(poses - self._poses) / self.loop.units
+            step[:, self.loop.input] = 0.0
+            good = bool(np.isfinite(poses).all()) and bool((step <= LONGEST_STEP).all())
+            self._asked = key, poses if good else None
+        return self._asked[1]
+
+    def take(self, z: Floats) -> None:
+        """Later poses are followed from those at z."""
+        poses = self.poses(z)
+        self._taken = z.tobytes(), self.at(z)
+        if poses is not None:
+            self._poses = poses
+            if len(poses):
+                self._anchor = poses[0]
+
+    def seed(self, z: Floats) -> TaskSeed:
+        """The start that z is."""
+        found = self.at(z)
+        self.take(z)
+        placing = STILL if found is None else found.placing
+        return TaskSeed(
+            self.values(z),
+            self.own(z),
+            self._poses[: self._count],
+            self._anchor,
+            math.nan,
+            placing,
+            self._period,
+        )
+
+    # ---- what is left there
+
+    def at(self, z: Floats) -> TaskValues | None:
+        """Residuals and rooms at z; `None` where the linkage does not close on its branch."""
+        key = z.tobytes()
+        if key == self._taken[0]:
+            # at the edge of where the linkage closes it may not be found twice
+            return self._taken[1]
+        if self._known is None or self._known[0] != key:
+            self._known = key, self._at(z)
+        return self._known[1]
+
+    def _at(self, z: Floats) -> TaskValues | None:
+        poses = self.poses(z)
+        if poses is None:
+            return None
+        values, own = self.values(z), self.own(z)
+        here = self.loop.here(values, poses)
+        parts = []
+        for one, u, rows, place in zip(self.model.wanted, own, self._rows, self._own, strict=True):
+            left, by = one.left(here.part(rows).along(one.stations.by), u)
+            wide = np.zeros((*by.shape[:-1], len(z)))
+            wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
+            parts.append((left, wide * self.scales))
+        placing = self._placing(z, [left for left, _ in parts])
+        lefts, slopes = self._placed(z, parts, placing)
+        rooms, rooms_by = self._rooms(z, here, list(zip(lefts, slopes, strict=True)))
+        figures = self._figures(values)
+        if figures is None:
+            return None
+        room = np.concatenate([*rooms, figures[2]])
+        room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
+        weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
+        found = TaskValues(
+            np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]]),
+            np.concatenate([*(w * r for w, r in zip(weights, slopes, strict=True)), self._wide(figures[1])]),
+            room,
+            room_by,
+            placing,
+        )
+        good = all(np.isfinite(part).all() for part in (found.left, found.left_by, room, room_by))
+        return found if good else None
+
+    def _wide(self, by: Floats) -> Floats:
+        """Slopes (r, k) by the free numbers as those by all unknowns."""
+        found = np.zeros((len(by), len(self.start)))
+        found[:, : self._k] = by * self.scales[: self._k]
+        return found
+
+    def _places(self) -> list[tuple[int, PlacesWanted]]:
+        return [(i, one) for i, one in enumerate(self.model.wanted) if isinstance(one, PlacesWanted)]
+
+    def _placing(self, z: Floats, found: Sequence[Floats]) -> Placing:
+        if not self.model.placed:
+            return STILL
+        if self._turned:
+            return self._moved(z)
+        own = self._places()
+        shares = [np.full(len(found[i]), (one.weight / one.unit) ** 2 / one.count) for i, one in own]
+        return placed(
+            np.concatenate([one.places.reshape(-1, 3) for _, one in own]),
+            np.concatenate([found[i] for i, _ in own]),
+            shares=np.concatenate(shares),
+        )
+
+    def _placed(
+        self, z: Floats, parts: Sequence[tuple[Floats, Floats]], placing: Placing
+    ) -> tuple[list[Floats], list[Floats]]:
+        """Residuals and slopes of every want, those of places as the linkage is placed."""
+        left, slopes = [part[0] for part in parts], [part[1] for part in parts]
+        own = self._places()
+        for i, one in own:
+            put = placing.put(left[i])
+            by = np.einsum("ij,njk->nik", placing.rotation, slopes[i])
+            if self._turned:
+                by[..., -6:] = self._by_moves(z, put)
+            left[i] = (put - one.places.reshape(-1, 3)).ravel() / one.unit
+            slopes[i] = by.reshape(-1, len(z)) / one.unit
+        if self.model.placed and not self._turned:
+            self._project(own, parts, placing, slopes)
+        return left, slopes
+
+    def _project(
+        self,
+        own: Sequence[tuple[int, PlacesWanted]],
+        parts: Sequence[tuple[Floats, Floats]],
+        placing: Placing,
+        slopes: list[Floats],
+    ) -> None:
+        """Takes off the slopes what a small rigid motion of all places does."""
+        puts = [placing.put(parts[i][0]) for i, _ in own]
+        every = np.concatenate(puts)
+        weights = [
+            np.full(3 * len(put), one.weight / math.sqrt(one.count))
+            for put, (_, one) in zip(puts, own, strict=True)
+        ]
+        units = [np.full(3 * len(put), one.unit) for put, (_, one) in zip(puts, own, strict=True)]
+        weight = np.concatenate(weights)[:, None]
+        moves = weight / np.concatenate(units)[:, None] * rigid_moves(every - every.mean(axis=0))
+        basis, sizes, _ = np.linalg.svd(moves, full_matrices=False)
+        basis = basis[:, sizes > FLAT * sizes[0]]
+        joined = weight * np.concatenate([slopes[i] for i, _ in own])
+        joined = (joined - basis @ (basis.T @ joined)) / weight
+        ends = np.cumsum([0, *(3 * len(put) for put in puts)])
+        for (i, _), first, last in zip(own, ends[:-1], ends[1:], strict=True):
+            slopes[i] = joined[first:last]
+
+    def _moved(self, z: Floats) -> Placing:
+        """The placing moved by the last six unknowns: a turn about the middle of the places, and a shift."""
+        turn, shift = np.split(z[-6:] * self.scales[-6:], 2)
+        rotation = rotation_of_vector(turn)
+        at = rotation @ (self._base.shift - self._middle) + self._middle + shift
+        return Placing(rotation @ self._base.rotation, at, self._base.scale)
+
+    def _by_moves(self, z: Floats, put: Floats) -> Floats:
+        """The slopes (n, 3, 6) of places (n, 3) as put, by these unknowns."""
+        turn, shift = np.split(z[-6:] * self.scales[-6:], 2)
+        own = put - self._middle - shift
+        by = np.zeros((len(put), 3, 6))
+        by[:, :, :3] = np.cross(left_jacobian(turn).T[None], own[:, None], axis=2).swapaxes(1, 2)
+        by[:, :, 3:] = np.eye(3)
+        return np.asarray(by * self.scales[-6:])
+
+    # ---- what must hold
+
+    def _rooms(
+        self, z: Floats, here: Here, wants: Sequence[tuple[Floats, Floats]]
+    ) -> tuple[list[Floats], list[Floats]]:
+        rooms, slopes = [np.empty(0)], [np.empty((0, len(z)))]
+        if self.model.rooms:
+            wide = here.along(self._stations.by)
+            for _, room in self.model.rooms:
+                values, by = room(wide)
+                rooms.append(values.ravel())
+                slopes.append(self._joined(by.reshape(-1, by.shape[-1])))
+        if self.model.transmits or self.model.turns:
+            for values, by in self._transmission(z):
+                rooms.append(values)
+                slopes.append(by)
+        for i, one in enumerate(self.model.wanted):
+            if one.stations.free:
+                values, by = self._order(z, i)
+                rooms.append(values)
+                slopes.append(by)
+        for i, most in self.model.most.items():
+            left, by = wants[i]
+            rooms += [most - left, most + left]
+            slopes += [-by, by]
+        return rooms, slopes
+
+    def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
+        """The ways between free inputs that follow each other, a round at most, in the seed's sense."""
+        inputs, by = self.inputs(z)[number], self._stations.by[self._rows[number]]
+        steps, steps_by = np.diff(inputs), np.diff(by, axis=0)
+        period = self._periods[number]
+        if period:
+            steps = np.append(steps, inputs[0] + period - inputs[-1])
+            steps_by = np.concatenate([steps_by, by[:1] - by[-1:]])
+        way, unit = self._senses[number], float(self.loop.units[self.loop.input])
+        return way * steps / unit, way * steps_by / unit
+
+    def _joined(self, by: Floats) -> Floats:
+        """Slopes (r, k + all unknowns), those by the free numbers and through the inputs, by all unknowns."""
+        found = by[:, self._k :].copy()
+        found[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
+        return found
+
+    def _transmission(self, z: Floats) -> list[tuple[Floats, Floats]]:
+        """The transmission angle of an RSSR over what is used, and that its input turns."""
+        loop, limits = self.loop, self.model.task.limits
+        places = {d.place[1]: i for i, d in enumerate(loop.numbers.dimensions) if d.place[0] == "rssr"}
+        columns = [places[key] for key in ("M", "N", "L1", "L2", "L3", "D")]
+        row = loop.whole(self.values(z))[columns]
+
+        def wide(by_row: Floats) -> Floats:
+            every = np.zeros((len(by_row), len(loop.numbers.names)))
+            every[:, columns] = by_row
+            return self._wide(loop.all_slopes(self.values(z), every))
+
+        found = []
+        if self.model.transmits and len(self._stations.fixed):
+            room, by_row, by_input = transmission_room(row, self._stations.inputs(z), limits)
+            found.append((room, wide(by_row) + by_input[:, None] * self._stations.by))
+        if self.model.turns:
+            room, by_row = turning_room(row)
+            found.append((room, wide(by_row)))
+        return found
+
+    def _figures(self, values: Floats) -> tuple[Floats, Floats, Floats, Floats] | None:
+        """Residuals of figures, rooms of figures, each with its slopes by the free numbers."""
+        model = self.model
+        none = np.empty((0, self._k))
+        if not model.figures.names:
+            return np.empty(0), none, np.empty(0), none
+        found = model.figures.at(values, self._anchor)
+        if found is None:
+            return None
+        read, by = found
+        place = {name: i for i, name in enumerate(model.figures.names)}
+        left, slopes, rooms, rooms_by = [], [none], [], [none]
+        for want in model.figure_wants:
+            value, own = figure_left(want, read[place[want.name]], by[place[want.name]])
+            left.append(want.weight * value)
+            slopes.append(want.weight * own[None])
+        for must in model.figure_musts:
+            value, own = read[place[must.name]], by[place[must.name]]
+            for way, end in ((1.0, must.least), (-1.0, must.most)):
+                if end is not None:
+                    unit = max(abs(end), 1e-3)
+                    rooms.append(way * (value - end) / unit)
+                    rooms_by.append(way * own[None] / unit)
+        return np.array(left), np.concatenate(slopes), np.array(rooms), np.concatenate(rooms_by)
+
+
+def _sense(inputs: Floats) -> float:
+    """Which way inputs go, by most of their steps."""
+    return 1.0 if (np.diff(inputs) >= 0).sum() * 2 >= len(inputs) - 1 else -1.0
+
+
+def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> list[tuple[Floats, Floats]]:
+    """Inputs between those of a want, as many between any two: their fixed parts and slopes."""
+    n = len(steady)
+    if n < 2:
+        return []
+    each = max(math.ceil(HELD / n), 2)
+    found = []
+    for j in range(n if stations.round else n - 1):
+        then = (j + 1) % n
+        gain = 0.0 if then else period
+        for share in np.arange(1, each) / each:
+            found.append(
+                (
+                    np.array([(1 - share) * steady[j] + share * (steady[then] + gain)]),
+                    ((1 - share) * by[j] + share * by[then])[None],
+                )
+            )
+    return found

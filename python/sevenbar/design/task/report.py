@@ -1,0 +1,310 @@
+"""Designs of a task as people and programs read them: printed, as JSON, as a folder of files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sevenbar.design.synthesis.candidates import Candidate
+from sevenbar.design.synthesis.files import design_files
+from sevenbar.design.task.along import DesignAlong
+from sevenbar.design.task.check import TaskDesign
+from sevenbar.design.task.figures import musts_figure, want_figure
+from sevenbar.design.task.search import DesignsFound
+from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
+from sevenbar.design.task.words import must_words, task_facts, want_words
+from sevenbar.errors import RequestError
+from sevenbar.reporting.files import Report, figure_files
+from sevenbar.reporting.page import Facts, number_table
+
+#: What may be given up where a kind of fault is the commonest.
+EASE = {
+    "assembly": "wider bounds, more starts, or another start",
+    "circuit": "wider bounds, or more starts: the poses lie on two circuits",
+    "dead centre": "another joint as the input, or wider bounds",
+    "order": "more starts, or another order",
+    "error": "a greater `most`, fewer exact points, or more free numbers",
+    "transmission": "a smaller least transmission angle",
+    "size": "a wider range of sizes",
+    "motion type": "another motion type, or any",
+    "range": "a wider range of the joint",
+    "cone": "a wider cone, or another seat",
+    "box": "a larger box",
+    "distance": "a smaller distance of the links",
+    "figure": "other ends of the measure",
+}
+
+#: Numbers in a printed table, side by side.
+ACROSS = 7
+
+#: A free number this near to its bound, relative to the range, lies on it.
+ON_BOUND = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class TaskDesigns:
+    """What a search found, with the name and source of the task and what the search was given."""
+
+    found: DesignsFound
+    name: str
+    source: str
+    starts: int
+    seed: int
+
+    @property
+    def task(self) -> DesignTask:
+        """The task."""
+        return self.found.task
+
+    @property
+    def unfinished(self) -> str:
+        """That the search was stopped; empty where it ended."""
+        return self.found.unfinished
+
+    @cached_property
+    def candidates(self) -> Sequence[Candidate]:
+        """The designs with all that is reported of them as columns."""
+        return tuple(
+            replace(
+                one.candidate,
+                claim=replace(one.candidate.claim, figures=design_figures(self.task, one)),
+            )
+            for one in self.found.designs
+        )
+
+    def required(self) -> None:
+        """Raises `RequestError` where nothing was found: what was nearest, and what to ease."""
+        if self.found.designs:
+            return
+        tried = f"{self.starts + 1} linkage{'s' * (self.starts > 0)}"
+        if not self.found.starts:
+            raise RequestError(
+                f"design: none of {tried} within the bounds can begin: no pass of a circuit has what is "
+                "wanted without a dead centre of the input; give wider bounds, more starts, or another joint "
+                "as the input"
+            )
+        if not self.found.refusals:
+            raise RequestError(
+                f"design: {tried} gave {self.found.starts} ways to begin, and none could be followed; give "
+                "wider bounds, or more starts"
+            )
+        faults = list(dict.fromkeys(refusal.fault for refusal in self.found.refusals))
+        ease = "; or ".join(dict.fromkeys(EASE[fault] for fault in faults))
+        raise RequestError(
+            f"design: nothing does what is asked; of {tried} {len(self.found.refusals)} were solved, "
+            f"refused: {self.found.refused}; the nearest: {self.found.refusals[0].detail}; give {ease}"
+        )
+
+
+def design_figures(task: DesignTask, design: TaskDesign) -> dict[str, float]:
+    """Numbers of a design besides those of its first want: names end in the unit."""
+    figures = dict(design.candidate.claim.figures)
+    along = DesignAlong(task, design)
+    linkage = task.draft.linkage
+    for number, ((place, want, _), met) in enumerate(zip(along.wants, design.met, strict=True)):
+        unit, scale = ("deg", 180 / math.pi) if met.unit == "rad" else (met.unit, 1.0)
+        own = f"want_{place + 1}_" if len(task.wants) > 1 else ""
+        if own:
+            figures[f"{own}greatest_{unit}"] = met.greatest * scale
+            figures[f"{own}rms_{unit}"] = met.rms * scale
+        if isinstance(want, FunctionWant):
+            zeros = along.zeros(number)
+            for key, zero, column in zip(
+                ("input_zero", "output_zero"), zeros, (linkage.drive.joint, linkage.drive.output), strict=True
+            ):
+                turns = linkage.turns(column)
+                figures[f"{own}{key}_{'deg' if turns else linkage.length_unit}"] = (
+                    math.degrees(zero) if turns else zero
+                )
+        if isinstance(want, DwellWant):
+            figures[f"{own}level_{unit}"] = along.zeros(number)[1] * scale
+    figures |= design.figures
+    figures |= {"cost": design.cost, "kkt_residual": design.optimality}
+    if math.isfinite(design.room):
+        figures["least_room"] = design.room
+    return figures
+
+
+def task_report(
+    task: DesignTask, count: int, command: str, formats: Sequence[str] = ("png",)
+) -> Report[TaskDesigns]:
+    """How at most `count` designs of a task are reported; the heads of their files name the `command`."""
+    drawn = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
+    files: dict[str, Any] = {}
+    toml = design_files(count, (), head=partial(_head, command), figure=_none, as_dict=as_dict)
+    for place in range(count):
+        name = f"design_{place + 1}"
+        files[f"{name}.toml"] = toml[f"{name}.toml"]
+        for number, want in enumerate(drawn):
+            files |= figure_files(
+                f"{name}_want_{want + 1}", formats, partial(_of_want, place=place, number=number)
+            )
+        if any(type(must).__name__ in ("InRange", "InCone", "InBox", "Apart") for must in task.musts):
+            files |= figure_files(f"{name}_musts", formats, partial(_of_musts, place=place))
+    return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
+
+
+def _none(found: TaskDesigns, candidate: Candidate) -> Any:
+    raise AssertionError((found, candidate))
+
+
+def _of_want(found: TaskDesigns, *, place: int, number: int) -> Any:
+    if place >= len(found.found.designs):
+        return None
+    return want_figure(DesignAlong(found.task, found.found.designs[place]), number)
+
+
+def _of_musts(found: TaskDesigns, *, place: int) -> Any:
+    if place >= len(found.found.designs):
+        return None
+    return musts_figure(DesignAlong(found.task, found.found.designs[place]))
+
+
+def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
+    facts = task_facts(found.task)
+    begun = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
+    facts.append(("searched", begun))
+    if found.found.refusals:
+        facts.append(("refused", found.found.refused))
+    return facts
+
+
+def _head(command: str, found: TaskDesigns) -> list[str]:
+    lines = [f"{label}: {words}" if label else f"  {words}" for label, words in _facts(found)]
+    if found.unfinished:
+        lines.append(f"unfinished: {found.unfinished}")
+    return [f"task: {found.name}", *lines, f"made by: {command}"]
+
+
+def text(found: TaskDesigns) -> RenderableType:
+    """The designs for people."""
+    facts = Facts()
+    for label, words in _facts(found):
+        facts.add(label, words, "bold" if label == "wanted" else "")
+    if found.unfinished:
+        facts.add("unfinished", found.unfinished, "bold yellow")
+    parts: list[RenderableType] = [
+        Text(f"Design: {found.name}", style="bold underline"),
+        facts.grid,
+    ]
+    for table in _tables(found):
+        parts += [Text(), table]
+    free = found.task.free
+    for begin in range(0, len(free), ACROSS):
+        some = free[begin : begin + ACROSS]
+        units = [found.task.draft.dimension(one.name).unit for one in some]
+        heads = [f"{one.name}\n[{unit}]" if unit else one.name for one, unit in zip(some, units, strict=True)]
+        rows = [
+            [str(i), *(_bounded(design, begin + k, one.low, one.high) for k, one in enumerate(some))]
+            for i, design in enumerate(found.found.designs, 1)
+        ]
+        parts += [Text(), number_table(["design", *heads], rows)]
+    if any(_on_bound(design, found.task) for design in found.found.designs):
+        parts.append(Text("* on its bound", style="dim"))
+    return Group(*parts)
+
+
+def _on_bound(design: TaskDesign, task: DesignTask) -> bool:
+    gap = ON_BOUND * (task.high - task.low)
+    return bool(((design.values <= task.low + gap) | (design.values >= task.high - gap)).any())
+
+
+def _bounded(design: TaskDesign, place: int, low: float, high: float) -> str:
+    value, gap = float(design.values[place]), ON_BOUND * (high - low)
+    return f"{value:.5g}{'*' if value <= low + gap or value >= high - gap else ''}"
+
+
+def _tables(found: TaskDesigns) -> list[RenderableType]:
+    """Tables with a line for each design: how well each want is met; the musts, the optimum, what it is."""
+    task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
+    met: list[tuple[str, list[str]]] = []
+    for number, place in enumerate(_sampled(task)):
+        mets = [design.met[number] for design in designs]
+        own, scale = ("deg", 180 / math.pi) if mets[0].unit == "rad" else (mets[0].unit, 1.0)
+        met += [
+            (f"want {place + 1}\ngreatest\n[{own}]", [f"{one.greatest * scale:.4g}" for one in mets]),
+            (f"want {place + 1}\nRMS\n[{own}]", [f"{one.rms * scale:.4g}" for one in mets]),
+        ]
+    for name in dict.fromkeys(name for design in designs for name in design.figures):
+        met.append((name.replace("_", "\n"), [f"{design.figures[name]:.5g}" for design in designs]))
+    rest = [("least\nroom", [f"{design.room:.2g}" for design in designs])]
+    if not any(math.isfinite(design.room) for design in designs):
+        rest = []
+    rest += [
+        ("KKT\nresidual", [f"{design.optimality:.1e}" for design in designs]),
+        (f"size\n[{unit}]", [f"{design.candidate.size:.5g}" for design in designs]),
+        ("motion type", [design.candidate.motion_type for design in designs]),
+        ("circuit", [str(design.candidate.circuit) for design in designs]),
+    ]
+    parts = [met[i : i + ACROSS] for i in range(0, len(met), ACROSS)]
+    return [_columns(part, ()) for part in parts] + [_columns(rest, [len(rest) - 1])]
+
+
+def _columns(columns: Sequence[tuple[str, list[str]]], words: Sequence[int]) -> RenderableType:
+    """A table of columns, a line for each design."""
+    rows = [[str(i), *cells] for i, cells in enumerate(zip(*(own for _, own in columns), strict=True), 1)]
+    return number_table(["design", *(head for head, _ in columns)], rows, words=words)
+
+
+def as_dict(found: TaskDesigns) -> dict[str, Any]:
+    """The designs as plain values; what has a unit has it in its name."""
+    task = found.task
+    linkage = task.draft.linkage
+    return {
+        "format": 1,
+        "task": found.name,
+        "source": found.source,
+        "goal": task.goal,
+        "placement": task.placement,
+        "limits": task.limits.text(),
+        "wanted": [want_words(want, linkage) for want in task.wants],
+        "must_hold": [must_words(must, linkage) for must in task.musts],
+        "free": {one.name: [one.low, one.high] for one in task.free},
+        "starts": found.starts,
+        "begun": found.found.starts,
+        "seed": found.seed,
+        "unfinished": found.unfinished or None,
+        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.found.refusals],
+        "designs": [
+            {
+                "design": i,
+                "name": candidate.name,
+                **candidate.columns,
+                "wants": [
+                    {"want": place + 1, "greatest": met.greatest, "rms": met.rms, "unit": met.unit}
+                    for place, met in zip(_sampled(task), design.met, strict=True)
+                ],
+                "musts": _rooms(task, design),
+                "values": dict(zip(task.names, map(float, design.values), strict=True)),
+            }
+            for i, (design, candidate) in enumerate(
+                zip(found.found.designs, found.candidates, strict=True), 1
+            )
+        ],
+    }
+
+
+def _sampled(task: DesignTask) -> list[int]:
+    return [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
+
+
+def _rooms(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
+    """The least room of each must about poses, over all wants."""
+    along = DesignAlong(task, design)
+    least: dict[int, float] = {}
+    for place, _, _, values in along.rooms():
+        least[place] = min(least.get(place, math.inf), float(values.min()))
+    return [
+        {
+            "must": place + 1,
+            "room": math.degrees(room) if along.room_unit(task.musts[place]) == "deg" else room,
+            "unit": along.room_unit(task.musts[place]),
+        }
+        for place, room in least.items()
+    ]

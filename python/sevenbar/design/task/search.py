@@ -1,0 +1,162 @@
+"""The search for designs: many starts are tried, the promising ones solved, each of them checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from sevenbar.design.course import SearchCourse
+from sevenbar.design.synthesis.candidates import Refusal, likeness, tally
+from sevenbar.design.task.check import TaskDesign, checked_design
+from sevenbar.design.task.problem import TaskModel, TaskSeed
+from sevenbar.design.task.solve import LOOK, Solved, solved
+from sevenbar.design.task.starts import apart, seeds, seeds_at
+from sevenbar.design.task.task import DesignTask
+from sevenbar.text.progress import Progress, silent
+
+#: Starts by default.
+STARTS = 256
+
+#: Of the starts so many for each design wanted are tried closer, and of these so many solved at most.
+TRIED, TAKEN = 8, 3
+
+#: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
+SAME = 0.05
+
+#: A cost below which a task is met exactly: no other start can be better.
+EXACT = 1e-11
+
+
+@dataclass(frozen=True, eq=False)
+class DesignsFound:
+    """The designs of a search, best first, and why others were refused.
+
+    `starts` is the number of ways to begin that were found; `unfinished` says that the search was stopped,
+    and is empty where it ended.
+    """
+
+    task: DesignTask
+    designs: tuple[TaskDesign, ...]
+    refusals: tuple[Refusal, ...]
+    starts: int
+    unfinished: str
+
+    @property
+    def refused(self) -> str:
+        """What was refused, the commonest first: "12 by cone, 3 by order"."""
+        return tally(self.refusals)
+
+
+def designed(
+    task: DesignTask,
+    *,
+    count: int = 5,
+    starts: int = STARTS,
+    seed: int = 0,
+    given: Sequence[npt.ArrayLike] = (),
+    progress: Progress = silent,
+) -> DesignsFound:
+    """Up to `count` distinct designs of a task, the best first; none where nothing does what is asked.
+
+    The linkage itself, `starts` others within the bounds from a `seed`, and those of free numbers `given`
+    (k,) each are the starts. Each design is opened from its file and found by the ordinary analysis to do
+    what it claims, on one circuit and without a dead centre between. `progress` is called with (done, total,
+    the best so far). Ctrl+C ends the search with what it has; before the first design it raises.
+
+        >>> import numpy as np
+        >>> import sevenbar as sb
+        >>> from sevenbar.description.draft import Draft
+        >>> from sevenbar.design.task import DesignTask, FreeNumber, FunctionWant
+        >>> rows = sb.rssr(M=700, N=700, L1=250, L3=550, D=0).motion(36).circuits[0]
+        >>> want = FunctionWant(rows.input[2:12:3], rows.output[2:12:3])
+        >>> start = Draft.of_linkage(sb.rssr(M=710, N=690, L1=255, L3=545, D=0, L2=990))
+        >>> free = [FreeNumber("M", 500, 900), FreeNumber("N", 500, 900), FreeNumber("L1", 100, 400)]
+        >>> task = DesignTask(start, tuple(free) + (FreeNumber("L2", 800, 1200),), (want,))
+        >>> (best,) = designed(task, count=1, starts=0).designs
+        >>> best.met[0].greatest < 1e-9
+        True
+    """
+    model = TaskModel(task)
+    course = SearchCourse(starts + 1 + len(given) + (TRIED + TAKEN) * count, progress)
+    kept: list[TaskDesign] = []
+    refusals: list[Refusal] = []
+    unfinished, found = "", 0
+    try:
+        begun = seeds(model, starts, seed, course.step, [np.asarray(v, dtype=float) for v in given])
+        found = len(begun)
+        _search(model, begun, count, course, kept, refusals)
+        course.end()
+    except KeyboardInterrupt:
+        if not kept:
+            raise
+        unfinished = course.unfinished
+    best = distinct_designs(kept)[:count]
+    return DesignsFound(task, tuple(_named(task, best)), tuple(refusals), found, unfinished)
+
+
+def _search(
+    model: TaskModel,
+    begun: Sequence[TaskSeed],
+    count: int,
+    course: SearchCourse,
+    kept: list[TaskDesign],
+    refusals: list[Refusal],
+) -> None:
+    tried: list[Solved] = []
+    for one in apart(model, begun, TRIED * count):
+        look = _first_look(model, one)
+        if look is not None:
+            tried.append(look)
+        nearest = min((look.cost for look in tried), default=None)
+        course.step("" if nearest is None else f"nearest: {nearest:.3g}")
+    tried.sort(key=lambda look: (look.room < -0.01, look.cost))
+    for i, look in enumerate(tried):
+        if len(distinct_designs(kept)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
+            break
+        solution = solved(model, look.seed)
+        if solution is None:
+            refusals.append(Refusal("assembly", "the linkage is lost on the way to its optimum"))
+            continue
+        answer = checked_design(model, solution)
+        if isinstance(answer, Refusal):
+            refusals.append(answer)
+        else:
+            kept.append(answer)
+            kept.sort(key=lambda design: design.cost)
+        course.step(f"best: {kept[0].cost:.3g}" if kept else "", done=int(course.done < course.total))
+
+
+def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:
+    """A first look at a start; free inputs are matched anew once, where they may have left their places."""
+    look = solved(model, one, LOOK, whole=False)
+    if look is None or look.cost < EXACT or not any(want.stations.free for want in model.wanted):
+        return look
+    again = min(seeds_at(model, look.seed.values), key=lambda seed: seed.error, default=None)
+    other = None if again is None else solved(model, again, LOOK, whole=False)
+    return look if other is None or other.cost > look.cost else other
+
+
+def distinct_designs(designs: Sequence[TaskDesign]) -> list[TaskDesign]:
+    """The designs that differ, the first of those that are alike."""
+    kept: list[TaskDesign] = []
+    for one in designs:
+        own = likeness(one.draft, scale_free=False)
+        others = (likeness(other.draft, scale_free=False) for other in kept)
+        if all(np.abs(own - other).max() > SAME for other in others):
+            kept.append(one)
+    return kept
+
+
+def _named(task: DesignTask, designs: Sequence[TaskDesign]) -> list[TaskDesign]:
+    """The designs with the names `title, design 1`, .. in their order."""
+    title = task.draft.linkage.name
+    return [
+        replace(
+            one,
+            candidate=replace(one.candidate, draft=one.draft.with_value(("name",), f"{title}, design {i}")),
+        )
+        for i, one in enumerate(designs, 1)
+    ]

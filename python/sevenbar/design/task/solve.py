@@ -1,0 +1,422 @@
+"""The nearest optimum of a task: least squares or the least greatest residual, within bounds and rooms.
+
+Least squares begin with rooms as penalties; then both goals end with Newton's method on the conditions of an
+optimum (Karush, Kuhn and Tucker),
+
+    grad f = sum y grad c,    y >= 0,    c >= 0,    y c = 0                                              (1)
+
+with c the rooms and the bounds, and f half the sum of squares, or for the greatest residual t itself with
+rooms t - h of every height h. What (1) is missed by shows how good a local optimum was found.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sevenbar.arrays import Floats, Integers
+from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
+from sevenbar.design.task.levenberg import nearest_least
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
+from sevenbar.design.task.wants.places import PlacesWanted
+
+#: Evaluations of a first look, and of a design that is kept.
+LOOK, WHOLE = 40, 1000
+
+#: How much the first steps are held back, relative to the unknowns' sizes; and where that failed.
+FIRST = (1e-3, 1.0)
+
+#: Weights of a missed room, in rounds; and the room kept since a penalty is never met.
+WEIGHTS, KEPT = (1.0, 10.0, 100.0), 1e-5
+
+#: A room that is missed by less is kept.
+ROUNDING = 1e-9
+
+#: A room so near to zero may be active.
+ACTIVE = 1e-6
+
+#: Residuals are measured against this at least [relative]: smaller ones are rounding of larger steps.
+LEAST = 1e-4
+
+#: Steps of Newton's method at the end, their most [units], and the step of its differences.
+STEPS, FARTHEST, DIFFERENCE = 8, 0.1, 1e-5
+
+#: Steps of Newton's method within a reach, its most unknowns, longest reach, shortest; the part of the
+#: greatest curvature that is rounding; halvings of a step's multiplier.
+DESCENTS, MOST_UNKNOWNS, MOST_REACH, SHORTEST, FLAT, HALVINGS = 12, 60, 0.5, 1e-9, 1e-13, 60
+
+#: Most steps of sequential quadratic programs.
+PROGRAMS = 200
+
+#: Residuals below this leave the second derivatives of the squares to the slopes alone.
+EXACT = 1e-7
+
+#: Below this the conditions of an optimum are met.
+MET = 1e-11
+
+
+Squares = tuple[Floats, Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A local optimum as a start of its own; the weighted cost, and by how much (1) is missed, relative.
+
+    `cost` is the root of the weighted mean squares, or the greatest weighted residual.
+    """
+
+    seed: TaskSeed
+    inputs: tuple[Floats, ...]
+    cost: float
+    optimality: float
+    room: float
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """What (1) is made of at unknowns: gradient (m,), rooms (c,) and their slopes (c, m), and the unit.
+
+    `curved` (m, m) are the second derivatives that slopes alone give, `cost` what is made least.
+    """
+
+    gradient: Floats
+    curved: Floats | None
+    cost: float
+    room: Floats
+    room_by: Floats
+    unit: float
+
+
+def solved(
+    model: TaskModel, seed: TaskSeed, evaluations: int = WHOLE, *, whole: bool = True
+) -> Solved | None:
+    """The nearest optimum of a seed; `None` where its linkage does not close. `whole`: to the last digit."""
+    found = _least_squares(model, seed, evaluations, FIRST[0])
+    if whole and (found is None or found[0].size(found[1]) > EXACT):
+        # a first step too far may have led into a corner where the linkage hardly closes
+        other = _least_squares(model, seed, evaluations, FIRST[1])
+        if found is None or (other is not None and other[0].size(other[1]) < found[0].size(found[1])):
+            found = other
+    if found is None:
+        return None
+    problem, z = found
+    if not whole:
+        return _as_solved(problem, z, math.nan, minimax=False)
+    minimax = model.task.goal == "minimax"
+    if minimax:
+        problem = TaskProblem(model, problem.seed(z), minimax=True)
+        z = _lowered(problem)
+    elif problem.size(z) > EXACT:
+        z = _descended(problem, _programmed(problem, z))
+    z, missed = settled(problem, z, minimax=minimax)
+    return _as_solved(problem, z, missed, minimax=minimax)
+
+
+def _as_solved(problem: TaskProblem, z: Floats, missed: float, *, minimax: bool) -> Solved | None:
+    here = problem.at(z)
+    if here is None:
+        return None
+    cost = float(_heights(problem, here)[0].max()) if minimax else float(np.linalg.norm(here.left))
+    room = float(here.room.min(initial=math.inf))
+    return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room)
+
+
+def _least_squares(
+    model: TaskModel, seed: TaskSeed, evaluations: int, first: float
+) -> tuple[TaskProblem, Floats] | None:
+    """The problem about its least squares, missed rooms as penalties, and the unknowns there."""
+    problem = TaskProblem(model, seed)
+    z = np.clip(problem.start, problem.low, problem.high)
+    here = problem.at(problem.start)
+    if here is None:
+        return None
+    for weight in WEIGHTS if len(here.room) else WEIGHTS[:1]:
+
+        def residuals(z: Floats, problem: TaskProblem = problem, weight: float = weight) -> Squares | None:
+            here = problem.at(z)
+            if here is None:
+                return None
+            missed = here.room < KEPT
+            return (
+                np.concatenate([here.left, weight * np.where(missed, here.room - KEPT, 0.0)]),
+                np.concatenate([here.left_by, weight * missed[:, None] * here.room_by]),
+            )
+
+        nearest = nearest_least(
+            residuals,
+            z,
+            problem.low,
+            problem.high,
+            evaluations=evaluations,
+            first=first,
+            taken=problem.take,
+        )
+        if nearest is None:
+            return None
+        z = nearest
+    return problem, z
+
+
+# ---- the greatest residual
+
+
+def _heights(problem: TaskProblem, here: TaskValues) -> tuple[Floats, Floats]:
+    """Weighted sizes (h,) of single residuals, and their slopes: distances of places, others both ways."""
+    heights, slopes = [], []
+    count = 0
+    for one in problem.model.wanted:
+        rows = slice(count, count + one.count)
+        count += one.count
+        left, by = math.sqrt(one.count) * here.left[rows], math.sqrt(one.count) * here.left_by[rows]
+        if isinstance(one, PlacesWanted):
+            left, by = left.reshape(-1, 3), by.reshape(len(left) // 3, 3, -1)
+            size = np.linalg.norm(left, axis=1)
+            heights.append(size)
+            slopes.append(np.einsum("ni,nik->nk", left, by) / np.maximum(size, 1e-300)[:, None])
+        else:
+            heights += [left, -left]
+            slopes += [by, -by]
+    heights += [here.left[count:], -here.left[count:]]
+    slopes += [here.left_by[count:], -here.left_by[count:]]
+    return np.concatenate(heights), np.concatenate(slopes)
+
+
+def _bounds(problem: TaskProblem, z: Floats) -> tuple[Floats, Floats]:
+    """Rooms to the bounds that there are, and their slopes."""
+    one = np.eye(len(z))
+    low, high = np.isfinite(problem.low), np.isfinite(problem.high)
+    return (
+        np.concatenate([(z - problem.low)[low], (problem.high - z)[high]]),
+        np.concatenate([one[low], -one[high]]),
+    )
+
+
+def _lowered(problem: TaskProblem) -> Floats:
+    def heights(z: Floats) -> MinimaxValues | None:
+        here = problem.at(z)
+        if here is None:
+            return None
+        room, by = _bounds(problem, z)
+        height, height_by = _heights(problem, here)
+        return MinimaxValues(
+            height, height_by, np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
+        )
+
+    return lowered(heights, np.clip(problem.start, problem.low, problem.high), worth=1e-9)
+
+
+def _programmed(problem: TaskProblem, z: Floats) -> Floats:
+    """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same."""
+    from scipy.optimize import minimize
+
+    here = problem.at(z)
+    assert here is not None
+    unit = float(here.left @ here.left)
+    last = [here]
+
+    def at(z: Floats) -> TaskValues | None:
+        found = problem.at(z)
+        if found is not None:
+            last[0] = found
+        return found
+
+    def cost(z: Floats) -> float:
+        found = at(z)
+        return 1e3 if found is None else float(found.left @ found.left) / unit
+
+    def slopes(z: Floats) -> Floats:
+        problem.take(z)
+        found = at(z) or last[0]
+        return np.asarray(2 * found.left_by.T @ found.left / unit)
+
+    rooms: Any = {
+        "type": "ineq",
+        "fun": lambda z: (at(z) or last[0]).room,
+        "jac": lambda z: (at(z) or last[0]).room_by,
+    }
+    with np.errstate(all="ignore"):
+        found = minimize(
+            cost,
+            z,
+            jac=slopes,
+            bounds=list(zip(problem.low, problem.high, strict=True)),
+            constraints=[rooms] if len(here.room) else [],
+            method="SLSQP",
+            options={"maxiter": PROGRAMS, "ftol": 1e-14},
+        )
+    then = problem.at(found.x)
+    if then is None:
+        return z
+    better = (_lack(then), float(then.left @ then.left)) < (_lack(here), unit)
+    return np.asarray(found.x) if better else z
+
+
+def _descended(problem: TaskProblem, z: Floats) -> Floats:
+    """The unknowns after Newton's method within a reach, by which narrow valleys are gone down to their end.
+
+    Steps solve `min g s + s H s / 2, |s| <= reach` over the unknowns that no bound stops; H by differences of
+    the exact gradient. It ends at a room: there the programs know better.
+    """
+    reach = FARTHEST
+    at = _conditions(problem, z, minimax=False)
+    for _ in range(DESCENTS):
+        if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or _multipliers(at)[2] < MET:
+            break
+        low, high = z <= problem.low + ROUNDING, z >= problem.high - ROUNDING
+        free = ~((low & (at.gradient > 0)) | (high & (at.gradient < 0)))
+        curved = _curved(problem, z, at, np.empty(0, dtype=np.int64), np.empty(0), minimax=False)
+        if curved is None or not free.any():
+            break
+        while reach >= SHORTEST:
+            step = np.zeros(len(z))
+            while free.any():
+                step = np.zeros(len(z))
+                step[free] = _within(at.gradient[free], curved[np.ix_(free, free)], reach)
+                stopped = free & ((low & (step < 0)) | (high & (step > 0)))
+                if not stopped.any():
+                    break
+                free &= ~stopped
+            then_z = np.clip(z + step, problem.low, problem.high)
+            then = _conditions(problem, then_z, minimax=False)
+            kept = then is not None and not (then.room < np.minimum(at.room, 0.0) - ROUNDING).any()
+            if then is not None and kept and then.cost < at.cost:
+                z, at, reach = then_z, then, min(4 * reach, MOST_REACH)
+                problem.take(z)
+                break
+            reach = min(reach, float(np.abs(step).max())) / 4
+    return z
+
+
+def _within(gradient: Floats, curved: Floats, reach: float) -> Floats:
+    """The step (m,) of least `g s + s H s / 2` no longer than the reach."""
+    bends, ways = np.linalg.eigh(curved)
+    pull = ways.T @ gradient
+    floor = FLAT * max(float(np.abs(bends).max()), 1e-300)
+    low = max(0.0, -float(bends[0])) + floor
+    if np.linalg.norm(pull / (bends + low)) <= reach:
+        return np.asarray(-ways @ (pull / (bends + low)))
+    high = low + float(np.linalg.norm(gradient)) / reach
+    for _ in range(HALVINGS):
+        middle = math.sqrt(low * high)
+        longer = np.linalg.norm(pull / (bends + middle)) > reach
+        low, high = (middle, high) if longer else (low, middle)
+    return np.asarray(-ways @ (pull / (bends + high)))
+
+
+def _lack(here: TaskValues) -> float:
+    """What rooms lack, none where it is rounding."""
+    lack = -float(here.room.min(initial=0.0))
+    return lack if lack > ROUNDING else 0.0
+
+
+# ---- the conditions of an optimum
+
+
+def _conditions(problem: TaskProblem, x: Floats, *, minimax: bool) -> Conditions | None:
+    """At unknowns x: z, and for the greatest residual t behind them."""
+    z = x[:-1] if minimax else x
+    here = problem.at(z)
+    if here is None:
+        return None
+    room, by = _bounds(problem, z)
+    room, by = np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
+    if not minimax:
+        columns = np.linalg.norm(here.left_by, axis=0)
+        unit = max(float(np.linalg.norm(here.left)), LEAST) * max(float(columns.max(initial=0.0)), 1e-300)
+        gradient = here.left_by.T @ here.left
+        return Conditions(
+            gradient, here.left_by.T @ here.left_by, float(here.left @ here.left), room, by, unit
+        )
+    height, slopes = _heights(problem, here)
+    gradient = np.append(np.zeros(len(z)), 1.0)
+    room = np.concatenate([x[-1] - height, room])
+    by = np.block([[-slopes, np.ones((len(height), 1))], [by, np.zeros((len(by), 1))]])
+    return Conditions(gradient, None, float(x[-1]), room, by, max(float(np.abs(slopes).max()), 1.0))
+
+
+def _multipliers(at: Conditions) -> tuple[Integers, Floats, float]:
+    """The active rooms, their multipliers >= 0, and by how much (1) is missed."""
+    from scipy.optimize import nnls
+
+    active = np.flatnonzero(at.room <= ACTIVE)
+    missed = max(float(-at.room.min(initial=0.0)), 0.0)
+    if not active.size:
+        return active, np.empty(0), max(float(np.abs(at.gradient).max(initial=0.0)) / at.unit, missed)
+    y, _ = nnls(at.room_by[active].T, at.gradient, maxiter=50 * len(active))
+    rest = np.abs(at.gradient - at.room_by[active].T @ y).max(initial=0.0) / at.unit
+    slack = float(np.abs(y * at.room[active]).max(initial=0.0)) / at.unit
+    return active, y, max(float(rest), missed, slack)
+
+
+def settled(problem: TaskProblem, z: Floats, *, minimax: bool) -> tuple[Floats, float]:
+    """The unknowns after Newton's method on (1), where it makes them better; and what (1) is missed by."""
+    x = z
+    if minimax:
+        here = problem.at(z)
+        if here is None:
+            return z, math.inf
+        x = np.append(z, _heights(problem, here)[0].max())
+    problem.take(z)
+    at = _conditions(problem, x, minimax=minimax)
+    if at is None:
+        return z, math.inf
+    active, y, missed = _multipliers(at)
+    for _ in range(STEPS):
+        if missed < MET:
+            break
+        rows = active[y > 0]
+        curved = _curved(problem, x, at, rows, y[y > 0], minimax=minimax)
+        if curved is None:
+            break
+        step = _newton(at, curved, rows)
+        step *= min(1.0, FARTHEST / max(float(np.abs(step).max(initial=0.0)), 1e-300))
+        then = _conditions(problem, x + step, minimax=minimax)
+        if then is None:
+            break
+        then_active, then_y, then_missed = _multipliers(then)
+        if not then_missed < missed:
+            break
+        x, at, active, y, missed = x + step, then, then_active, then_y, then_missed
+        problem.take(x[:-1] if minimax else x)
+    return (x[:-1] if minimax else x), missed
+
+
+def _newton(at: Conditions, curved: Floats, active: Integers) -> Floats:
+    """The step of Newton's method with these rooms held at zero."""
+    rows, count = at.room_by[active], len(active)
+    matrix = np.block([[curved, -rows.T], [rows, np.zeros((count, count))]])
+    sides = np.concatenate([-at.gradient, -at.room[active]])
+    found: Floats = np.linalg.lstsq(matrix, sides, rcond=1e-13)[0][: len(curved)]
+    return found
+
+
+def _curved(
+    problem: TaskProblem, x: Floats, at: Conditions, active: Integers, y: Floats, *, minimax: bool
+) -> Floats | None:
+    """The second derivatives of f less those of the rooms by their multipliers."""
+
+    def pull(point: Floats) -> Floats | None:
+        there = _conditions(problem, point, minimax=minimax)
+        return None if there is None else there.gradient - there.room_by[active].T @ y
+
+    exact = not minimax and at.cost <= EXACT**2 and not len(active)
+    found = at.curved if exact else _differences(pull, x)
+    return found if found is not None and np.isfinite(found).all() else None
+
+
+def _differences(pull: Callable[[Floats], Floats | None], x: Floats) -> Floats | None:
+    """The symmetric slopes (m, m) of a gradient, by central differences."""
+    columns = []
+    for k in range(len(x)):
+        step = np.zeros(len(x))
+        step[k] = DIFFERENCE
+        up, down = pull(x + step), pull(x - step)
+        if up is None or down is None:
+            return None
+        columns.append((up - down) / (2 * DIFFERENCE))
+    found = np.array(columns)
+    return np.asarray((found + found.T) / 2)

@@ -1,0 +1,172 @@
+"""Starts of a task: linkages all over the bounds, each with how its wants may begin on its circuits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sevenbar.arrays import Floats, short_way
+from sevenbar.design.synthesis.path.match import STILL, Placing
+from sevenbar.design.task.passes import InputPass, passes
+from sevenbar.design.task.problem import TaskModel, TaskSeed
+from sevenbar.design.task.wants.figures import figure_left
+from sevenbar.design.task.wants.wanted import Begun
+from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
+from sevenbar.kinematics.circuits import Circuit
+
+#: Inputs of a turn at which a start's circuits are checked.
+SAMPLES = 72
+
+#: Of the starts one in so many lies near the description's own numbers, within this part of the bounds.
+NEAR_ONE_IN, NEAR = 4, 0.12
+
+#: Two starts are one where no number differs by more, relative to its bounds, and no pose by more [rad].
+SAME, SAME_POSE = 0.02, 0.2
+
+
+def seeds(
+    model: TaskModel, count: int, seed: int, step: Callable[[], None], given: Sequence[Floats] = ()
+) -> list[TaskSeed]:
+    """How the task may begin, best first: numbers `given`, the description's own, `count` within the bounds.
+
+    A linkage gives some for each of its circuits. `step` is called after each linkage.
+    """
+    found: list[TaskSeed] = []
+    for values in _numbers(model, count, seed, given):
+        found += seeds_at(model, values)
+        step()
+    return sorted(found, key=lambda one: one.error)
+
+
+def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -> Iterator[Floats]:
+    try:
+        from scipy.stats import qmc
+    except ImportError:
+        raise MissingExtraError(
+            "a design needs scipy; install it with: pip install 'sevenbar[design]'"
+        ) from None
+    low, high = model.task.low, model.task.high
+    own = model.loop.start
+    yield from (np.clip(values, low, high) for values in given)
+    yield np.clip(own, low, high)
+    if not count:
+        return
+    sobol = qmc.Sobol(len(own), rng=np.random.default_rng(seed))
+    random = np.random.default_rng([seed, 1])
+    for i, share in enumerate(sobol.random_base2(math.ceil(math.log2(count)))[:count]):
+        if i % NEAR_ONE_IN:
+            yield low + share * (high - low)
+        else:
+            moved = own + NEAR * random.standard_normal(len(own)) * (high - low)
+            yield np.clip(moved, low, high)
+
+
+def seeds_at(model: TaskModel, values: Floats) -> list[TaskSeed]:
+    """How the task may begin with a linkage of these numbers (k,)."""
+    try:
+        motion = model.loop.drawn(values).linkage.motion(SAMPLES)
+    except (DescriptionError, RequestError, NotCoveredError):
+        return []
+    found: list[TaskSeed] = []
+    for circuit in motion.circuits:
+        if not model.wanted:
+            found += _of_figures(model, values, circuit)
+            continue
+        for one in passes(circuit):
+            found += _on_pass(model, values, one)
+    return found
+
+
+def _of_figures(model: TaskModel, values: Floats, circuit: Circuit) -> list[TaskSeed]:
+    """A start of figures alone: any row of the circuit that is a pose."""
+    good = np.flatnonzero(np.isfinite(circuit.q).all(axis=1))
+    if not good.size:
+        return []
+    seed = TaskSeed(values, (), np.empty((0, circuit.q.shape[1])), circuit.q[good[0]], 0.0)
+    return _with_figures(model, seed)
+
+
+def _with_figures(model: TaskModel, seed: TaskSeed) -> list[TaskSeed]:
+    if not model.figure_wants:
+        return [seed]
+    read = model.figures.at(seed.values, seed.anchor, slopes=False)
+    if read is None:
+        return []
+    values = dict(zip(model.figures.names, read[0], strict=True))
+    none = np.zeros(1)
+    off = sum((w.weight * figure_left(w, values[w.name], none)[0]) ** 2 for w in model.figure_wants)
+    return [replace(seed, error=seed.error + off)]
+
+
+def _on_pass(model: TaskModel, values: Floats, one: InputPass) -> list[TaskSeed]:
+    """The wants on one pass, each at its best; the first one, which places the linkage, in all its ways."""
+    scaled = model.task.placement == "free with scale"
+    order = sorted(range(len(model.wanted)), key=lambda i: not hasattr(model.wanted[i], "places"))
+    firsts = model.wanted[order[0]].begun(one, None if model.placed else STILL, scaled=scaled)
+    found: list[TaskSeed] = []
+    for first in firsts:
+        placing = first.placing or STILL
+        begun = {order[0]: first}
+        for i in order[1:]:
+            ways = model.wanted[i].begun(one, placing, scaled=scaled)
+            if not ways:
+                break
+            begun[i] = ways[0]
+        else:
+            found += _seed(model, values, one, [begun[i] for i in range(len(begun))], placing)
+    return found
+
+
+def _seed(
+    model: TaskModel, values: Floats, one: InputPass, begun: Sequence[Begun], placing: Placing
+) -> list[TaskSeed]:
+    rows = np.concatenate([own.rows for own in begun])
+    q = one.circuit.q[one.rows[rows]]
+    error = sum(want.weight**2 * own.error for want, own in zip(model.wanted, begun, strict=True))
+    seed = TaskSeed(
+        values, tuple(own.u for own in begun), model.loop.poses(values, q), q[0], error, placing, one.period
+    )
+    return _with_figures(model, _scaled(model, seed) if placing.scale != 1.0 else seed)
+
+
+def _scaled(model: TaskModel, seed: TaskSeed) -> TaskSeed:
+    """The seed with its lengths, all of which are free, in the scale of its placing, within the bounds."""
+    loop, scale = model.loop, seed.placing.scale
+    kinds = [loop.numbers.dimensions[i].kind for i in loop.free]
+    lengths = np.array([kind in ("length", "pitch") for kind in kinds])
+    values = np.clip(np.where(lengths, scale * seed.values, seed.values), model.task.low, model.task.high)
+    turns = loop.numbers.turns
+    own = tuple(
+        # unknowns of sliding inputs are lengths
+        u if turns[loop.input] else scale * u
+        for u in seed.own
+    )
+    placing = Placing(seed.placing.rotation, seed.placing.shift)
+    poses, anchor = (np.where(turns, q, scale * q) for q in (seed.poses, seed.anchor))
+    return replace(seed, values=values, own=own, poses=poses, anchor=anchor, placing=placing)
+
+
+def apart(model: TaskModel, found: Sequence[TaskSeed], count: int) -> list[TaskSeed]:
+    """The first `count` of the seeds that are not alike."""
+    kept: list[TaskSeed] = []
+    width = model.task.high - model.task.low
+    for one in found:
+        if len(kept) >= count:
+            break
+        near = (
+            bool(np.abs((one.values - other.values) / width).max(initial=0.0) < SAME)
+            and bool(np.abs(short_way(one.anchor - other.anchor)).max() < SAME_POSE)
+            and _alike(one, other)
+            for other in kept
+        )
+        if not any(near):
+            kept.append(one)
+    return kept
+
+
+def _alike(one: TaskSeed, other: TaskSeed) -> bool:
+    """Whether the poses of two seeds are nearly the same."""
+    return all(np.abs(a - b).max(initial=0.0) < SAME_POSE for a, b in zip(one.own, other.own, strict=True))

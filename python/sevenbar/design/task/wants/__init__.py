@@ -1,0 +1,1 @@
+"""Wants as residuals, a module for each family."""

@@ -1,0 +1,104 @@
+"""Measures of a circuit as wants and musts: values at any numbers, exact slopes where those exist."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sevenbar.arrays import Floats, short_way
+from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.task import FigureWant
+from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
+from sevenbar.kinematics.circuits import Circuit
+from sevenbar.kinematics.measures import gradient, measures_named
+from sevenbar.kinematics.motion import Motion
+
+#: Inputs of a turn at which circuits are measured: these are found between rows.
+SAMPLES = 72
+
+#: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
+STEP = 1e-5
+
+#: A circuit is the same where its nearest row has no joint further off [rad, or relative to the size].
+SAME_CIRCUIT = 0.5
+
+
+class Figures:
+    """The measures, by name, of the circuit near a pose."""
+
+    def __init__(self, loop: TaskLoop, names: Sequence[str]) -> None:
+        self._loop = loop
+        self.names = tuple(names)
+        self._measures = measures_named(names) if names else ()
+        self._columns = [c for c, ball in enumerate(loop.numbers.is_ball) if not ball]
+
+    def at(self, values: Floats, anchor: Floats, *, slopes: bool = True) -> tuple[Floats, Floats] | None:
+        """Values (f,) and slopes (f, k) at numbers (k,), of the circuit near a row (columns,) of an analysis.
+
+        `None` where the circuit is gone or one of the measures has no value.
+        """
+        found = self.circuit(values, anchor)
+        if found is None:
+            return None
+        motion, circuit = found
+        read = list(self.read(motion, circuit).values())
+        if not np.isfinite(read).all():
+            return None
+        by = np.zeros((len(read), len(values)))
+        if slopes:
+            known = gradient(motion, circuit.index)
+            own = {name: self._loop.all_slopes(values, one.slopes) for name, one in known.items()}
+            rest = [i for i, name in enumerate(self.names) if not np.isfinite(own.get(name, np.nan)).all()]
+            for i, name in enumerate(self.names):
+                by[i] = own[name] if i not in rest else 0.0
+            if rest:
+                by[rest] = self._differences(values, anchor)[rest]
+        return np.array(read), by
+
+    def _differences(self, values: Floats, anchor: Floats) -> Floats:
+        columns = []
+        for k, scale in enumerate(self._loop.scales):
+            step = np.zeros(len(values))
+            step[k] = STEP * scale
+            ends = [self.at(values + way * step, anchor, slopes=False) for way in (1, -1)]
+            up, down = ends
+            none = up is None or down is None
+            columns.append(
+                np.zeros(len(self.names)) if none else (up[0] - down[0]) / (2 * step[k])  # type: ignore[index]
+            )
+        return np.stack(columns, axis=1)
+
+    def read(self, motion: Motion, circuit: Circuit) -> dict[str, float]:
+        """The measures of a circuit; NaN where one has no value."""
+        found = {}
+        for measure in self._measures:
+            value = measure.value(motion if measure.per == "linkage" else circuit)
+            found[measure.name] = float(value) if isinstance(value, (int, float)) else np.nan
+        return found
+
+    def circuit(self, values: Floats, anchor: Floats) -> tuple[Motion, Circuit] | None:
+        """The motion at numbers (k,), and its circuit near a row (columns,); `None` where there is none."""
+        try:
+            motion = self._loop.drawn(values).linkage.motion(SAMPLES)
+        except (DescriptionError, RequestError, NotCoveredError):
+            return None
+        best, least = None, SAME_CIRCUIT
+        turning = self._loop.numbers.turns[self._columns]
+        for circuit in motion.circuits:
+            off = circuit.q[:, self._columns] - anchor[self._columns]
+            off = np.where(turning, short_way(off), off) / self._loop.units[self._columns]
+            far = np.abs(off).max(axis=1)
+            far = float(np.nanmin(far)) if np.isfinite(far).any() else np.inf
+            if far < least:
+                best, least = circuit, far
+        return None if best is None else (motion, best)
+
+
+def figure_left(want: FigureWant, value: float, by: Floats) -> tuple[float, Floats]:
+    """The residual of a figure, and its slopes."""
+    if want.value == "small":
+        return value / want.unit, by / want.unit
+    if want.value == "great":
+        return want.unit / value, -want.unit / value**2 * by
+    return (value - want.value) / want.unit, by / want.unit

@@ -1,0 +1,138 @@
+"""Paths of points and poses of links: places that are to be reached, the linkage placed as it may be."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from sevenbar.arrays import Floats, Integers
+from sevenbar.design.synthesis.path.match import (
+    Placing,
+    by_length,
+    in_order,
+    matched,
+    placed,
+)
+from sevenbar.design.task.loop import Here, TaskLoop
+from sevenbar.design.task.passes import InputPass
+from sevenbar.design.task.task import PathWant, PoseWant
+from sevenbar.design.task.wants.wanted import Begun, Stations
+from sevenbar.kinematics.circuits import Circuit
+
+#: Of the rows of a pass one in so many is tried as the one that takes the first pose.
+FIRST_AT = 2
+
+
+class PlacesWanted:
+    """Places (n, p, 3) that p points of one link shall take at n stations, relative to a `unit` [length]."""
+
+    def __init__(self, loop: TaskLoop, want: PathWant | PoseWant) -> None:
+        self._loop = loop
+        self.weight = want.weight
+        self._name: str | None = None
+        if isinstance(want, PathWant):
+            point = next(p for p in loop.linkage.points if p.name == want.point)
+            self.link, self._name = point.link, want.point
+            self.numbers = [loop.named(want.point)]
+            self.places = want.places[:, None, :]
+            self.unit, self.closed = float(np.ptp(want.places, axis=0).max()), want.closed
+        else:
+            ends = [(0.0, 0.0, 0.0), *(tuple(map(float, end)) for end in want.arm * np.eye(3))]
+            self.link, self._ends = want.link, ends
+            self.numbers = [loop.place(want.link, end) for end in ends]  # type: ignore[arg-type]
+            self.places = np.einsum("nij,pj->npi", want.poses[:, :3, :3], ends) + want.poses[:, None, :3, 3]
+            self.unit, self.closed = want.arm, False
+        n = len(self.places)
+        self.timing, self.phase = want.timing, want.phase
+        own = float(loop.units[loop.input])
+        if want.timing is None:
+            self.stations = Stations(np.zeros(n), np.eye(n), np.full(n, own), round=self.closed, free=True)
+        else:
+            by = np.ones((n, int(want.phase)))
+            self.stations = Stations(want.timing, by, np.full(by.shape[1], own), round=self.closed)
+        self.count = self.places.size
+
+    def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:  # noqa: ARG002
+        """Where the points are (r / 3, 3) at its stations, and their slopes (r / 3, 3, k + m)."""
+        found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
+        return found.reshape(-1, 3), by.reshape(-1, 3, by.shape[-1])
+
+    def curve(self, one: InputPass) -> Floats:
+        """The points along a pass (rows, p, 3)."""
+        if self._name is not None:
+            return one.named(self._name)[:, None]
+        return np.stack([one.places(self.link, end) for end in self._ends], axis=1)  # type: ignore[arg-type]
+
+    def begun(self, one: InputPass, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+        """By the inputs of its timing, or by the best order-keeping match."""
+        curve = self.curve(one)
+        if not np.isfinite(curve).all() or (self.closed and not one.closed):
+            return []
+        if self.timing is not None:
+            return self._timed(one, curve, placing)
+        if self._name is None:
+            return self._poses(one, curve, placing)
+        return self._path(one, curve[:, 0], placing, scaled=scaled)
+
+    def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
+        assert self.timing is not None
+        found: list[Begun] = []
+        for phase in one.phases(self.timing, free=self.phase):
+            rows = one.nearest(self.timing + phase)
+            if rows is not None:
+                u = np.array([phase] if self.phase else [])
+                found.append(self._begun(u, rows, curve, placing))
+        return sorted(found, key=lambda begun: begun.error)[:1]
+
+    def _begun(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> Begun:
+        wanted, found = self.places.reshape(-1, 3), curve[rows].reshape(-1, 3)
+        own = placed(wanted, found) if placing is None else placing
+        error = float(((own.put(found) - wanted) ** 2).sum()) / self.count / self.unit**2
+        return Begun(u, rows, error, own)
+
+    def _path(self, one: InputPass, curve: Floats, placing: Placing | None, *, scaled: bool) -> list[Begun]:
+        wanted = self.places[:, 0]
+        own = curve if placing is None else placing.put(curve)
+        ways = {"curve_closed": one.closed, "closed": self.closed}
+        match = matched(own, wanted, **ways, place=placing is None, scaled=scaled)
+        if match is None:
+            return []
+        put = match.placing if placing is None else placing
+        # the same as before, and by lengths along the curve, which tell the sides of a cusp apart
+        other = by_length(put.put(curve), wanted, **ways)
+        error = match.error / 3 / self.unit**2
+        return [
+            Begun(one.unwound(rows), rows, error, put) for rows in (match.rows, other) if rows is not None
+        ]
+
+    def _poses(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
+        """In order, the linkage placed so that some row takes the first pose."""
+        n = len(self.places)
+        tried = [placing] if placing is not None else self._firsts(curve)
+        best: Begun | None = None
+        for put in tried:
+            rows, error = in_order(
+                put.put(curve).reshape(len(curve), -1), self.places.reshape(n, -1), closed=one.closed
+            )
+            if math.isfinite(error) and (best is None or error < best.error):
+                best = Begun(one.unwound(rows), rows, error, put)
+        if best is None:
+            return []
+        return [self._begun(best.u, best.rows, curve, placing)]
+
+    def _firsts(self, curve: Floats) -> list[Placing]:
+        """Placings that bring every other row of a curve (rows, p, 3) to the first pose."""
+        return [placed(self.places[0], curve[row]) for row in range(0, len(curve), FIRST_AT)]
+
+    def errors(
+        self,
+        circuit: Circuit,
+        rows: slice,
+        u: Floats,  # noqa: ARG002
+        placing: Placing,
+    ) -> Floats:
+        """The distances (n p,) on rows of an analysis [length]."""
+        one = InputPass(circuit, np.arange(len(circuit.q))[rows], closed=False, turns=True)
+        off = placing.put(self.curve(one)) - self.places
+        return np.asarray(np.linalg.norm(off, axis=2).ravel())

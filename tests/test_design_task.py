@@ -1,0 +1,278 @@
+"""Design tasks: exact slopes, known answers found again, conditions of an optimum, defective designs refused."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import sevenbar as sb
+from evidence.design.__main__ import FOUND, is_whole, unit_of
+from evidence.design.tasks import tasks
+from sevenbar.description.draft import Draft
+from sevenbar.design.synthesis.candidates import Refusal
+from sevenbar.design.task import (
+    Apart,
+    DesignTask,
+    DwellWant,
+    FigureMust,
+    FigureWant,
+    FreeNumber,
+    FunctionWant,
+    InBox,
+    InCone,
+    InRange,
+    PathWant,
+    PoseWant,
+    StraightWant,
+)
+from sevenbar.design.task.check import TaskDesign, checked_design
+from sevenbar.design.task.levenberg import nearest_least
+from sevenbar.design.task.musts import nearest_shares, pose_rooms
+from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
+from sevenbar.design.task.search import designed
+from sevenbar.design.task.solve import Solved, solved
+from sevenbar.design.task.starts import seeds
+from sevenbar.kinematics.ball_angle import ball_angle
+
+KNOWN = Draft.of_linkage(sb.load("rssr")).with_values({"L2": 1000.0}).with_point("Q", 3, (50.0, 60.0, 20.0))
+NAMES = ("M", "N", "L1", "L2", "L3", "D")
+CIRCUIT = KNOWN.linkage.motion(36).circuits[0]
+
+
+def free(draft, names, by=200.0):
+    """Free numbers that may go so far to each side."""
+    own = [draft.dimension(name) for name in names]
+    return tuple(
+        FreeNumber(d.name, max(d.value - by, 5.0) if d.positive else d.value - by, d.value + by) for d in own
+    )
+
+
+def off(draft, names, share, seed=1):
+    random = np.random.default_rng(seed)
+    return draft.with_values(
+        {n: draft.dimension(n).value + 20 * share * random.uniform(-10, 10) for n in names}
+    )
+
+
+START = off(KNOWN, NAMES, 0.1)
+
+
+def poses_of(link, rows):
+    """Poses (n, 4, 4) of a link on rows of the known circuit."""
+    zero = CIRCUIT.point(link, (0.0, 0.0, 0.0)).position[rows]
+    ends = [CIRCUIT.point(link, tuple(end)).position[rows] - zero for end in np.eye(3)]
+    poses = np.broadcast_to(np.eye(4), (len(rows), 4, 4)).copy()
+    poses[:, :3, :3], poses[:, :3, 3] = np.stack(ends, axis=2), zero
+    return poses
+
+
+ROWS = np.arange(4, 16, 2)
+PLACES, INPUTS, OUTPUTS = CIRCUIT.point("Q").position[ROWS], CIRCUIT.input[ROWS], CIRCUIT.output[ROWS]
+PATH = PathWant("Q", PLACES)
+FUNCTION = FunctionWant(INPUTS - INPUTS[0], OUTPUTS - OUTPUTS[0], (None, None))
+MUSTS = (
+    InCone("ball_a", 1.0),
+    InCone("ball_b", 1.2, seat=(1.0, 0.5, 0.0)),
+    InRange("rocker", -0.2, 0.9),
+    InBox((-300.0, -100.0, -900.0), (900.0, 900.0, 650.0), ("ball_a", "Q")),
+    Apart((1, 3), 720.0),
+)
+
+
+@pytest.mark.parametrize(
+    ("wants", "more"),
+    [
+        ((PATH,), {}),
+        ((PATH,), {"placement": "free"}),
+        (
+            (PathWant("Q", PLACES, timing=INPUTS - 0.2, phase=True, weight=2.0), FUNCTION),
+            {"placement": "free"},
+        ),
+        ((PoseWant(3, poses_of(3, ROWS), 100.0),), {"placement": "free"}),
+        ((PoseWant(3, poses_of(3, ROWS), 100.0, INPUTS),), {}),
+        ((FunctionWant(INPUTS, OUTPUTS),), {"musts": MUSTS}),
+        ((DwellWant((0.5, 1.0)),), {"musts": MUSTS}),
+        ((StraightWant("Q", (0.5, 1.5), 5000.0),), {}),
+        (
+            (FigureWant("swing", 60.0, 50.0), FunctionWant(INPUTS, OUTPUTS)),
+            {"musts": (FigureMust("swing", 70.0),)},
+        ),
+    ],
+)
+def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
+    names = NAMES if any(type(w).__name__ == "FigureWant" for w in wants) else (*NAMES, "Q.x", "Q.y", "Q.z")
+    model = TaskModel(DesignTask(START, free(START, names), wants, **more))
+    problem = TaskProblem(model, seeds(model, 0, 0, lambda: None)[0])
+    z = problem.start
+    here = problem.at(z)
+    problem.take(z)
+    gradient, rooms = here.left_by.T @ here.left, here.room_by
+    assert len(here.left) >= 6
+    for k in range(len(z)):
+        step = np.zeros(len(z))
+        step[k] = 1e-5
+        up, down = problem.at(z + step), problem.at(z - step)
+        assert gradient[k] == pytest.approx((up.left @ up.left - down.left @ down.left) / 4e-5, abs=1e-6)
+        assert rooms[:, k] == pytest.approx((up.room - down.room) / 2e-5, abs=1e-6)
+
+
+def test_places_moved_by_unknowns_have_exact_slopes_for_the_greatest_residual():
+    model = TaskModel(DesignTask(START, free(START, NAMES), (PATH,), placement="free", goal="minimax"))
+    problem = TaskProblem(model, seeds(model, 0, 0, lambda: None)[0], minimax=True)
+    z = problem.start + np.append(np.zeros(len(problem.start) - 6), [0.3, -0.2, 0.1, 0.02, 0.01, -0.03])
+    here = problem.at(z)
+    for k in range(len(z)):
+        step = np.zeros(len(z))
+        step[k] = 1e-5
+        differences = (problem.at(z + step).left - problem.at(z - step).left) / 2e-5
+        assert here.left_by[:, k] == pytest.approx(differences, abs=1e-7)
+
+
+def test_a_cone_is_the_angle_between_the_cranks_axis_and_the_coupler():
+    model = TaskModel(DesignTask(KNOWN, free(KNOWN, NAMES), (FunctionWant(INPUTS, OUTPUTS),)))
+    loop = model.loop
+    ((_, room),) = pose_rooms(loop, (InCone("ball_a", 1.0, seat=(0.0, 0.0, -1.0)),))
+    q = loop.closed(loop.start, INPUTS, loop.poses(loop.start, CIRCUIT.q[ROWS]))
+    a, b = (CIRCUIT.point(name).position[ROWS] for name in ("A", "B"))
+    along = (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
+    assert room(loop.here(loop.start, q))[0][:, 0] == pytest.approx(1.0 - np.arccos(-along[:, 2]), abs=1e-12)
+    # as the analysis has it, from a seat and from the rods
+    bend = ball_angle(KNOWN.linkage, "ball_a", seat=(0.0, 0.0, -1.0))
+    assert room(loop.here(loop.start, q))[0][:, 0] == pytest.approx(1.0 - bend.at(CIRCUIT.q[ROWS]), abs=1e-12)
+    for ball in ("ball_a", "ball_b"):
+        ((_, room),) = pose_rooms(loop, (InCone(ball, 1.0),))
+        found = room(loop.here(loop.start, q))[0][:, 0]
+        assert found == pytest.approx(1.0 - ball_angle(KNOWN.linkage, ball).at(CIRCUIT.q[ROWS]), abs=1e-12)
+
+
+def test_the_nearest_places_of_two_rods_are_those_of_all():
+    random = np.random.default_rng(0)
+    a, b, c, d = random.standard_normal((4, 40, 3))
+    s, t = nearest_shares(a, b, c, d)
+    near = np.linalg.norm(a + s[:, None] * (b - a) - c - t[:, None] * (d - c), axis=1)
+    shares = np.linspace(0.0, 1.0, 101)
+    one = a[:, None] + shares[:, None] * (b - a)[:, None]
+    other = c[:, None] + shares[:, None] * (d - c)[:, None]
+    every = np.linalg.norm(one[:, :, None] - other[:, None], axis=3).min(axis=(1, 2))
+    assert (near <= every + 1e-12).all()
+    assert (every - near < 0.03).all()
+    # parallel rods, and crossing ones
+    square = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])[:, None]
+    s, t = nearest_shares(square[0], square[1], square[2], square[3])
+    assert np.linalg.norm(s * (square[1] - square[0]) - square[2] - t * (square[3] - square[2])) == 1.0
+
+
+def test_least_squares_follow_a_bent_valley_and_stop_at_bounds():
+    def valley(z):
+        left = np.array([100 * (z[1] - z[0] ** 2), 1 - z[0], 0.0])
+        return left, np.array([[-200 * z[0], 100.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1e-18]])
+
+    wide = np.full(3, 9.0)
+    ways = {"evaluations": 200, "first": 1e-3, "taken": lambda _: None}
+    found = nearest_least(valley, np.array([-1.2, 1.0, 0.5]), -wide, wide, **ways)
+    assert found[:2] == pytest.approx([1.0, 1.0], abs=1e-12)
+    low = nearest_least(valley, np.array([-1.2, 1.0, 0.5]), -wide, np.array([0.5, 9.0, 9.0]), **ways)
+    assert low[:2] == pytest.approx([0.5, 0.25], abs=1e-9)
+
+
+CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10), "cusp": (3,)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("family", CHOSEN)
+def test_known_answers_are_found_to_nine_digits_and_whole(family):
+    for number, made in enumerate(tasks(family)):
+        if number in CHOSEN[family]:
+            (best,) = designed(made.task, count=1, starts=8).designs
+            assert best.met[0].greatest < FOUND * unit_of(made.task), made
+            assert is_whole(best)
+
+
+@pytest.mark.slow
+def test_musts_hold_to_the_stop_and_the_optimum_meets_its_conditions():
+    want = FunctionWant(
+        np.radians(np.linspace(0, 60, 13)), np.radians(20 * np.linspace(0, 1, 13) ** 2), (None, None)
+    )
+    task = DesignTask(START, free(START, ("M", "L1", "L3")), (want,), musts=(InCone("ball_a", 0.8),))
+    (best,) = designed(task, count=1, starts=0).designs
+    assert best.optimality < 1e-8
+    # the cone stops it: without one the error is smaller
+    assert best.room == pytest.approx(0.0, abs=1e-4)
+    (free_of_it,) = designed(DesignTask(START, task.free, (want,)), count=1, starts=0).designs
+    assert free_of_it.cost < best.cost
+    assert free_of_it.optimality < 1e-8
+
+
+@pytest.mark.slow
+def test_the_least_greatest_error_ripples_evenly():
+    want = FunctionWant(
+        np.radians(np.linspace(0, 60, 41)), np.radians(20 * np.linspace(0, 1, 41) ** 2), (None, None)
+    )
+    task = DesignTask(START, free(START, ("M", "L1", "L3")), (want,), goal="minimax")
+    model = TaskModel(task)
+    best = min(
+        (solved(model, seed) for seed in seeds(model, 0, 0, lambda: None)[:2]), key=lambda one: one.cost
+    )
+    answer = checked_design(model, best)
+    assert isinstance(answer, TaskDesign)
+    errors = answer.candidate.claim.errors
+    extremes = np.flatnonzero(np.abs(errors) > (1 - 1e-7) * np.abs(errors).max())
+    assert answer.met[0].greatest == pytest.approx(best.cost, rel=1e-9)
+    # five unknowns (two zeros among them) hold six errors, of turning signs
+    assert len(extremes) >= 5
+    assert all(errors[a] * errors[b] < 0 for a, b in pairwise(extremes))
+    assert best.optimality < 1e-6
+
+
+@pytest.mark.slow
+def test_a_swing_with_its_time_ratio_is_found_by_the_figures_alone():
+    task = DesignTask(
+        KNOWN, free(KNOWN, NAMES), (FigureWant("swing", 60.0, 50.0), FigureWant("time_ratio", 1.2))
+    )
+    (best,) = designed(task, count=1, starts=0).designs
+    circuit = best.draft.linkage.motion(720).circuits[best.candidate.circuit]
+    assert math.degrees(circuit.swing) == pytest.approx(60.0, abs=1e-8)
+    assert circuit.time_ratio == pytest.approx(1.2, abs=1e-9)
+
+
+def as_solution(model, rows, circuits):
+    """The known linkage itself as a solution at rows of circuits."""
+    q = np.stack([circuit.q[row] for row, circuit in zip(rows, circuits, strict=True)])
+    inputs = np.array([circuit.input[row] for row, circuit in zip(rows, circuits, strict=True)])
+    values = model.loop.start
+    seed = TaskSeed(values, (inputs,), model.loop.poses(values, q), q[0], 0.0)
+    return Solved(seed, (inputs,), 0.0, 0.0, math.inf)
+
+
+@pytest.mark.parametrize(
+    ("rows", "others", "fault"),
+    [([1, 4, 9, 13], (), ""), ([1, 9, 4, 13], (), "order"), ([1, 4, 9, 13], (2, 3), "circuit")],
+)
+def test_a_defective_design_is_refused_however_well_it_fits(rows, others, fault):
+    one, other = KNOWN.linkage.motion(36).circuits[:2]
+    circuits = [other if k in others else one for k in range(4)]
+    places = np.stack([c.point("Q").position[row] for row, c in zip(rows, circuits, strict=True)])
+    model = TaskModel(DesignTask(KNOWN, free(KNOWN, NAMES), (PathWant("Q", places),)))
+    answer = checked_design(model, as_solution(model, rows, circuits))
+    if fault:
+        assert isinstance(answer, Refusal)
+        assert answer.fault == fault
+    else:
+        assert isinstance(answer, TaskDesign)
+        assert answer.met[0].greatest < 1e-9
+
+
+def test_a_missed_must_is_refused_by_its_name():
+    places = CIRCUIT.point("Q").position[[1, 4, 9, 13]]
+    for must, fault in (
+        (InCone("ball_a", 0.1), "cone"),
+        (InRange("rocker", 0.4, 0.6), "range"),
+        (InBox((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), ("Q",)), "box"),
+        (Apart((1, 3), 5000.0), "distance"),
+        (FigureMust("swing", 100.0), "figure"),
+    ):
+        model = TaskModel(DesignTask(KNOWN, free(KNOWN, NAMES), (PathWant("Q", places),), musts=(must,)))
+        answer = checked_design(model, as_solution(model, [1, 4, 9, 13], [CIRCUIT] * 4))
+        assert isinstance(answer, Refusal)
+        assert answer.fault == fault
