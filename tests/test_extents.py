@@ -249,7 +249,7 @@ def test_a_seat_that_an_idle_spin_moves_is_refused():
         ({"cones": {"ball_a": 0.0}}, "0 deg is no cone; give an angle above 0, up to 180 deg"),
         ({"cones": {"ball_a": "15"}}, "is not a number with a unit that fits"),
         ({"radii": {5: 3.0}}, "link 5 is not a link; give 1 to 4, the last is the ground"),
-        ({"radii": {1: -3.0}}, "-3.0 is not a radius; give a number >= 0"),
+        ({"radii": {1: -3.0}}, "-3.0 is not a radius; give a number > 0"),
     ],
 )
 def test_stops_that_do_not_fit_are_refused(given, message):
