@@ -33,9 +33,9 @@ class CircuitQuantity:
     """What is reported of each circuit: one text or more.
 
     `name`, in English, is what it is called here, `words` and `unit` are its label in a list, `head` is above
-    its column. Two texts that are the `ends`
-    of something are two lines of a list, min and max; others are one line, joined by `between`. `only`
-    keeps it to lists or to tables; a column may be left out where it is `spare` and room is short.
+    its column. Two texts that are the `ends` of something are two lines of a list, min and max; others are
+    one line, joined by `between`. `only` keeps it to lists or to tables; a column may be left out where it
+    is `spare` and room is short.
     """
 
     name: str

@@ -50,6 +50,12 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
     def at(peak: Peak, show: Callable[[float], str]) -> str:
         return f"{show(peak.value)} @ {place(peak.input, whole=True)}"
 
+    def ends(low: Peak, high: Peak, show: Callable[[float], str]) -> Row:
+        if show(low.value) == show(high.value):
+            # throughout, and at no place more than at another
+            return show(low.value), show(high.value)
+        return at(low, show), at(high, show)
+
     ranges = known(lambda: circuit.joint_ranges)
     if ranges is None:
         yield (number, say("cannot be followed by its own length"), "-", "-", "-", "-")
@@ -60,12 +66,12 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
         if found.low is None or found.high is None or found.extent is None:
             yield (number, name, "-", "-", say("without end"), stop)
         else:
-            yield (number, name, at(found.low, show), at(found.high, show), show(found.extent), stop)
+            yield (number, name, *ends(found.low, found.high, show), show(found.extent), stop)
     for name, cone in (known(lambda: circuit.ball_cones) or {}).items():
         stop = "-" if cone.limit is None else degrees(cone.limit)
         middle = say("{angle} from the middle", angle=degrees(cone.spread))
         bend = say("bend of {joint}", joint=name)
-        yield (number, bend, at(cone.least, degrees), at(cone.greatest, degrees), middle, stop)
+        yield (number, bend, *ends(cone.least, cone.greatest, degrees), middle, stop)
     length = Shown(linkage.length_unit)
     for one in (known(lambda: circuit.clearances) or ()) if stops.radii else ():
         if one.radii:
