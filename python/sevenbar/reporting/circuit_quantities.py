@@ -16,14 +16,11 @@ from sevenbar.kinematics.motion import Motion
 from sevenbar.reporting.facts import turns_text
 from sevenbar.reporting.force_peaks import peaks_of
 from sevenbar.reporting.force_words import number
-from sevenbar.reporting.shown import Shown, degrees, six_digits
+from sevenbar.reporting.shown import REST, Shown, degrees, six_digits
 from sevenbar.text.words import say
 
 #: Dead centres listed in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
-
-#: Values below this share of what the linkage's size and its drive make are rounding.
-REST = 1e-12
 
 Texts = tuple[str, ...]
 
