@@ -232,8 +232,38 @@ def test_right_angles_of_a_cube_have_answers():
 
 def test_the_example_of_the_page_prints_what_its_comments_say():
     page = (Path(__file__).parent.parent / "docs" / "synthesis.md").read_text(encoding="utf-8")
-    _, code = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    (code,) = (block for block in blocks if "planar_poses" in block)
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(code, {})
     assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        # the first pivot is the pole of a quarter turn, and so at one place in two poses
+        (
+            lambda: planar_poses(
+                [(0, 0, 0), (0, 0, math.pi / 2), (3, 1, math.pi)], moving=[(0, 0), (1, 0), (0, 1)]
+            ),
+            r"moving\[0\]: has one place in two of the three poses",
+        ),
+        (
+            lambda: planar_poses([(0, 0, 0), (1, 0, 1), (3, 1, 2)], moving="ab"),
+            "moving: 'ab' is not an array of numbers",
+        ),
+        (
+            lambda: planar_poses([(0, 0, 0), (1, 0, 1), (3, 1, 2)], samples=2.5),
+            "samples: 2.5 is no number of members; give 1 to 1048576",
+        ),
+        (
+            lambda: spherical_orientations([np.eye(3), about(0, 1.0), about(1, 1.0)], radius=0),
+            "radius: 0 is not a length; give a number > 0",
+        ),
+    ],
+)
+def test_what_makes_no_dyad_is_refused(call, message):
+    with pytest.raises(RequestError, match=message):
+        call()

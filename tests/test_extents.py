@@ -13,6 +13,7 @@ from sevenbar.forces.cones import Bounds, least_greatest_size
 from sevenbar.kinematics.allowed import distances
 from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.rods import nearest_shares, rod_distance
+from sevenbar.reporting.extents import extent_rows
 
 
 def degrees(found):
@@ -249,9 +250,26 @@ def test_a_seat_that_an_idle_spin_moves_is_refused():
         ({"cones": {"ball_a": 0.0}}, "0 deg is no cone; give an angle above 0, up to 180 deg"),
         ({"cones": {"ball_a": "15"}}, "is not a number with a unit that fits"),
         ({"radii": {5: 3.0}}, "link 5 is not a link; give 1 to 4, the last is the ground"),
-        ({"radii": {1: -3.0}}, "-3.0 is not a radius; give a number >= 0"),
+        ({"radii": {1: -3.0}}, "-3.0 is not a radius; give a number > 0"),
     ],
 )
 def test_stops_that_do_not_fit_are_refused(given, message):
     with pytest.raises(RequestError, match=message):
         sb.load("rssr").stopped(**given)
+
+
+def test_what_is_rounding_or_stays_is_reported_once():
+    plane = {"axis": (0, 0, 1)}
+    slider = sb.from_axes(
+        [
+            {"name": "crank", "kind": "R", "at": (0, 0, 0), **plane},
+            {"kind": "R", "at": (10, 0, 0), **plane},
+            {"kind": "R", "at": (40, 0, 0), **plane},
+            {"name": "slide", "kind": "P", "at": (40, 0, 0), "axis": (1, 0, 0)},
+        ]
+    )
+    rows = {row[1]: row for row in extent_rows(slider.motion(36))[1] if row[0] == "0"}
+    # between the dead centres the slide goes from 20 below where it is drawn to there
+    assert [cell.partition(" @")[0] for cell in rows["slide"][2:5]] == ["-20 mm", "0 mm", "20 mm"]
+    rows = {row[1]: row for row in extent_rows(sb.load("rssr").motion(36))[1] if row[0] == "0"}
+    assert rows["bend of ball_a"][2:4] == ("59.393\u00b0", "59.393\u00b0")

@@ -101,3 +101,22 @@ def test_a_measure_of_a_joint_goes_through_a_process() -> None:
     assert again.name == measure.name
     circuit = loaded_circuit("rssr")[1]
     assert again.value(circuit) == measure.value(circuit)
+
+
+def test_the_peak_of_shaking_is_found_between_the_rows() -> None:
+    few, many = (sb.load("rssr_press").motion(rows) for rows in (7, 36_000))
+    (found,) = (row["peak_shaking"] for row in rows_of(few, measures_named(["peak_shaking"]))[:1])
+    shaking = many.circuits[0].forces().shaking[:, 3:]
+    # next to a peak a row at most half a step away misses of it what its curvature makes of that
+    assert found == pytest.approx(np.linalg.norm(shaking, axis=1).max(), rel=1e-7)
+    greatest = np.linalg.norm(few.circuits[0].forces().shaking[:, 3:], axis=1).max()
+    assert found > greatest * 1.001
+
+
+def test_a_circuit_that_rocks_has_no_peak_of_shaking() -> None:
+    linkage, circuit = loaded_circuit("rssr")
+    (row,) = rows_of(
+        linkage.motion(input=circuit.columns[-1]), measures_named(["peak_shaking", "peak_torque"])
+    )[:1]
+    assert row["peak_shaking"] is None
+    assert row["peak_torque"] is None

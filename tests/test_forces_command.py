@@ -282,7 +282,7 @@ def test_counterweights_are_those_of_the_circuit() -> None:
     assert [one["mass"] for one in found["weights"]] == pytest.approx([12.5, 66.0], rel=1e-9)
     assert [one["product"] for one in found["weights"]] == [one.product for one in balance.counterweights]
     assert found["after"] < 1e-10 * found["before"]
-    assert "link 3 6600 kg length" in told("rssr_press", "--counterweights", "1", "--counterweights", "3")
+    assert "link 3 6600 kg mm" in told("rssr_press", "--counterweights", "1", "--counterweights", "3")
 
 
 @pytest.mark.parametrize(

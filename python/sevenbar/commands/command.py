@@ -72,8 +72,8 @@ EXAMPLES = {
     "map": ("sevenbar map rssr --over L1=100:400 --over L3=300:800 --measure transmission_lowest -o maps",),
     "tolerance": ("sevenbar tolerance rssr --tolerance 'L*=0.5mm' --tolerance M=1 -o tolerance",),
     "survey": (
-        "sevenbar design survey --output-range 0:23.75deg --ball-angle 15deg --motion-type crank-rocker",
-        "sevenbar design survey --y 'x^2' --count 1e8 --journal parts --out designs",
+        "sevenbar design survey --output-range 0:23.75deg --ball-angle 15deg --count 1e6 -o flap",
+        "sevenbar design survey --swing 60deg --time-ratio 1.1 --bound angle=60:120deg --rank transmission",
     ),
     "swing": ("sevenbar design swing --swing 60deg --time-ratio 1.2 -o swing",),
     "path": (

@@ -69,7 +69,7 @@ def forces(
         typer.Option(
             parser=number_of("--radius", "100"),
             metavar="NUMBER",
-            help="How far from their joints counterweights are [length unit], which gives their masses.",
+            help="How far counterweights are from their joints, in the length unit, for their masses.",
         ),
     ] = None,
     joint: Annotated[

@@ -32,7 +32,8 @@ Function = Callable[[Floats], Floats]
 def lowest(function: Function, edges: Floats, bounds: Floats, small: float) -> tuple[float, float]:
     """Where a quantity is lowest between `edges` (m + 1,), and its value, up to `small`.
 
-    Slopes are within `bounds` (m,). Of equal values the first place counts.
+    Slopes are within `bounds` (m,). Of equal values the first place counts. Of a quantity that stays within
+    `small` of its lowest value on more stretches than `MOST` it is the lowest of the places tried.
     """
     a, b, slope = edges[:-1], edges[1:], bounds
     values = function(edges)
@@ -56,7 +57,8 @@ def lowest(function: Function, edges: Floats, bounds: Floats, small: float) -> t
 def crossings(function: Function, edges: Floats, bounds: Floats, small: float) -> Floats:
     """Places (j,) at which a quantity passes through zero, rising or falling; slopes are within `bounds`.
 
-    A touch from one side, and two crossings between which it reaches less than `small`, are none.
+    A touch from one side, and two crossings between which it reaches less than `small`, are none, or two next
+    to each other.
     """
     values = function(edges)
     found: list[Floats] = []

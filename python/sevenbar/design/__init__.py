@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from types import ModuleType
 
-__all__ = ["exact", "maps", "points", "synthesis", "task", "tolerance"]
+__all__ = ["exact", "maps", "points", "survey", "synthesis", "task", "tolerance"]
 
 
 def __getattr__(name: str) -> ModuleType:

@@ -60,7 +60,7 @@ class Balance(Printed):
     `measure` says of what `before` and `after` are values [N]: the root mean square over the cycle, or the
     greatest of the rows. `bound` is what no counterweights within the bounds go below; with least squares the
     optimum itself. Of `unknowns` as many as `rank` act; `idle` names what does nothing. `status` is
-    Clarabel's, "least squares" without bounds.
+    Clarabel's, "least squares" without bounds. Lengths are in the `length_unit`.
     """
 
     counterweights: tuple[Counterweight, ...]
@@ -73,6 +73,7 @@ class Balance(Printed):
     unknowns: int
     idle: tuple[str, ...]
     status: str
+    length_unit: str = "length"
 
     @property
     def gap(self) -> float:
@@ -96,6 +97,7 @@ def counterweights(
     measure: Literal["rms", "greatest"] = "rms",
     force: float = 1.0,
     moment: float = 0.0,
+    length_unit: str = "length",
 ) -> Balance:
     """Counterweights on `mounts` for the least of a shaking (n, 6), moment [N m], then force [N].
 
@@ -156,6 +158,7 @@ def counterweights(
         unknowns=int(found.used.sum()),
         idle=tuple(found.names(mounts)),
         status=status,
+        length_unit=length_unit,
     )
 
 

@@ -14,15 +14,20 @@ Source: docs/theory_forces.md, (17) and (18).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.curves.curve import Curve, Peak, mean
-from sevenbar.curves.cycle_series import CycleSeries
+from sevenbar.curves.cycle_series import cycle_series
 from sevenbar.curves.timed_rows import TimedRows
 from sevenbar.text.printing import Printed
+
+if TYPE_CHECKING:
+    from sevenbar.forces.result import Forces
 
 #: Columns of a wrench.
 MOMENT, FORCE = (0, 1, 2), (3, 4, 5)
@@ -44,25 +49,57 @@ class Shaking(Printed):
     orders: Floats
 
 
-def shaking_of(wrench: Floats, input: Floats, *, period: float | None, time: Floats) -> Shaking:
+def shaking_of(
+    wrench: Floats,
+    input: Floats,
+    *,
+    period: float | None,
+    time: Floats,
+    evaluate: Callable[[Floats], Floats] | None = None,
+) -> Shaking:
     """The shaking of rows (n, 6) at `input` (n,) [rad, or length] and `time` (n,) [s].
 
-    `period` is the way of the input round a closed cycle at constant speed; `None` for a law's rows.
+    `period` is the way of the input round a closed cycle at constant speed; `None` for a law's rows. With
+    `evaluate`, which gives rows (m, 6) at inputs (m,) of such a cycle, rows are added until peaks and mean
+    values do not depend on them.
     """
+    sizes = np.array([np.abs(wrench[:, part]).max(initial=0.0) for part in (MOMENT, FORCE)])
+    # moments and forces as parts of their greatest, so that rounding is one size in all
+    units = np.repeat(np.where(sizes > 0, sizes, 1.0), 3)
     both: Curve
     orders = np.zeros((0, 6))
     if period is None:
-        both = TimedRows(wrench, input, time)
+        both = TimedRows(wrench / units, input, time)
     else:
-        both = series = CycleSeries(wrench, float(input[0]), period)
-        orders = np.abs(series.spectrum)
+        ask = None if evaluate is None else lambda inputs: np.asarray(evaluate(inputs) / units)
+        both = series = cycle_series(ask, wrench / units, float(input[0]), period)
+        orders = np.abs(series.spectrum) * units
     found = []
     for part in (FORCE, MOMENT):
-        squares = both.part(part).squared()
+        squares, unit = both.part(part).squared(), float(units[part[0]])
         top = squares.highest()
-        found.append((Peak(_root(top.value), top.input), _root(mean(squares))))
+        found.append((Peak(unit * _root(top.value), top.input), unit * _root(mean(squares))))
     (force, rms_force), (moment, rms_moment) = found
     return Shaking(force, moment, rms_force, rms_moment, orders)
+
+
+def shaking_along(forces: Forces) -> Shaking | None:
+    """The shaking of the rows of forces, of a cycle between them, too; `None` where a row has none."""
+    if not len(forces.input) or not np.isfinite(forces.shaking).all():
+        return None
+    between = None if forces.through_change_points else forces.between
+
+    def evaluate(inputs: Floats) -> Floats:
+        assert between is not None
+        return between(inputs).shaking
+
+    return shaking_of(
+        forces.shaking,
+        forces.input,
+        period=forces.period,
+        time=forces.time,
+        evaluate=None if between is None else evaluate,
+    )
 
 
 def _root(square: float) -> float:

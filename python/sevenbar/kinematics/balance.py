@@ -45,7 +45,8 @@ def balance_of(
             "by a law that stays off them, or take one whose input goes round"
         )
     shares = None if forces.periodic else shares_of(forces.time)
-    return counterweights(forces.shaking, mounts, size=circuit.size, shares=shares, **options)  # type: ignore[arg-type]
+    sizes = {"size": circuit.size, "shares": shares, "length_unit": linkage.length_unit}
+    return counterweights(forces.shaking, mounts, **sizes, **options)  # type: ignore[arg-type]
 
 
 def mount_of(linkage: Solvable, circuit: Circuit, link: int) -> Mount:

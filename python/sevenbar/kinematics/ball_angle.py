@@ -184,8 +184,9 @@ def rod(linkage: Loop, link: int, joint: int) -> Floats:
         return unit(way)
     other = linkage.joints[link % count if ahead else link - 1]
     if other.row.is_ball:
+        side = "stud" if ahead else "seat"
         raise RequestError(
-            f"seat: link {link} has no length between {linkage.joints[joint].name} and {other.name}; "
+            f"{side}: link {link} has no length between {linkage.joints[joint].name} and {other.name}; "
             "give a direction of it"
         )
     frame = inverse(linkage.point_frames[link - 1])[:3, :3]

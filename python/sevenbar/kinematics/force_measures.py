@@ -18,6 +18,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.errors import RequestError, no_joint
 from sevenbar.forces.loading import Loading
+from sevenbar.forces.shaking import shaking_along
 from sevenbar.forces.sizing import Sizing
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.forces import ForceSolver
@@ -31,21 +32,22 @@ SAME_VALUE = 1e-6
 def sized(circuit: Circuit, joints: Sequence[str] = ()) -> Sizing | None:
     """The sizing of a circuit's torque, with the bearings of these joints only.
 
-    `None` for the passes of a circuit that rocks: its measures are of constant speed.
+    `None` for a circuit that rocks: its measures are of constant speed.
     """
     found = circuit.forces()
-    if not circuit.goes_round and not np.isnan(found.torque).any():
-        return None
     for name in joints:
         if name not in found.reactions:
             raise RequestError(f"measure: {no_joint(name, list(found.reactions))}")
+    if not circuit.goes_round:
+        return None
     return replace(found, reactions={name: found.reactions[name] for name in joints}).sizing()
 
 
 def peak_shaking(circuit: Circuit) -> float | None:
-    """The greatest shaking force [N] of the rows; `None` where a row has none."""
-    sizes = np.linalg.norm(circuit.forces().shaking[:, 3:], axis=1)
-    return float(sizes.max()) if len(sizes) and np.isfinite(sizes).all() else None
+    """The greatest shaking force [N], between the rows, too; `None` where a row has none, or it rocks."""
+    forces = circuit.forces()
+    found = shaking_along(forces) if circuit.goes_round else None
+    return None if found is None else found.force.value
 
 
 @dataclass(frozen=True, eq=False)

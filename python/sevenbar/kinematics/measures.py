@@ -179,7 +179,7 @@ FORCE_MEASURES: dict[str, Measure] = {
         _of_sizing(
             "energy_fluctuation", "energy", lambda s: s.fluctuation, "fluctuation of energy, for a flywheel"
         ),
-        Measure("peak_shaking", "circuit", "force", peak_shaking, "greatest shaking force of the rows"),
+        Measure("peak_shaking", "circuit", "force", peak_shaking, "greatest shaking force"),
     )
 }
 

@@ -9,6 +9,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.stationary import nodes
 from sevenbar.kinematics.circuit_path import TERMS, CircuitPath
+from sevenbar.kinematics.rigid import turns_about
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 
 
@@ -48,18 +49,10 @@ def rows_of(numbers: Numbers, poses: Floats) -> Floats:
     for joint in numbers.spun:
         a, b = (numbers.word.inner[joint][k].factors[-1].pose(values)[:3, 2] for k in (0, 1))
         column = numbers.word.freedoms[joint][0].columns[0]
-        turn = _turned(a, poses[:, column]) @ _turned(b, poses[:, column + 1])
+        turn = turns_about(a, poses[:, column]) @ turns_about(b, poses[:, column + 1])
         middle = -np.arcsin(np.clip(turn[:, 2, 0], -1.0, 1.0))
         first = np.arctan2(turn[:, 1, 0], turn[:, 0, 0])
         rows[:, column : column + 3] = np.stack(
             [first, middle, np.arctan2(turn[:, 2, 1], turn[:, 2, 2])], axis=1
         )
     return rows
-
-
-def _turned(axis: Floats, angles: Floats) -> Floats:
-    """Rotations (n, 3, 3) about an axis (3,)."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sines, versines = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
-    return np.asarray(np.eye(3) + sines * cross + versines * (cross @ cross))

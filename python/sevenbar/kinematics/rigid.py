@@ -54,6 +54,14 @@ def about(axis: int, angle: npt.ArrayLike) -> Floats:
     return matrix
 
 
+def turns_about(axis: Floats, angles: Floats) -> Floats:
+    """The rotations (n, 3, 3) about a direction (3,) of length 1 by angles (n,) [rad] (Rodrigues)."""
+    x, y, z = axis
+    tilde = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sines, versed = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
+    return np.asarray(np.eye(3) + sines * tilde + versed * (tilde @ tilde))
+
+
 def half_turn(axis: npt.ArrayLike) -> Floats:
     """The motion (4, 4) of half a turn about an axis (3,) through the origin: `2 a a^T / a.a - 1`.
 

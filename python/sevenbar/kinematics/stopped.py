@@ -91,7 +91,7 @@ def _radii(linkage: Loop, given: Radii) -> dict[int, float]:
         refuse_no_link("radii", link, linkage, or_ground=True)
         key = f"radii[{link}]"
         value = finite_number(key, given_number(key, radius, linkage.length_unit))  # type: ignore[arg-type]
-        if value < 0:
-            raise RequestError(f"{key}: {shown(radius)} is not a radius; give a number >= 0")
+        if value <= 0:
+            raise RequestError(f"{key}: {shown(radius)} is not a radius; give a number > 0")
         found[int(link)] = value
     return found

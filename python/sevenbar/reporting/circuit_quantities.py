@@ -16,14 +16,11 @@ from sevenbar.kinematics.motion import Motion
 from sevenbar.reporting.facts import turns_text
 from sevenbar.reporting.force_peaks import peaks_of
 from sevenbar.reporting.force_words import number
-from sevenbar.reporting.shown import Shown, degrees, six_digits
+from sevenbar.reporting.shown import REST, Shown, degrees, six_digits
 from sevenbar.text.words import say
 
 #: Dead centres listed in one cell; an output that rests has no end of them.
 MOST_DEAD_CENTRES = 8
-
-#: Values below this share of what the linkage's size and its drive make are rounding.
-REST = 1e-12
 
 Texts = tuple[str, ...]
 
@@ -33,9 +30,9 @@ class CircuitQuantity:
     """What is reported of each circuit: one text or more.
 
     `name`, in English, is what it is called here, `words` and `unit` are its label in a list, `head` is above
-    its column. Two texts that are the `ends`
-    of something are two lines of a list, min and max; others are one line, joined by `between`. `only`
-    keeps it to lists or to tables; a column may be left out where it is `spare` and room is short.
+    its column. Two texts that are the `ends` of something are two lines of a list, min and max; others are
+    one line, joined by `between`. `only` keeps it to lists or to tables; a column may be left out where it
+    is `spare` and room is short.
     """
 
     name: str

@@ -11,7 +11,7 @@ from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.extents import Allowed
 from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.motion import Motion
-from sevenbar.reporting.shown import Shown, degrees
+from sevenbar.reporting.shown import REST, Shown, degrees
 from sevenbar.text.words import say
 
 T = TypeVar("T")
@@ -47,26 +47,34 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
     place = Shown("rad" if circuit.input_turns else linkage.length_unit)
     number, stops = f"{circuit.index}", linkage.stops
 
+    def length(value: float) -> str:
+        return Shown(linkage.length_unit)(0.0 if abs(value) < REST * circuit.size else value)
+
     def at(peak: Peak, show: Callable[[float], str]) -> str:
         return f"{show(peak.value)} @ {place(peak.input, whole=True)}"
+
+    def ends(low: Peak, high: Peak, show: Callable[[float], str]) -> Row:
+        if show(low.value) == show(high.value):
+            # throughout, and at no place more than at another
+            return show(low.value), show(high.value)
+        return at(low, show), at(high, show)
 
     ranges = known(lambda: circuit.joint_ranges)
     if ranges is None:
         yield (number, say("cannot be followed by its own length"), "-", "-", "-", "-")
         return
     for name, found in ranges.items():
-        show = Shown("rad" if found.turns else linkage.length_unit)
+        show = degrees if found.turns else length
         stop = say(" to ").join(map(show, stops.ranges[name])) if name in stops.ranges else "-"
         if found.low is None or found.high is None or found.extent is None:
             yield (number, name, "-", "-", say("without end"), stop)
         else:
-            yield (number, name, at(found.low, show), at(found.high, show), show(found.extent), stop)
+            yield (number, name, *ends(found.low, found.high, show), show(found.extent), stop)
     for name, cone in (known(lambda: circuit.ball_cones) or {}).items():
         stop = "-" if cone.limit is None else degrees(cone.limit)
         middle = say("{angle} from the middle", angle=degrees(cone.spread))
         bend = say("bend of {joint}", joint=name)
-        yield (number, bend, at(cone.least, degrees), at(cone.greatest, degrees), middle, stop)
-    length = Shown(linkage.length_unit)
+        yield (number, bend, *ends(cone.least, cone.greatest, degrees), middle, stop)
     for one in (known(lambda: circuit.clearances) or ()) if stops.radii else ():
         if one.radii:
             pair = say("links {first} and {second}", first=one.links[0], second=one.links[1])

@@ -179,11 +179,12 @@ def _(found: Balance) -> str:
 def balance_facts(found: Balance) -> list[tuple[str, str]]:
     """The counterweights link by link, what they leave of the shaking, and how they were found."""
     unit = "N"
-    facts = [(f"link {one.link}", _weight(one)) for one in found.counterweights]
+    facts = [(f"link {one.link}", _weight(one, found.length_unit)) for one in found.counterweights]
+    after = found.after if found.after > ROUNDING * found.before else 0.0
     facts.append(
         (
             "shaking",
-            f"{found.measure} {number(found.before)} {unit} before, {number(found.after)} {unit} after",
+            f"{found.measure} {number(found.before)} {unit} before, {number(after)} {unit} after",
         )
     )
     facts.append(("found", f"{found.status}; {found.rank} of {found.unknowns} numbers act"))
@@ -191,12 +192,12 @@ def balance_facts(found: Balance) -> list[tuple[str, str]]:
     return facts
 
 
-def _weight(one: Counterweight) -> str:
+def _weight(one: Counterweight, unit: str) -> str:
     if not one.product:
         return "none"
-    way = ", ".join(f"{x + 0.0:.4g}" for x in one.direction)
+    way = ", ".join(f"{x if abs(x) > ROUNDING else 0.0:.4g}" for x in one.direction)
     mass = "" if one.mass is None else f", {number(one.mass)} kg"
-    return f"{number(one.product)} kg length towards ({way}){mass}"
+    return f"{number(one.product)} kg {unit} towards ({way}){mass}"
 
 
 @figure_of.register(Forces)

@@ -13,7 +13,7 @@ from sevenbar.curves.timed_rows import shares_of
 from sevenbar.forces.bodies import Body
 from sevenbar.forces.loading import Load, Loading, Spring
 from sevenbar.forces.result import COMPONENTS, Forces
-from sevenbar.forces.shaking import Shaking, shaking_of
+from sevenbar.forces.shaking import Shaking, shaking_along
 from sevenbar.forces.sizing import Bearing, Sizing
 from sevenbar.reporting.shown import Shown
 from sevenbar.text.words import retold, say
@@ -348,9 +348,7 @@ def known_alone(forces: Forces) -> list[str]:
 
 def shaking_found(forces: Forces) -> Shaking | None:
     """How the linkage shakes the ground; `None` at rest and where a row has no rates."""
-    if forces.at_rest or not np.isfinite(forces.shaking).all() or not forces.bodies:
-        return None
-    return shaking_of(forces.shaking, forces.input, period=forces.period, time=forces.time)
+    return None if forces.at_rest or not forces.bodies else shaking_along(forces)
 
 
 def shaking_facts(forces: Forces, found: Shaking | None) -> list[tuple[str, str]]:

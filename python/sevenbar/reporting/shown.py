@@ -7,6 +7,9 @@ import math
 from sevenbar.arrays import Words, counted
 from sevenbar.kinematics.geometry import Loop
 
+#: Values below this share of what the linkage's size and its drive make are rounding.
+REST = 1e-12
+
 
 class Shown:
     """How a joint's value is written: an angle in degrees, a slide in the length unit."""

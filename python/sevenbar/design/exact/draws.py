@@ -7,10 +7,17 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.exact.bilinear import on_cubic, partner
 from sevenbar.design.synthesis.function.generation import need_scipy
-from sevenbar.errors import RequestError
+from sevenbar.errors import RequestError, shown
 
 #: A pair of points (a, b), both (3,), that bilinear forms make zero.
 Pair = tuple[Floats, Floats]
+
+
+#: Most members that are drawn.
+MOST = 2**20
+
+#: A vector product of two rows of length 1 below this has a direction of rounding.
+PARALLEL = 1e-12
 
 
 def directions(samples: int, size: int, seed: int) -> Floats:
@@ -19,10 +26,10 @@ def directions(samples: int, size: int, seed: int) -> Floats:
     from scipy.special import ndtri
     from scipy.stats import qmc
 
-    if samples < 1:
-        raise RequestError(f"samples: {samples} is no number of members; give 1 or more")
+    if isinstance(samples, bool) or not isinstance(samples, int | np.integer) or not 1 <= samples <= MOST:
+        raise RequestError(f"samples: {shown(samples)} is no number of members; give 1 to {MOST}")
     # a sequence is even in powers of two only
-    draws = qmc.Sobol(size, seed=seed).random_base2(max(samples - 1, 1).bit_length())[:samples]
+    draws = qmc.Sobol(size, seed=seed).random_base2(max(int(samples) - 1, 1).bit_length())[:samples]
     found = ndtri(np.clip(draws, 1e-9, 1 - 1e-9))
     return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
 
@@ -37,5 +44,18 @@ def on_curve(forms: Floats, samples: int, seed: int) -> list[Pair]:
 
 
 def anywhere(forms: Floats, moving: Floats) -> list[Pair]:
-    """Pairs of two forms (2, 3, 3): each b of `moving` (k, 3) has its a, `T_1 b x T_2 b`."""
-    return [(np.cross(*(forms @ b)), b) for b in moving]
+    """Pairs of two forms (2, 3, 3): each b of `moving` (k, 3) has its a, `T_1 b x T_2 b`.
+
+    Raises `RequestError` for one that has infinitely many.
+    """
+    found: list[Pair] = []
+    sizes = np.linalg.norm(forms, axis=(1, 2))
+    for i, b in enumerate(moving):
+        a = np.cross(*(forms @ b))
+        if np.linalg.norm(a) <= PARALLEL * sizes.prod() * float(b @ b):
+            raise RequestError(
+                f"moving[{i}]: has one place in two of the three poses, so infinitely many dyads fit; give "
+                "another"
+            )
+        found.append((a, b))
+    return found

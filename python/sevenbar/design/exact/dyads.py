@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.kinematics.rigid import axial
+from sevenbar.kinematics.rigid import axial, turns_about
 
 #: Two lines are one where directions [-] and places, relative to their distance from the others, agree so.
 SAME_LINE = 1e-9
@@ -62,14 +62,6 @@ class Dyad:
         link[:, :3, 3] += origin - link[:, :3, :3] @ origin
         ground, body = (replace(line, at=line.at + origin) for line in (self.ground, self.body))
         return Dyad(ground, body, link)
-
-
-def turns_about(axis: Floats, angles: Floats) -> Floats:
-    """The rotations (n, 3, 3) about a direction (3,) of length 1 by angles (n,) [rad] (Rodrigues)."""
-    x, y, z = axis
-    tilde = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sines, versed = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
-    return np.asarray(np.eye(3) + sines * tilde + versed * (tilde @ tilde))
 
 
 def share_a_line(one: Dyad, other: Dyad) -> bool:

@@ -23,7 +23,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats, finite_number
+from sevenbar.arrays import Floats, finite_array, finite_number
 from sevenbar.description.draft import Draft
 from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, judged
 from sevenbar.design.exact.closures import SkewRssr, designed, products, rssr_of
@@ -32,7 +32,7 @@ from sevenbar.design.synthesis.candidates import Claim
 from sevenbar.design.synthesis.closure import draft_of
 from sevenbar.design.synthesis.function.precision import null_angles, reflected
 from sevenbar.design.synthesis.function.wish import wish_of_pairs
-from sevenbar.errors import RequestError, ends_here
+from sevenbar.errors import RequestError, ends_here, shown
 
 #: Coefficients of a closure: with free zeros, with the zeros given, and with zeros and axes given.
 FREE, ZEROS_GIVEN, ALL_GIVEN = 9, 7, 6
@@ -111,7 +111,7 @@ def function_pairs(
 def _cosine(twist: float) -> float:
     angle = finite_number("twist", twist)
     cosine = math.cos(angle)
-    if abs(angle) >= math.pi or abs(cosine) >= PARALLEL:
+    if not 0 < angle < math.pi or abs(cosine) >= PARALLEL:
         raise RequestError(
             f"twist: {math.degrees(angle):g} deg makes the axes parallel, or is no angle between them; give "
             "one between 0 and 180 deg"
@@ -121,7 +121,10 @@ def _cosine(twist: float) -> float:
 
 def _own_zeros(zeros: tuple[float, float], cosine: float | None) -> tuple[float, float]:
     """Zeros from the common normal; those of `[rssr]` count the crank from the rocker's axis."""
-    u, v = (finite_number(f"zeros[{i}]", zero) for i, zero in enumerate(zeros))
+    both = finite_array("zeros", zeros)
+    if both.size != 2:
+        raise RequestError(f"zeros: {shown(zeros)} are not two angles; give those of input and output")
+    u, v = both.tolist()
     return (u - math.pi / 2, v) if cosine == 0.0 else (u, v)
 
 

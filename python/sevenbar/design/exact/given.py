@@ -43,7 +43,7 @@ class Displacements:
 
 def planar_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
     """The displacements of planar poses (n, 3): x, y [length] and angle [rad]."""
-    given = _numbers("poses", poses)
+    given = numbers_given("poses", poses)
     if given.ndim != 2 or given.shape[1] != 3:
         raise RequestError(
             f"poses: an array of shape {given.shape} does not fit; give rows x, y, angle (n, 3)"
@@ -54,7 +54,7 @@ def planar_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
 
 def orientations_given(orientations: npt.ArrayLike, least: int, most: int) -> Displacements:
     """The displacements of rotation matrices (n, 3, 3)."""
-    given = _numbers("orientations", orientations)
+    given = numbers_given("orientations", orientations)
     if given.ndim != 3 or given.shape[1:] != (3, 3):
         raise RequestError(
             f"orientations: an array of shape {given.shape} does not fit; give rotation matrices (n, 3, 3)"
@@ -64,7 +64,7 @@ def orientations_given(orientations: npt.ArrayLike, least: int, most: int) -> Di
 
 def poses_given(poses: npt.ArrayLike, least: int, most: int) -> Displacements:
     """The displacements of rigid motions (n, 4, 4)."""
-    given = _numbers("poses", poses)
+    given = numbers_given("poses", poses)
     if given.ndim != 3 or given.shape[1:] != (4, 4):
         raise RequestError(
             f"poses: an array of shape {given.shape} does not fit; give rigid motions (n, 4, 4)"
@@ -104,7 +104,8 @@ def place_text(values: Floats, size: float) -> str:
     return "(" + ", ".join(f"{value:.6g}" for value in kept) + ")"
 
 
-def _numbers(name: str, values: npt.ArrayLike) -> Floats:
+def numbers_given(name: str, values: npt.ArrayLike) -> Floats:
+    """An array of finite numbers, or `RequestError` naming the first that is none."""
     try:
         given = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):

@@ -23,11 +23,11 @@ from sevenbar.arrays import Floats
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, Complexes, solutions
 from sevenbar.design.exact.draws import anywhere, directions, on_curve
-from sevenbar.design.exact.dyads import Dyad, Line, turns_about
-from sevenbar.design.exact.given import Displacements, place_text, planar_given
+from sevenbar.design.exact.dyads import Dyad, Line
+from sevenbar.design.exact.given import Displacements, numbers_given, place_text, planar_given
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
-from sevenbar.kinematics.rigid import axial, pose
+from sevenbar.kinematics.rigid import axial, pose, turns_about
 
 #: Dyads of five poses over the complex numbers.
 DYADS = 4
@@ -143,8 +143,8 @@ def _across(normal: Floats) -> Floats:
 
 
 def _given_points(moving: npt.ArrayLike, task: Displacements) -> Floats:
-    points = np.asarray(moving, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2 or not np.isfinite(points).all():
+    points = numbers_given("moving", moving)
+    if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
         raise RequestError(
             f"moving: {shown(moving)} are no pivots; give two or more places x, y in the first pose"
         )

@@ -15,12 +15,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Floats, finite_number
 from sevenbar.design.exact.answers import ExactAnswers
 from sevenbar.design.exact.bilinear import POINTS, solutions
 from sevenbar.design.exact.draws import anywhere, directions, on_curve
 from sevenbar.design.exact.dyads import Dyad, Line
-from sevenbar.design.exact.given import Displacements, orientations_given, place_text
+from sevenbar.design.exact.given import Displacements, numbers_given, orientations_given, place_text
 from sevenbar.design.exact.lines import link_motions
 from sevenbar.design.exact.loops import all_loops, drawn, loops_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
@@ -60,6 +60,9 @@ def spherical_orientations(
     Source: J. M. McCarthy and G. S. Soh, "Geometric design of linkages" (2011); docs/theory_design.md, (32).
     """
     task = orientations_given(orientations, 3, 5)
+    radius = finite_number("radius", radius)
+    if radius <= 0:
+        raise RequestError(f"radius: {radius:g} is not a length; give a number > 0")
     refuse_one_axis(task.turns, "orientations")
     forms, count = task.turns - np.eye(3), len(task.motions)
     title = f"{count} orientations"
@@ -118,8 +121,8 @@ def _dyads(pairs: list[tuple[Floats, Floats]], task: Displacements, radius: floa
 
 
 def _given_axes(moving: npt.ArrayLike) -> Floats:
-    axes = np.asarray(moving, dtype=np.float64)
-    sound = axes.ndim == 2 and axes.shape[1:] == (3,) and len(axes) > 1 and np.isfinite(axes).all()
+    axes = numbers_given("moving", moving)
+    sound = axes.ndim == 2 and axes.shape[1:] == (3,) and len(axes) > 1
     if not (sound and np.linalg.norm(axes, axis=1).all()):
         raise RequestError(
             f"moving: {shown(moving)} are no axes; give two or more directions x, y, z, as they are in the "
