@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.design.synthesis.closure import NAMES
+from sevenbar.design.closure import NAMES
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.report import synthesis_report
 from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
-from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import RequestError
 from sevenbar.text.expression import function_of
 

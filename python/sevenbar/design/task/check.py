@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.candidates import (
+from sevenbar.design.candidates import (
     CHECK_SAMPLES,
     Candidate,
     Claim,

@@ -10,7 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.description.load_moving import moved_loads
-from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked
+from sevenbar.design.candidates import Candidate, Claim, Refusal, checked
 from sevenbar.design.synthesis.path.match import STILL, Placing, placed
 from sevenbar.design.synthesis.path.refine import Refined
 from sevenbar.design.synthesis.path.search import SAMPLES

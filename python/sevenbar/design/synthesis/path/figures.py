@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate
+from sevenbar.design.candidates import CHECK_SAMPLES, Candidate
 from sevenbar.design.synthesis.path.check import made
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.drawing.asked import asked_view

@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.draft import Draft
-from sevenbar.design.course import SearchCourse
-from sevenbar.design.synthesis.candidates import (
+from sevenbar.design.candidates import (
     Candidate,
     Refusal,
     distinct,
@@ -19,7 +18,8 @@ from sevenbar.design.synthesis.candidates import (
     renamed,
     tally,
 )
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.course import SearchCourse
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.check import checked_path
 from sevenbar.design.synthesis.path.refine import LOOK, Refined, refined
 from sevenbar.design.synthesis.path.search import Seed, apart, looked_at, seeds

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.limits import INPUT_TURNS, transmission_room, turning_room
+from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.synthesis.path.match import STILL, Placing, placed
 from sevenbar.design.synthesis.path.search import Seed
 from sevenbar.design.synthesis.path.task import PathTask

@@ -15,7 +15,7 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.point import PointLoop
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension
