@@ -17,6 +17,8 @@ error outcome number simd vector_math vectors random taylor twofold trigonometri
 
 rssr: linkage pair rates domain extremes frames motion circuits batch lines classify measures
 
+survey: draw figures kind swing transmission cone wish readings pose tally judge cascade
+
 loops::equation: dense rotations flat screws chain kinds lanes complex_frame closure
 loops::rates: velocities turns points
 loops::mobility: rank idle singular_place

@@ -32,6 +32,7 @@ PAGES = {
     "design function": "synthesis.md",
     "design swing": "synthesis.md",
     "design task": "design-task.md",
+    "design survey": "synthesis.md",
     "design path": "path.md",
     "design point": "points.md",
     "design inertia": "points.md",

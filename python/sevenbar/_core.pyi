@@ -20,9 +20,11 @@ __all__ = [
     "RawMeasures",
     "RawMotion",
     "RawSearch",
+    "RawTally",
     "Rows",
     "Rssr",
     "RssrBatch",
+    "Survey",
     "__version__",
     "classify_rssr",
     "driven",
@@ -31,6 +33,7 @@ __all__ = [
     "piecewise",
     "reactions",
     "simd_level",
+    "survey_figures",
 ]
 
 _Floats = npt.NDArray[np.float64]
@@ -366,3 +369,52 @@ def driven(
     bounds: tuple[float, float],
     motor: tuple[bool, _Floats, _Floats] | Callable[[float, float], float] | None = None,
 ) -> tuple[_Floats, _Floats, tuple[float, float], bool, bool]: ...
+
+#: Indices (n,), places (n,), and measures (n, 8): figure, error, transmission angle, both ball angles, start,
+#: branch, sense.
+_Entries = tuple[_Integers, _Integers, _Floats]
+
+@final
+class RawTally:
+    """The tally of the linkages of some indices."""
+
+    @property
+    def verdicts(self) -> list[int]: ...
+    @property
+    def types(self) -> list[int]: ...
+    @property
+    def limits(self) -> list[int]: ...
+    @property
+    def spreads(self) -> dict[str, tuple[float, list[int]]]: ...
+    @property
+    def best(self) -> _Entries: ...
+    @property
+    def nearest(self) -> _Entries: ...
+
+@final
+class Survey:
+    """RSSRs drawn from a sequence, and what is wanted of them."""
+
+    def __new__(
+        cls,
+        bounds: _Floats,
+        seed: int,
+        *,
+        tolerance: float,
+        motion_type: int | None,
+        ratio: float,
+        transmission: float,
+        cones: Sequence[float],
+        seats: Sequence[Sequence[float] | None],
+        rank: str,
+        readings: _Floats | None = None,
+        swing: Sequence[float] | None = None,
+        ends_only: bool = False,
+        monotone: bool = False,
+    ) -> Survey: ...
+    def tally(self, first: int, count: int) -> RawTally: ...
+    def numbers(self, indices: _Integers) -> _Floats: ...
+
+def survey_figures(
+    numbers: _Floats,
+) -> tuple[npt.NDArray[np.uint8], _Floats, _Floats, _Floats, _Floats]: ...

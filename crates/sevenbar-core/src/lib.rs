@@ -14,6 +14,7 @@ mod random;
 pub mod rigid;
 pub mod rssr;
 pub mod simd;
+pub mod survey;
 pub mod taylor;
 mod trigonometric;
 mod twofold;

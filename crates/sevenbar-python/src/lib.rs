@@ -7,6 +7,7 @@ mod loops;
 mod numbers;
 mod rows;
 mod rssr;
+mod survey;
 mod values;
 
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -77,6 +78,8 @@ mod _core {
     use super::rows::{Course, Rows};
     #[pymodule_export]
     use super::rssr::Rssr;
+    #[pymodule_export]
+    use super::survey::{RawTally, Survey, survey_figures};
     #[pymodule_export]
     use super::values::{RawCircuit, RawCount, RawFound, RawMotion, RawSearch};
     #[pymodule_export]

@@ -8,6 +8,7 @@ from sevenbar.commands.command import Command
 from sevenbar.commands.function import function, swing
 from sevenbar.commands.path import path
 from sevenbar.commands.points import inertia, point
+from sevenbar.commands.survey import survey
 from sevenbar.commands.task import TaskGroup, task
 
 design = typer.Typer(
@@ -18,5 +19,5 @@ design = typer.Typer(
     help="Find linkages for a wanted motion, and points of links; each is a file that opens in the studio.",
 )
 
-for _command in (task, function, swing, path, point, inertia):
+for _command in (task, function, swing, survey, path, point, inertia):
     design.command(cls=Command)(_command)

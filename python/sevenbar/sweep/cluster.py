@@ -6,15 +6,14 @@ import logging
 import time
 import uuid
 from asyncio import CancelledError
-from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from itertools import islice
-from typing import Any, NoReturn
+from typing import Any, NoReturn, Protocol
 
 from sevenbar.errors import EngineError, MissingExtraError, RequestError, SevenbarError, shown
-from sevenbar.sweep.plan import SweepPlan, maker
-from sevenbar.sweep.rows import part_bytes
+from sevenbar.sweep.plan import maker
 
 #: Time [s] in which a scheduler must answer.
 ANSWER_TIME = 10.0
@@ -29,11 +28,19 @@ LOOK_TIME = 1.0
 IN_FLIGHT = 2
 
 
-class Cluster:
-    """The workers of a scheduler, for one sweep; closed after use, whatever happened."""
+class Divided(Protocol):
+    """Work on many linkages that is done part by part."""
 
-    def __init__(self, address: str, plan: SweepPlan) -> None:
-        """Calls the scheduler at an address, as in "tcp://host:8786".
+    def linkages(self, part: int) -> range:
+        """The linkages of a part."""
+        ...
+
+
+class Cluster:
+    """The workers of a scheduler, for one plan; closed after use, whatever happened."""
+
+    def __init__(self, address: str, plan: Divided, make: Callable[[Any, int], bytes]) -> None:
+        """Calls the scheduler at an address, as in "tcp://host:8786"; `make(plan, part)` makes a part.
 
         Raises `MissingExtraError` without dask, `RequestError` for an address where none answers, and for
         measures that cannot be sent.
@@ -53,7 +60,7 @@ class Cluster:
                 f"measure: a function cannot be sent to workers: {reason}; "
                 "give functions of a module that the workers have, which hold nothing open"
             ) from None
-        self._plan, self._address = plan, address
+        self._plan, self._make, self._address = plan, make, address
         self._quiet = _quiet()
         self._quiet.__enter__()
         try:
@@ -104,7 +111,7 @@ class Cluster:
             while True:
                 for part in islice(rest, max(0, self._window() - len(flying))):
                     future = self._client.submit(
-                        _made_by, self._plan, part, key=f"sweep-{run}-{part}", pure=False
+                        _made_by, self._make, self._plan, part, key=f"sweep-{run}-{part}", pure=False
                     )
                     flying[future] = part
                 if not flying:
@@ -190,9 +197,9 @@ class Cluster:
         ) from None
 
 
-def _made_by(plan: SweepPlan, part: int) -> tuple[bytes, Mapping[str, str]]:
+def _made_by(make: Callable[[Any, int], bytes], plan: Divided, part: int) -> tuple[bytes, Mapping[str, str]]:
     """A part and what made it: run by a worker."""
-    return part_bytes(plan, part), maker()
+    return make(plan, part), maker()
 
 
 @contextmanager

@@ -78,7 +78,7 @@ class PartsFolder:
         try:
             path.mkdir(parents=True, exist_ok=True)
             names = [file.name for file in path.iterdir()]
-            self._hold()
+            self._lock = hold_folder(path)
             if DESCRIPTION in names:
                 self._take_up(makers, resume=resume, mixed=mixed)
             else:
@@ -145,27 +145,11 @@ class PartsFolder:
                 aside.unlink(missing_ok=True)
             raise
 
-    def _hold(self) -> None:
-        try:
-            import fcntl
-        except ImportError:  # a system without: two runs at once would only do the work twice
-            return
-        self._lock = os.open(self.path, os.O_RDONLY)
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise OutputError(
-                f"{self.path}: another run fills this folder; wait for it, end it, or give another folder"
-            ) from None
-        except OSError:
-            # some network file systems have no locks
-            return
-
     def _take_up(self, makers: Sequence[Mapping[str, str]], *, resume: bool, mixed: bool) -> None:
         description = read_description(self.path)
         wanted = self._plan.request()
         there = {key: description.get(key) for key in wanted}
-        unlike = _differences(there, wanted)
+        unlike = differences(there, wanted)
         if unlike:
             more = f", and {len(unlike) - 1} more differ" if len(unlike) > 1 else ""
             raise OutputError(
@@ -212,6 +196,29 @@ class PartsFolder:
         )
 
 
+def hold_folder(path: Path) -> int | None:
+    """Holds a folder against a second run, until what is given is closed; `None` where a system has no locks.
+
+    Raises `OutputError` where another run holds it.
+    """
+    try:
+        import fcntl
+    except ImportError:  # a system without: two runs at once would only do the work twice
+        return None
+    lock = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(lock)
+        raise OutputError(
+            f"{path}: another run fills this folder; wait for it, end it, or give another folder"
+        ) from None
+    except OSError:
+        # some network file systems have no locks
+        pass
+    return lock
+
+
 def other_maker(first: Mapping[str, str], other: Mapping[str, str]) -> str:
     """That two makers may differ in the last bits, naming in what they differ."""
     what = [f"{key} {first.get(key)} and {value}" for key, value in other.items() if first.get(key) != value]
@@ -221,13 +228,13 @@ def other_maker(first: Mapping[str, str], other: Mapping[str, str]) -> str:
     )
 
 
-def _differences(there: Any, here: Any, place: str = "") -> list[str]:
+def differences(there: Any, here: Any, place: str = "") -> list[str]:
     """Where two values of JSON differ, in words."""
     if isinstance(there, dict) and isinstance(here, dict):
         keys = [*here, *(key for key in there if key not in here)]
-        found = (_differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
+        found = (differences(there.get(key), here.get(key), f"{place}.{key}".lstrip(".")) for key in keys)
         return [one for some in found for one in some]
     if isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
         pairs = enumerate(zip(there, here, strict=True), 1)
-        return [one for i, pair in pairs for one in _differences(*pair, f"{place}[{i}]")]
+        return [one for i, pair in pairs for one in differences(*pair, f"{place}[{i}]")]
     return [] if there == here else [f"{place} is {shown(there)} there and {shown(here)} here"]

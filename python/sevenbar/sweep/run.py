@@ -105,7 +105,7 @@ def carry_out(
     need_pyarrow()
     if scheduler is not None and threads is not None:
         raise RequestError("threads: workers of a scheduler have their own; leave threads or scheduler out")
-    number = _threads(threads)
+    number = thread_count(threads)
     # a column that would appear twice is reported before anything is computed
     schema(plan)
     if out is None and plan.space.count > MOST_IN_MEMORY:
@@ -118,12 +118,13 @@ def carry_out(
         return _filled(plan, [maker()], on_threads, out, resume=resume, mixed=mixed, progress=progress)
     from sevenbar.sweep.cluster import Cluster
 
-    with Cluster(scheduler, plan) as cluster:
+    with Cluster(scheduler, plan, part_bytes) as cluster:
         makers = cluster.makers()
         return _filled(plan, makers, cluster.made, out, resume=resume, mixed=mixed, progress=progress)
 
 
-def _threads(threads: object) -> int:
+def thread_count(threads: object) -> int:
+    """The threads that are asked for, or one for each processor."""
     if threads is None:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return whole_number("threads", threads, 1, MOST_THREADS, "a count of threads")
@@ -176,16 +177,22 @@ def _filled(
 
 def _on_threads(plan: SweepPlan, threads: int, parts: Iterable[int]) -> Generator[Made, None, None]:
     """The parts as they are finished, by threads of this process."""
+    at_once = min(threads, plan.parts)
+    return made_on_threads(partial(part_bytes, plan, threads=threads // at_once), at_once, parts)
+
+
+def made_on_threads(
+    make: Callable[[int], bytes], at_once: int, parts: Iterable[int]
+) -> Generator[Made, None, None]:
+    """What `make` makes of each part as it is finished, on so many threads of this process."""
     here = maker()
     rest = iter(parts)
-    at_once = min(threads, plan.parts)
-    each = threads // at_once
     flying: dict[Future[bytes], int] = {}
     with ThreadPoolExecutor(at_once, thread_name_prefix="sweep") as pool:
         try:
             while True:
                 for part in islice(rest, IN_FLIGHT * at_once - len(flying)):
-                    flying[pool.submit(part_bytes, plan, part, each)] = part
+                    flying[pool.submit(make, part)] = part
                 if not flying:
                     return
                 finished, _ = wait(flying, return_when=FIRST_COMPLETED)

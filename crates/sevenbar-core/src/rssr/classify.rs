@@ -14,7 +14,14 @@ pub const MOST_LIMITS: usize = 4;
 pub const INVALID: u8 = 6;
 
 /// The code of what vector code leaves to the other solver, which replaces it.
-const DOUBTFUL: u8 = 7;
+pub(crate) const DOUBTFUL: u8 = 7;
+
+/// Linkages of the paper's square axes.
+const SQUARE: Dimensions = {
+    let mut block = [[1.0; BLOCK]; 8];
+    block[7] = [0.0; BLOCK];
+    block
+};
 
 /// No limits.
 const NONE: [f64; MOST_LIMITS] = [f64::NAN; MOST_LIMITS];
@@ -87,7 +94,7 @@ impl Kernel for Chunk<'_> {
             Input::Rocker => Input::Crank,
         };
         // what stands beyond the last linkage of a block is answered, too, and not read
-        let mut block: Dimensions = [[1.0; BLOCK]; 6];
+        let mut block = SQUARE;
         let mut valid = [0.0; BLOCK];
         let (mut there, mut back) = (Lines::new(), Lines::new());
         let mut ends = [[0.0; BLOCK]; MOST_LIMITS];
@@ -105,7 +112,7 @@ impl Kernel for Chunk<'_> {
             for i in 0..size {
                 let answer = match found[i] as u8 {
                     INVALID => (INVALID, NONE),
-                    DOUBTFUL => one_by_one(block.map(|column| column[i]), input),
+                    DOUBTFUL => one_by_one(std::array::from_fn(|k| block[k][i]), input),
                     clear => (clear, std::array::from_fn(|k| ends[k][i])),
                 };
                 (codes[start + i], limits[start + i]) = answer;
@@ -134,7 +141,7 @@ fn shrinking(size: u64) -> f64 {
 /// Divides the dimensions of each linkage by a power of two, and returns which could be one: 1, else 0.
 #[inline(always)]
 fn scale(block: &mut Dimensions, valid: &mut Lane) {
-    let [m, n, l1, l2, l3, d] = block;
+    let [m, n, l1, l2, l3, d, ..] = block;
     for i in 0..BLOCK {
         let greatest = larger(larger(size(m[i]), size(n[i])), size(d[i]));
         let greatest = larger(greatest, larger(larger(size(l1[i]), size(l2[i])), size(l3[i])));
@@ -151,30 +158,36 @@ fn scale(block: &mut Dimensions, valid: &mut Lane) {
 /// The code of each linkage from what both its joints can do.
 #[inline(always)]
 fn decide(block: &Dimensions, valid: &Lane, there: &Lines, back: &Lines, found: &mut Lane) {
-    let [_, _, l1, l2, l3, _] = block;
+    let [_, _, l1, l2, l3, ..] = block;
     for i in 0..BLOCK {
         let (input, output) = (there.reach[i], back.reach[i]);
         let long = (l1[i] > SHORT) & (l2[i] > SHORT) & (l3[i] > SHORT);
         let clear = long & (there.doubt[i] + back.doubt[i] == 0.0);
-        // no other pair of counts is possible, see Rssr::motion_type
-        let same = if input == FULL {
-            f64::from(MotionType::DoubleCrank as u8)
-        } else if input == EMPTY {
-            f64::from(MotionType::CannotAssemble as u8)
-        } else {
-            f64::from(MotionType::DoubleRocker as u8)
-        };
-        let other = if (input == FULL) & (output == ARCS) {
-            f64::from(MotionType::CrankRocker as u8)
-        } else if (input == ARCS) & (output == FULL) {
-            f64::from(MotionType::RockerCrank as u8)
-        } else {
-            f64::from(DOUBTFUL)
-        };
-        let code = if input == output { same } else { other };
+        let code = code_of(input, output);
         let code = if clear { code } else { f64::from(DOUBTFUL) };
         found[i] = if valid[i] > 0.0 { code } else { f64::from(INVALID) };
     }
+}
+
+/// The motion type of what input and output can do, or [`DOUBTFUL`]: no other pair of counts is possible, see
+/// `Rssr::motion_type`.
+#[inline(always)]
+pub(crate) fn code_of(input: f64, output: f64) -> f64 {
+    let same = if input == FULL {
+        f64::from(MotionType::DoubleCrank as u8)
+    } else if input == EMPTY {
+        f64::from(MotionType::CannotAssemble as u8)
+    } else {
+        f64::from(MotionType::DoubleRocker as u8)
+    };
+    let other = if (input == FULL) & (output == ARCS) {
+        f64::from(MotionType::CrankRocker as u8)
+    } else if (input == ARCS) & (output == FULL) {
+        f64::from(MotionType::RockerCrank as u8)
+    } else {
+        f64::from(DOUBTFUL)
+    };
+    if input == output { same } else { other }
 }
 
 /// The answer of the solver that counts zeros by signs.
@@ -198,7 +211,7 @@ pub(super) fn linkage(dimensions: [f64; 6]) -> Option<Rssr> {
 }
 
 /// Limits with NaN after the last. A quartic has no more; where rounding made more of them, the first ones.
-pub(super) fn padded(limits: &[f64]) -> [f64; MOST_LIMITS] {
+pub(crate) fn padded(limits: &[f64]) -> [f64; MOST_LIMITS] {
     std::array::from_fn(|k| limits.get(k).copied().unwrap_or(f64::NAN))
 }
 
@@ -330,10 +343,10 @@ mod tests {
     #[test]
     fn vector_code_answers_all_but_few() {
         let mut random = Random(3);
-        let mut block: Dimensions = [[0.0; BLOCK]; 6];
+        let mut block = SQUARE;
         let (mut lines, mut ends, mut doubtful) = (Lines::new(), [[0.0; BLOCK]; MOST_LIMITS], 0);
         for _ in 0..200 {
-            for column in &mut block {
+            for column in &mut block[..6] {
                 column.fill_with(|| 0.05 + random.next());
             }
             lines.find::<true>(&block, Input::Crank);

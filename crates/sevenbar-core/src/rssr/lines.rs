@@ -1,4 +1,4 @@
-//! Limits of a block of square-axis RSSRs in vector code: `rho^2 - K^2` as the product of two lines across the unit circle.
+//! Limits of a block of RSSRs in vector code: `rho^2 - K^2` as the product of two lines across the unit circle.
 //!
 //! With the driver's angle turned by half the phase of its second harmonic, `W = rho^2 - K^2` is
 //! `2 e (C/2 + a cos + b sin + cos(2 .)/2)`, and the bracket is `(p cos + q sin + g1)(p cos - q sin + g2)` where
@@ -20,19 +20,19 @@ use crate::vector_math::atan2;
 use std::f64::consts::TAU;
 
 /// Linkages handled together; the scratch arrays of a block stay in the nearest cache.
-pub(super) const BLOCK: usize = 64;
+pub(crate) const BLOCK: usize = 64;
 
 /// One number for each linkage of a block.
-pub(super) type Lane = [f64; BLOCK];
+pub(crate) type Lane = [f64; BLOCK];
 
 /// What a turning joint can do: every angle,
-pub(super) const FULL: f64 = 0.0;
+pub(crate) const FULL: f64 = 0.0;
 /// none,
-pub(super) const EMPTY: f64 = 1.0;
+pub(crate) const EMPTY: f64 = 1.0;
 /// those of one range,
-pub(super) const ARC: f64 = 2.0;
+pub(crate) const ARC: f64 = 2.0;
 /// or of two.
-pub(super) const ARCS: f64 = 3.0;
+pub(crate) const ARCS: f64 = 3.0;
 
 /// Halley steps for the root w: of uniform dimensions one linkage in a thousand has not converged by then, and is doubtful.
 const STEPS: usize = 7;
@@ -56,33 +56,81 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// A last Newton step [rad] greater than this has not converged.
 const SETTLED: f64 = 1e-8;
 
-/// M, N, L1, L2, L3 and D of each linkage, relative to a power of two near the greatest of its own.
-pub(super) type Dimensions = [Lane; 6];
+/// M, N, L1, L2, L3 and D of each linkage, relative to a power of two near the greatest of its own; sine and cosine of the angle
+/// between its axes.
+pub(crate) type Dimensions = [Lane; 8];
 
-/// A direction of the closure at one linkage: the driving ball is at `(d + r sin t, f)` in the plane of the follower and at
-/// `m + r cos t` along its axis. The crank's angle is t; the rocker's is a quarter turn less t.
-struct Drive {
+/// A direction of the closure at one linkage: the driving ball is at `(d + r sin t, f + r c cos t)` in the plane of the follower and
+/// at `m + r s cos t` along its axis. The crank's angle is t; the rocker's is a quarter turn less t.
+pub(crate) struct Drive {
     d: f64,
     f: f64,
     m: f64,
     r: f64,
+    /// The sine of the angle between the axes.
+    s: f64,
+    /// Minus the cosine of it.
+    c: f64,
     radius: f64,
     coupler: f64,
 }
 
+/// `rho^2 - K^2 = c0 + c1 cos t + s1 sin t + c2 cos 2t + s2 sin 2t` of a direction, and the sum of its terms.
+pub(crate) struct Square {
+    pub(crate) c0: f64,
+    pub(crate) c1: f64,
+    pub(crate) s1: f64,
+    pub(crate) c2: f64,
+    pub(crate) s2: f64,
+    terms: f64,
+}
+
 impl Drive {
     #[inline(always)]
-    fn new([m, n, l1, l2, l3, d]: &Dimensions, input: Input, i: usize) -> Self {
+    pub(crate) fn new([m, n, l1, l2, l3, d, s, c]: &Dimensions, input: Input, i: usize) -> Self {
         let (m, n, d, coupler) = (m[i], n[i], d[i], l2[i]);
+        let (s, c) = (s[i], -c[i]);
         match input {
-            Input::Crank => Self { d: -d, f: n, m: -m, r: l1[i], radius: l3[i], coupler },
-            Input::Rocker => Self { d, f: m, m: -n, r: l3[i], radius: l1[i], coupler },
+            Input::Crank => Self { d: -d, f: n * s, m: -n * c - m, r: l1[i], s, c, radius: l3[i], coupler },
+            Input::Rocker => Self { d, f: m * s, m: -m * c - n, r: l3[i], s, c, radius: l1[i], coupler },
+        }
+    }
+
+    /// The trigonometric polynomial whose zeros are the limits.
+    #[inline(always)]
+    pub(crate) fn square<const FUSED: bool>(&self) -> Square {
+        let Self { d, f, m, r, s, c, radius, coupler } = *self;
+        let squares = multiply_add::<FUSED>(d, d, f * f) + multiply_add::<FUSED>(m, m, r * r);
+        let difference = (radius - coupler) * (radius + coupler);
+        let k0 = 0.5 * (squares + difference);
+        let (p, q) = (r * multiply_add::<FUSED>(f, c, m * s), r * d);
+        let square = radius * radius;
+        let ring = 0.5 * r * r;
+        let plane = multiply_add::<FUSED>(
+            d,
+            d,
+            multiply_add::<FUSED>(f, f, multiply_add::<FUSED>(ring * c, c, ring)),
+        );
+        let reach = d.abs() + r;
+        let height = multiply_add::<FUSED>(r, c.abs(), f.abs());
+        let k = 0.5 * (squares + difference.abs()) + p.abs() + q.abs();
+        Square {
+            c0: square * plane - k0 * k0 - 0.5 * multiply_add::<FUSED>(p, p, q * q),
+            c1: 2.0 * multiply_add::<FUSED>(square * f, r * c, -k0 * p),
+            s1: 2.0 * multiply_add::<FUSED>(square * d, r, -k0 * q),
+            c2: -0.5 * multiply_add::<FUSED>(square * r * s, r * s, (p - q) * (p + q)),
+            s2: -p * q,
+            terms: multiply_add::<FUSED>(
+                square,
+                multiply_add::<FUSED>(reach, reach, height * height),
+                k * k,
+            ),
         }
     }
 }
 
 /// The two lines of each linkage for one direction.
-pub(super) struct Lines {
+pub(crate) struct Lines {
     /// Cosine and sine of the angle by which the driver's is turned.
     turn: [Lane; 2],
     /// `p` and `q`
@@ -90,9 +138,9 @@ pub(super) struct Lines {
     /// `g1` and `g2`
     offset: [Lane; 2],
     /// One of [`FULL`], [`EMPTY`], [`ARC`], [`ARCS`].
-    pub(super) reach: Lane,
+    pub(crate) reach: Lane,
     /// 0 where the answer stands clear, else greater.
-    pub(super) doubt: Lane,
+    pub(crate) doubt: Lane,
 }
 
 /// W of each linkage, and the root w that is sought, in its bracket.
@@ -107,7 +155,7 @@ struct Cubic {
 }
 
 impl Lines {
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         let zero = [0.0; BLOCK];
         Self {
             turn: [zero; 2],
@@ -120,7 +168,7 @@ impl Lines {
 
     /// The lines of a block, how far the driver reaches, and whether that stands clear.
     #[inline(always)]
-    pub(super) fn find<const FUSED: bool>(&mut self, dimensions: &Dimensions, input: Input) {
+    pub(crate) fn find<const FUSED: bool>(&mut self, dimensions: &Dimensions, input: Input) {
         let zero = [0.0; BLOCK];
         let mut cubic = Cubic {
             c: zero,
@@ -147,18 +195,7 @@ impl Lines {
     /// The trigonometric polynomial of a linkage: turned, and relative to its second harmonic.
     #[inline(always)]
     fn set_up<const FUSED: bool>(&mut self, cubic: &mut Cubic, drive: &Drive, i: usize) {
-        let Drive { d, f, m, r, radius, coupler } = *drive;
-        let squares = multiply_add::<FUSED>(d, d, f * f) + multiply_add::<FUSED>(m, m, r * r);
-        let difference = (radius - coupler) * (radius + coupler);
-        let k0 = 0.5 * (squares + difference);
-        let (p, q) = (r * m, r * d);
-        let square = radius * radius;
-        let plane = multiply_add::<FUSED>(d, d, multiply_add::<FUSED>(f, f, 0.5 * r * r));
-        let c0 = square * plane - k0 * k0 - 0.5 * multiply_add::<FUSED>(p, p, q * q);
-        let (c1, s1) = (-2.0 * k0 * p, 2.0 * multiply_add::<FUSED>(square * d, r, -k0 * q));
-        let c2 = -0.5 * (square * r * r + (p - q) * (p + q));
-        let s2 = -p * q;
-
+        let Square { c0, c1, s1, c2, s2, terms } = drive.square::<FUSED>();
         let e = multiply_add::<FUSED>(c2, c2, s2 * s2).sqrt();
         // half the phase of (c2, s2), from the half-angle formula that does not cancel
         let large = (0.5 * (1.0 + c2.abs() / e)).sqrt();
@@ -175,9 +212,6 @@ impl Lines {
         let b = half * multiply_add::<FUSED>(s1, cosine, -c1 * sine);
         (cubic.c[i], cubic.a[i], cubic.b[i]) = (c, a, b);
         cubic.w[i] = start::<FUSED>(c, a, b);
-        let reach = d.abs() + r;
-        let k = 0.5 * (squares + difference.abs()) + p.abs() + q.abs();
-        let terms = multiply_add::<FUSED>(square, multiply_add::<FUSED>(reach, reach, f * f), k * k);
         cubic.noise[i] = ROUNDING * terms * half;
         self.turn[0][i] = cosine;
         self.turn[1][i] = sine;
@@ -235,7 +269,7 @@ impl Lines {
 
     /// The limits of each linkage in [0, 2 pi), rising, NaN after the last; raises the doubt where Newton's steps do not settle.
     #[inline(always)]
-    pub(super) fn limits<const FUSED: bool>(
+    pub(crate) fn limits<const FUSED: bool>(
         &mut self,
         dimensions: &Dimensions,
         input: Input,
@@ -270,7 +304,8 @@ impl Lines {
         side: f64,
         i: usize,
     ) -> f64 {
-        let Drive { d, f, m, r, radius, coupler } = *drive;
+        let Drive { d, f, m, r, s: sine, c: cosine, radius, coupler } = *drive;
+        let (along, aside) = (r * sine, r * cosine);
         let (p, q) = (self.normal[0][i], self.normal[1][i]);
         let q = if line == 0 { q } else { -q };
         let g = self.offset[line][i];
@@ -284,15 +319,16 @@ impl Lines {
         (c, s) = (c * unit, s * unit);
         let mut step = 0.0;
         for _ in 0..2 {
-            let (x, z) = (multiply_add::<FUSED>(r, s, d), multiply_add::<FUSED>(r, c, m));
-            let height = multiply_add::<FUSED>(x, x, f * f).sqrt();
+            let (x, y) = (multiply_add::<FUSED>(r, s, d), multiply_add::<FUSED>(aside, c, f));
+            let z = multiply_add::<FUSED>(along, c, m);
+            let height = multiply_add::<FUSED>(x, x, y * y).sqrt();
             let (inner, outer) = (height - radius, height + radius);
             let axial = (coupler - z) * (coupler + z);
             let near = multiply_add::<FUSED>(-inner, inner, axial);
             let far = multiply_add::<FUSED>(outer, outer, -axial);
             let nearest = near.abs() < far.abs();
-            let climb = x * r * c / height;
-            let slope = multiply_add::<FUSED>(if nearest { inner } else { outer }, climb, -z * r * s);
+            let climb = multiply_add::<FUSED>(x, r * c, -y * aside * s) / height;
+            let slope = multiply_add::<FUSED>(if nearest { inner } else { outer }, climb, -z * along * s);
             step = 0.5 * if nearest { near } else { -far } / slope;
             let shrunk = multiply_add::<FUSED>(-0.5 * step, step, 1.0);
             (c, s) = (

@@ -124,15 +124,23 @@ impl Rssr {
     /// As of [`Rssr::new`].
     ///
     /// Source: Sun and Zhou, Figure 2.
-    pub fn square([m, n, l1, l2, l3, d]: [f64; 6]) -> Result<Self, Error> {
+    pub fn square(dimensions: [f64; 6]) -> Result<Self, Error> {
+        Self::skew(dimensions, [1.0, 0.0])
+    }
+
+    /// The same with axes at any angle, given by its sine s and cosine c: the rocker turns about (s, 0, c) through (0, D, 0), M along it.
+    ///
+    /// # Errors
+    /// As of [`Rssr::new`].
+    pub fn skew([m, n, l1, l2, l3, d]: [f64; 6], [s, c]: [f64; 2]) -> Result<Self, Error> {
         let straight = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        // joint 4 turns the ground against the rocker, about -x
-        let towards_rocker = [[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        // joint 4 turns the ground against the rocker, about the axis reversed
+        let towards_rocker = [[0.0, 0.0 - c, -s], [-1.0, 0.0, 0.0], [0.0, s, 0.0 - c]];
         let half_turn = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]];
         let pose = |rotation, translation| Pose { rotation, translation };
         Self::new(
             pose(straight, [0.0, 0.0, n]),
-            pose(towards_rocker, [m, d, 0.0]),
+            pose(towards_rocker, [m * s, d, m * c]),
             [
                 pose(straight, [l1, 0.0, 0.0]),
                 pose(straight, [l2, 0.0, 0.0]),

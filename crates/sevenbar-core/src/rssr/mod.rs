@@ -22,9 +22,11 @@ mod rates;
 
 pub use batch::{BatchRates, MAX_ORDER};
 pub use circuits::Row;
+pub(crate) use classify::{DOUBTFUL, code_of, padded};
 pub use classify::{INVALID, MOST_LIMITS, classify};
 pub use domain::Extent;
 pub use extremes::Extreme;
+pub(crate) use lines::{BLOCK, Dimensions, Drive, Lane, Lines};
 pub use linkage::{Circle, Input, Rssr};
 pub use measures::{MotionMeasures, measure, measures_with_rows};
 pub use motion::{Circuit, Motion, MotionType};

@@ -116,7 +116,7 @@ impl Rssr {
     }
 
     /// The motion type and the input dead centres alone.
-    pub(super) fn type_and_limits(&self, input: Input) -> (MotionType, Vec<f64>) {
+    pub(crate) fn type_and_limits(&self, input: Input) -> (MotionType, Vec<f64>) {
         let [forward, backward] = self.pairs(input);
         let (inputs, outputs) = (Domain::new(&forward), Domain::new(&backward));
         (Self::motion_type(&inputs, &outputs), inputs.limits)

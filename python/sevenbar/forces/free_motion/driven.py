@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sevenbar import _core
+from sevenbar._core import driven as driven_rows
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.errors import RequestError
@@ -90,7 +90,7 @@ def driven(
     start = place
     for _ in range(MOST_STRETCHES):
         low, high = _stretch(course, course.breaks, np.array([place, speed]), start)
-        moments, steps, (place, speed), stopped, whole = _core.driven(
+        moments, steps, (place, speed), stopped, whole = driven_rows(
             edges,
             course.pushing,
             length if course.closed else None,

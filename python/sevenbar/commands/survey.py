@@ -1,0 +1,184 @@
+"""The command `sevenbar design survey`."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from sevenbar.commands.command import count_of, number_of
+from sevenbar.commands.deliver import check_out, command_line, deliver
+from sevenbar.commands.function import refuse_degrees_twice, seed_of
+from sevenbar.commands.given import angle, angles, numbers
+from sevenbar.commands.options import Force, Json
+from sevenbar.commands.progress import progress_bar
+from sevenbar.commands.unfinished import end_of_work
+from sevenbar.errors import RequestError, shown
+from sevenbar.text.ranges import split_name
+
+if TYPE_CHECKING:
+    from sevenbar.design.survey.task import SwingWish, Travel
+    from sevenbar.design.synthesis.function.wish import Wish
+
+#: An example of a bound, in messages.
+EXAMPLE = "as in L1=0.2:1, D=0 or angle=60:120deg"
+
+
+def survey(
+    y: Annotated[str | None, typer.Option(help="The function of x, as in 'x^2'; sind takes degrees.")] = None,
+    x: Annotated[str, typer.Option(help="Range of x: 0:1, 0:pi/2 or 0:90deg (radians then).")] = "0:1",
+    table: Annotated[
+        Path | None, typer.Option(help="CSV of pairs of angles in place of a function: input_deg,output_deg.")
+    ] = None,
+    input_range: Annotated[
+        str,
+        typer.Option(help="Readings of the input; without --y any one-way motion between the ends will do."),
+    ] = "0:90deg",
+    output_range: Annotated[str, typer.Option(help="Readings of the output.")] = "0:90deg",
+    swing: Annotated[
+        str | None, typer.Option(help="In place of readings: the angle through which the rocker swings.")
+    ] = None,
+    time_ratio: Annotated[
+        float,
+        typer.Option(
+            parser=number_of("--time-ratio", "1.2"),
+            metavar="NUMBER",
+            help="Of a swing: time of the slower stroke over the quicker, >= 1.",
+        ),
+    ] = 1.0,
+    bounds: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--bound",
+            help="Range of a number relative to the others: M, N, L1, L2, L3, D or angle (of the axes), "
+            "as in L1=0.2:1 or angle=90deg; may be repeated.",
+        ),
+    ] = None,
+    count: Annotated[
+        int,
+        typer.Option(
+            parser=count_of("--count"), metavar="COUNT", help="How many RSSRs are drawn, as in 1e6 or 1e8."
+        ),
+    ] = 10**6,
+    tolerance: Annotated[str, typer.Option(help="Greatest error of one that does what is wanted.")] = "1deg",
+    transmission: Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")] = "30deg",
+    ball_angle: Annotated[
+        str, typer.Option(help="Furthest that a ball may turn from its best seat; 180deg for any.")
+    ] = "180deg",
+    motion_type: Annotated[
+        str | None,
+        typer.Option(help="crank-rocker, double-crank, rocker-crank or double-rocker; any by default."),
+    ] = None,
+    ratio: Annotated[
+        float,
+        typer.Option(
+            parser=number_of("--ratio", "10"), metavar="NUMBER", help="Longest length over shortest link."
+        ),
+    ] = 20.0,
+    rank: Annotated[
+        str, typer.Option(help="What the best are best in: error, transmission, ball angle.")
+    ] = "error",
+    designs: Annotated[int, typer.Option(help="How many designs are shown and written.")] = 10,
+    seed: Annotated[int, typer.Option(help="Seed of the sequence.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for design_1.toml, .., summary.csv and summary.json.")
+    ] = None,
+    journal: Annotated[
+        Path | None, typer.Option(help="Folder that keeps every finished part, for surveys of minutes.")
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the parts that the journal has.")
+    ] = False,
+    mixed: Annotated[
+        bool, typer.Option("--mixed", help="Also with parts of another version or vector unit.")
+    ] = False,
+    threads: Annotated[
+        int | None, typer.Option(help="Threads of this machine; one for each processor by default.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, as in tcp://host:8786.")
+    ] = None,
+    force: Force = False,
+    json: Json = False,
+) -> None:
+    """Judge millions of RSSRs with axes at any angle; the best are polished and checked (extra 'design')."""
+    from sevenbar.design.survey import SurveyTask, SwingWish, Travel
+    from sevenbar.design.survey import survey as carried_out
+    from sevenbar.design.survey.report import survey_report
+
+    if not 1 <= designs <= 100:
+        raise RequestError(f"--designs: {designs} designs are not offered; give 1 to 100")
+    if resume and journal is None:
+        raise RequestError("--resume: of no folder; give --journal too, as in '--journal survey'")
+    if [y is not None, table is not None, swing is not None].count(True) > 1:
+        raise RequestError("--y: a function, a --table or a --swing; give one of the three")
+    want: Wish | Travel | SwingWish
+    if swing is not None:
+        want = SwingWish(angle("--swing", swing), time_ratio)
+    elif y is None and table is None:
+        ends = angles("--input-range", input_range), angles("--output-range", output_range)
+        want = Travel(abs(ends[0][1] - ends[0][0]), ends[1][1] - ends[1][0])
+    else:
+        want = _readings(y, x, table, input_range, output_range)
+    task = SurveyTask(
+        want,
+        _bounds(bounds or []),
+        count,
+        seed_of(seed),
+        tolerance=angle("--tolerance", tolerance),
+        transmission_lowest=angle("--transmission", transmission),
+        ball_angle=angle("--ball-angle", ball_angle),
+        motion_type=motion_type,
+        ratio=ratio,
+        rank=rank,
+    )
+    report = survey_report(designs, command_line())
+    check_out(report, out, force=force)
+    kept = "nothing is written"
+    if journal is not None:
+        kept = f"the finished parts are kept in {journal}, --resume goes on with them"
+    with progress_bar(f"surveying RSSRs for {want.title}", rate=True, kept=kept) as progress:
+        found = carried_out(
+            task, out=journal, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
+            progress=progress,
+        )  # fmt: skip
+    deliver(found, report, out, json=json, force=force)
+    end_of_work(found.unfinished)
+
+
+def _readings(y: str | None, x: str, table: Path | None, input_range: str, output_range: str) -> Wish:
+    """The wish for a function or the pairs of a table."""
+    from sevenbar.design.synthesis.function.wish import read_pairs, wish_of_function, wish_of_pairs
+    from sevenbar.text.expression import function_of
+
+    if table is not None:
+        return wish_of_pairs(*read_pairs(table), title=f"pairs of {table.name}")
+    assert y is not None
+    refuse_degrees_twice(y, x)
+    return wish_of_function(
+        function_of(y),
+        numbers("--x", x),
+        angles("--input-range", input_range),
+        angles("--output-range", output_range),
+        title=f"y = {y}",
+        formula=y,
+    )
+
+
+def _bounds(given: list[str]) -> dict[str, tuple[float, float]]:
+    """The ranges of --bound: of ratios, and of the angle between the axes [rad]."""
+    found: dict[str, tuple[float, float]] = {}
+    for text in given:
+        parts = split_name(text)
+        if parts is None:
+            raise RequestError(f"--bound: {shown(text)} is no range of a number; give one {EXAMPLE}")
+        name, ends = parts
+        if name in found:
+            raise RequestError(f"--bound: {name} is given twice; leave one out")
+        both = ends if ":" in ends else f"{ends}:{ends}"
+        found[name] = angles("--bound", both) if name == "angle" else numbers("--bound", both)
+    if "angle" in found and not all(math.isfinite(end) for end in found["angle"]):
+        raise RequestError(f"--bound: angle is no angle; give one {EXAMPLE}")
+    return found

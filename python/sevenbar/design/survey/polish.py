@@ -1,0 +1,368 @@
+"""The best linkages of a survey made better with exact slopes, and checked by the ordinary analysis.
+
+Unknown are the numbers that have a range, the input's start, the output's zero and the seats of both balls.
+By linear programs (`programs`) the greatest error is made least, or the least transmission angle or the
+greatest ball angle as good as can be with what is wanted met; bounds and limits are inequalities. A linkage
+that ends worse than it began, or whose new form fails the check, stays as it was drawn.
+"""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.description.draft import Draft
+from sevenbar.design.survey.skew_closure import ANGLE, COUNT, START, Poses, least_square, poses
+from sevenbar.design.survey.tally import Kept, SurveyTally
+from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel, drawn_numbers, scale_of
+from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
+from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
+from sevenbar.design.synthesis.limits import Limits
+from sevenbar.kinematics.surveys import NUMBERS
+from sevenbar.text.progress import Progress
+
+#: Inputs at which a polished design is measured, over its range or over a turn.
+DENSE = 361
+
+#: Inputs of a whole turn at which a polished swing is measured.
+TURN = 36
+
+#: Room that is left at each limit for what lies between the inputs measured.
+MARGIN = 1e-4
+
+#: Gain of a figure, relative to it, that is not worth another program.
+WORTH = 3e-3
+
+#: Part of its mean step that an output makes at least where it must move one way.
+STEADY = 0.05
+
+#: Newton's steps on what is to be met exactly, and the error [rad] with which they have arrived.
+MOST_NEWTON, MET = 8, 1e-13
+
+#: By how much a limit may be missed through rounding [rad].
+ROUNDING = 1e-9
+
+#: How many of the best are polished for each design that is wanted.
+POLISHED_EACH = 4
+
+#: The seats of both balls, three numbers each.
+SEATS = 6
+
+
+class Polish:
+    """A linkage of a survey as unknowns z: free numbers and start, the output's zero, both seats."""
+
+    def __init__(self, task: SurveyTask, numbers: Floats, kept: Kept) -> None:
+        self.task, self.branch, self.sense = task, kept.branch, kept.sense
+        self.numbers = np.append(numbers, kept.start)
+        table = np.array(list(task.table.values()))
+        self.free = np.append(np.flatnonzero(table[:, 1] > table[:, 0]), START)
+        self.low = np.append(table[:, 0], -np.inf)[self.free]
+        self.high = np.append(table[:, 1], np.inf)[self.free]
+        self.inputs, self.wanted = task.readings
+        self.balls = task.ball_angle < math.pi or task.rank == "ball angle"
+        if isinstance(task.want, SwingWish):
+            stroke = self._stroke(kept)
+            turn = np.arange(1, TURN) * math.tau / TURN
+            # the two ends first, the low one at the start
+            self.inputs, self.wanted = np.append([0.0, stroke], turn), np.array([0.0, task.want.angle])
+
+    def _stroke(self, kept: Kept) -> float:
+        """The turn of the input to the high end: the slower stroke, or the quicker, by which is nearer."""
+        assert isinstance(self.task.want, SwingWish)
+        slow = self.task.want.slow
+        turn = np.array([0.0, slow, math.tau - slow])
+        found = poses(np.append(self.numbers[:START], kept.start), turn, self.branch)
+        if found is None:
+            return slow
+        return slow if found.output[1] >= found.output[2] else math.tau - slow
+
+    def packed(self) -> Floats | None:
+        """The unknowns at the start; `None` where a pose is out of reach."""
+        now = poses(self.numbers, self.inputs, self.branch)
+        if now is None:
+            return None
+        seats = [direction.mean(axis=0) for direction in (now.crank, now.rocker)]
+        units = [seat / max(float(np.linalg.norm(seat)), 1e-9) for seat in seats]
+        off = self.sense * now.output - self.wanted if len(self.wanted) == len(self.inputs) else np.zeros(1)
+        return np.concatenate([self.numbers[self.free], [(off.max() + off.min()) / 2], *units])
+
+    def unpacked(self, z: Floats) -> Floats:
+        """The numbers (8,) of unknowns."""
+        numbers = self.numbers.copy()
+        numbers[self.free] = z[: len(self.free)]
+        return numbers
+
+    def met(self, now: Poses, z: Floats) -> tuple[Floats, Floats]:
+        """What is to be zero (m,) and its slopes (m, z): the travel, or the ends of a swing."""
+        wide = np.zeros((0, len(z)))
+        if isinstance(self.task.want, Travel):
+            off = self.sense * (now.output[-1:] - now.output[0]) - self.wanted[-1]
+            return off, self._wide(self.sense * (now.output_slopes[-1:] - now.output_slopes[0]), z)
+        if isinstance(self.task.want, SwingWish):
+            off = np.append(now.still[:2], now.output[1] - now.output[0] - self.wanted[1])
+            slopes = np.vstack([now.still_slopes[:2], now.output_slopes[1] - now.output_slopes[0]])
+            return off, self._wide(slopes, z)
+        return np.zeros(0), wide
+
+    def values(self, z: Floats) -> MinimaxValues | None:
+        """What is to be made low and what must not be negative; `None` out of reach."""
+        numbers = self.unpacked(z)
+        if not (numbers[2:5] > 0).all():
+            return None
+        now = poses(numbers, self.inputs, self.branch)
+        if now is None:
+            return None
+        task = self.task
+        floor = math.sin(task.transmission_lowest) ** 2
+        rooms, slopes = [now.square - max(floor, MARGIN) - MARGIN], [self._wide(now.square_slopes, z)]
+        heights = 1.0 - now.square, -self._wide(now.square_slopes, z)
+        if self.balls:
+            cosines, by = self._cosines(now, z)
+            limit = math.cos(task.ball_angle) if task.ball_angle < math.pi else -1.0
+            rooms.append(cosines - limit - (MARGIN if limit > -1 else 0.0))
+            slopes.append(by)
+            if task.rank == "ball angle":
+                heights = 1.0 - cosines, -by
+        if not isinstance(task.want, Travel | SwingWish):
+            off = self.sense * now.output - self.wanted - z[len(self.free)]
+            by = self._wide(self.sense * now.output_slopes, z)
+            by[:, len(self.free)] = -1.0
+            both = np.concatenate([off, -off]), np.concatenate([by, -by])
+            if task.rank == "error":
+                heights = both
+            else:
+                rooms.append(task.tolerance * (1 - MARGIN) - both[0])
+                slopes.append(-both[1])
+        if isinstance(task.want, Travel):
+            way = self.sense * math.copysign(1.0, task.want.output)
+            least = STEADY * abs(task.want.output) / len(self.inputs)
+            rooms.append(way * np.diff(now.output) - least)
+            slopes.append(self._wide(way * np.diff(now.output_slopes, axis=0), z))
+        off, by = self.met(now, z)
+        own = z[: len(self.free)]
+        low, high = np.isfinite(self.low), np.isfinite(self.high)
+        eye = np.eye(len(self.free), len(z))
+        size, size_slopes = self._size(numbers, z)
+        rooms += [off, -off, (own - self.low)[low], (self.high - own)[high], size]
+        slopes += [by, -by, eye[low], -eye[high], size_slopes]
+        return MinimaxValues(*heights, np.concatenate(rooms), np.concatenate(slopes))
+
+    def exact(self, z: Floats) -> Floats:
+        """The unknowns near by that meet the travel or the swing to rounding, by Newton's shortest steps."""
+        own = slice(0, len(self.free))
+        for _ in range(MOST_NEWTON):
+            z[own] = np.clip(z[own], self.low, self.high)
+            now = poses(self.unpacked(z), self.inputs, self.branch)
+            if now is None:
+                break
+            off, slopes = self.met(now, z)
+            if np.abs(off).max(initial=0.0) < MET:
+                break
+            # what is at a bound stays there
+            slopes[:, own][:, (z[own] <= self.low) | (z[own] >= self.high)] = 0.0
+            z = z - np.linalg.lstsq(slopes, off, rcond=None)[0]
+        return z
+
+    def polished(self) -> Floats:
+        """The numbers (8,) of the better linkage; those it began with where none is found."""
+        z = self.packed()
+        if z is None:
+            return self.numbers
+        return self.unpacked(self.exact(lowered(self.values, z, worth=WORTH)))
+
+    def _wide(self, slopes: Floats, z: Floats) -> Floats:
+        """Slopes by the unknowns (.., z), of those by the numbers (.., 8)."""
+        wide = np.zeros((*slopes.shape[:-1], len(z)))
+        wide[..., : len(self.free)] = slopes[..., self.free]
+        return wide
+
+    def _cosines(self, now: Poses, z: Floats) -> tuple[Floats, Floats]:
+        """The cosines of both balls' angles from their seats (2k,), and their slopes (2k, z)."""
+        values, slopes = [], []
+        first = len(z) - SEATS
+        for ball, (direction, by) in enumerate(
+            ((now.crank, now.crank_slopes), (now.rocker, now.rocker_slopes))
+        ):
+            place = slice(first + 3 * ball, first + 3 * ball + 3)
+            size = float(np.linalg.norm(z[place]))
+            seat = z[place] / size
+            cosine = direction @ seat
+            wide = self._wide(np.einsum("kjp,j->kp", by, seat), z)
+            wide[:, place] = (direction - cosine[:, None] * seat) / size
+            values.append(cosine)
+            slopes.append(wide)
+        return np.concatenate(values), np.concatenate(slopes)
+
+    def _size(self, numbers: Floats, z: Floats) -> tuple[Floats, Floats]:
+        """The room of the ratio of lengths: ratio times each link less each length, and slopes."""
+        values, slopes = [], []
+        for link in (2, 3, 4):
+            for other in range(6):
+                if other == link:
+                    continue
+                slope = np.zeros(COUNT)
+                slope[link], slope[other] = 1.0, -math.copysign(1.0, numbers[other]) / self.task.ratio
+                values.append(numbers[link] - abs(numbers[other]) / self.task.ratio)
+                slopes.append(slope)
+        return np.array(values), self._wide(np.array(slopes), z)
+
+
+def draft_of(numbers: Floats, branch: int, sense: float, name: str) -> Draft:
+    """A description of a linkage in the pose where its readings start: both dials read zero there."""
+    first = poses(numbers, np.zeros(1), branch)
+    assert first is not None
+    lengths = numbers[:6] * scale_of(numbers)
+    m, n, l1, _, l3, d = lengths
+    s, c = math.sin(numbers[ANGLE]), math.cos(numbers[ANGLE])
+    a, b = float(numbers[START]), float(first.output[0])
+    up, along = l3 * math.sin(b), l3 * math.cos(b)
+    joints: list[dict[str, Any]] = [
+        {"name": "crank", "kind": "R", "at": [0.0, 0.0, n], "axis": [0.0, 0.0, 1.0]},
+        {"name": "A", "kind": "S", "at": [l1 * math.cos(a), l1 * math.sin(a), n]},
+        {"name": "B", "kind": "S", "at": [m * s - c * up, d + along, m * c + s * up]},
+        {"name": "rocker", "kind": "R", "at": [m * s, d, m * c], "axis": [sense * s, 0.0, sense * c]},
+    ]
+    for joint in joints:
+        for key in ("at", "axis"):
+            if key in joint:
+                joint[key] = [float(x) for x in joint[key]]
+    raw: dict[str, Any] = {
+        "format": 1,
+        "name": name,
+        "length_unit": "mm",
+        "angle_unit": "deg",
+        "drive": {"joint": "crank", "output": "rocker"},
+        "joint": joints,
+    }
+    return Draft("", raw, name)
+
+
+def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal:
+    """A linkage (8,) as the ordinary analysis finds it, with the figures of the survey measured densely."""
+    whole = isinstance(task.want, SwingWish)
+    inputs, _ = task.readings
+    span = math.tau if whole else float(inputs[-1])
+    dense = np.linspace(0.0, span, DENSE)[: DENSE - whole]
+    if not whole and not isinstance(task.want, Travel):
+        dense = np.union1d(dense, inputs)
+    found = poses(numbers, dense, kept.branch)
+    if found is None:
+        return Refusal("assembly", "cannot reach the whole range of the input")
+    angles = kept.sense * (found.output - found.output[0])
+    errors, reached = _errors(task, dense, angles)
+    greatest = float(np.abs(errors).max())
+    if greatest > task.tolerance + ROUNDING:
+        return Refusal(
+            "error",
+            f"greatest error {math.degrees(greatest):.3g} deg, {math.degrees(task.tolerance):g} deg allowed",
+        )
+    lowest = math.asin(math.sqrt(min(max(least_square(numbers, dense), 0.0), 1.0)))
+    if lowest < task.transmission_lowest - ROUNDING:
+        wish = math.degrees(task.transmission_lowest)
+        return Refusal(
+            "transmission", f"transmission angle down to {math.degrees(lowest):.4g} deg, {wish:g} required"
+        )
+    balls = [ball_angle(directions) for directions in (found.crank, found.rocker)]
+    if max(balls) > task.ball_angle + ROUNDING:
+        wish = math.degrees(task.ball_angle)
+        return Refusal("cone", f"a ball turns {math.degrees(max(balls)):.4g} deg, {wish:g} allowed")
+    names = (f"{name}_ratio" if name != "angle" else "axes_deg" for name in NUMBERS)
+    values = (*numbers[:6], math.degrees(numbers[ANGLE]))
+    figures = {
+        **reached,
+        "ball_crank_deg": math.degrees(balls[0]),
+        "ball_rocker_deg": math.degrees(balls[1]),
+        **dict(zip(names, map(float, values), strict=True)),
+    }
+    claim = Claim(dense, angles, errors, "deg", figures, whole_turn=whole)
+    draft = draft_of(numbers, kept.branch, kept.sense, task.want.title)
+    limits = Limits(motion_type="crank-rocker" if whole else task.motion_type)
+    result = checked(draft, claim, limits)
+    if isinstance(result, Refusal):
+        return result
+    result = replace(result, transmission_lowest=lowest)
+    return _swung(task.want, result) if isinstance(task.want, SwingWish) else result
+
+
+def _swung(want: SwingWish, found: Candidate) -> Candidate:
+    """A crank-rocker with the swing and the time ratio that its circuit has, exactly."""
+    circuit = found.draft.linkage.motion().circuits[found.circuit]
+    swing, ratio = circuit.swing or 0.0, circuit.time_ratio or math.inf
+    late = abs(math.tau * ratio / (1 + ratio) - want.slow)
+    error = max(abs(swing - want.angle), late)
+    figures = {**found.claim.figures, "swing_deg": math.degrees(swing), "time_ratio": ratio}
+    return replace(found, claim=replace(found.claim, figures=figures), error_greatest=error, error_rms=error)
+
+
+def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, dict[str, float]]:
+    """The errors [rad] over a range or a turn, the output's zero chosen, and figures of the task."""
+    want = task.want
+    if isinstance(want, SwingWish):
+        return np.array([np.ptp(angles) - want.angle]), {}
+    if isinstance(want, Travel):
+        miss = float(angles[-1]) - want.output
+        back = np.diff(angles) * math.copysign(1.0, want.output) < -ROUNDING
+        return np.array([math.inf if back.any() else miss]), {"travel_deg": math.degrees(float(angles[-1]))}
+    if want.function is None:
+        off = np.interp(want.input - want.input[0], dense, angles) - want.output
+    else:
+        off = angles - np.asarray(want.function(want.input[0] + dense))
+    zero = float(off.max() + off.min()) / 2
+    return off - zero, {"output_zero_deg": math.degrees(zero)}
+
+
+def ball_angle(directions: Floats) -> float:
+    """The half angle [rad] of the smallest cone that holds unit vectors (k, 3); pi where no half space does.
+
+    Its axis is that of the shortest z with d . z >= 1 for all d, a problem of least distance.
+    """
+    from scipy.optimize import nnls
+
+    sides = np.vstack([directions.T, np.ones(len(directions))])
+    target = np.array([0.0, 0.0, 0.0, 1.0])
+    rest = sides @ nnls(sides, target)[0] - target
+    if np.linalg.norm(rest) < ROUNDING:
+        return math.pi
+    seat = rest[:3] / np.linalg.norm(rest[:3])
+    return math.acos(min(max(float((directions @ seat).min()), -1.0), 1.0))
+
+
+def designs(
+    task: SurveyTask, tally: SurveyTally, count: int, progress: Progress
+) -> tuple[list[Candidate], list[Refusal], int]:
+    """The best of a survey as designs, what was refused of them, and how many became better by polishing."""
+    best = tally.best[: POLISHED_EACH * count]
+    found: list[Candidate] = []
+    refused: list[Refusal] = []
+    better = 0
+    rows = drawn_numbers(task, [kept.index for kept in best])
+    # a second Ctrl+C, or one while polishing: what is there is given
+    with suppress(KeyboardInterrupt):
+        for done, (kept, numbers) in enumerate(zip(best, rows, strict=True)):
+            progress(done, len(best), f"polishing, {len(found)} checked")
+            new = judged(task, Polish(task, numbers, kept).polished(), kept)
+            better += not isinstance(new, Refusal)
+            if isinstance(new, Refusal):
+                new = judged(task, np.append(numbers, kept.start), kept)
+            if isinstance(new, Refusal):
+                refused.append(new)
+            else:
+                found.append(new)
+    order = sorted(found, key=lambda candidate: rank_of(task, candidate))
+    return renamed(distinct(order, scale_free=True, count=count), task.want.title), refused, better
+
+
+def rank_of(task: SurveyTask, candidate: Candidate) -> float:
+    """The figure by which designs are sorted: less is better."""
+    figures = candidate.claim.figures
+    if task.rank == "ball angle":
+        return max(figures["ball_crank_deg"], figures["ball_rocker_deg"])
+    if task.rank == "error" and not isinstance(task.want, Travel | SwingWish):
+        return candidate.error_greatest
+    return -(candidate.transmission_lowest or 0.0)

@@ -1,0 +1,113 @@
+"""A survey as people and programs read it: printed, as JSON, as a folder of designs."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sevenbar.design.survey.result import SurveyResult
+from sevenbar.design.synthesis.candidates import Candidate, tally
+from sevenbar.design.synthesis.files import design_files
+from sevenbar.kinematics.surveys import NUMBERS
+from sevenbar.reporting.files import Report
+from sevenbar.reporting.page import Facts, number_table
+
+#: Columns of the printed table, by their names in `Candidate.columns`, those that a task has.
+PRINTED = {
+    "error_greatest_deg": "greatest\nerror\n[deg]",
+    "transmission_lowest_deg": "least\ntransm.\n[deg]",
+    "ball_crank_deg": "ball at\ncrank\n[deg]",
+    "ball_rocker_deg": "ball at\nrocker\n[deg]",
+    "motion_type": "motion type",
+}
+
+#: Columns of the numbers: ratios, and the angle between the axes.
+NUMBER_COLUMNS = {f"{name}_ratio": name for name in NUMBERS[:6]} | {"axes_deg": "axes\n[deg]"}
+
+
+def survey_report(count: int, command: str) -> Report[SurveyResult]:
+    """How a survey is reported with the files of at most `count` designs, whose heads name the `command`."""
+    files = design_files(count, (), head=partial(_head, command), figure=_no_figure, as_dict=as_dict)
+    return Report(partial(text, count), as_dict, files)
+
+
+def text(count: int, found: SurveyResult) -> RenderableType:
+    """The answer for people, with the first `count` designs."""
+    facts = Facts()
+    facts.add("wanted", found.task.want.title, "bold")
+    facts.add("must hold", found.task.text())
+    bounds = found.task.request()["bounds"]
+    facts.add(
+        "drawn",
+        ", ".join(
+            f"{name} {low:g}" if low == high else f"{name} {low:g}..{high:g}"
+            for name, (low, high) in bounds.items()
+            if name != "angle"
+        ),
+    )
+    facts.add("axes", _axes(found))
+    facts.add("answer", found.answer, "bold")
+    if found.unfinished:
+        facts.add("unfinished", found.unfinished, "bold yellow")
+    total = max(found.tally.count, 1)
+    refused = sorted(found.tally.refused.items(), key=lambda pair: -pair[1])
+    for place, (verdict, number) in enumerate((v, n) for v, n in refused if n):
+        facts.add("" if place else "refused", f"{verdict}: {number} ({100 * number / total:.3g} %)")
+    for place, (verdict, words) in enumerate(found.nearest.items()):
+        facts.add("" if place else "nearest", f"{verdict}: {words}")
+    facts.add("polished", f"{found.polished} of the best")
+    if found.refusals:
+        facts.add("of the best", f"{tally(found.refusals)} refused after polishing")
+    parts: list[RenderableType] = [Text("Survey of RSSRs", style="bold underline"), facts.grid]
+    rows = [candidate.columns for candidate in found.candidates[:count]]
+    if rows:
+        for names in (PRINTED, NUMBER_COLUMNS):
+            own = [name for name in names if name in rows[0]]
+            table = number_table(
+                ["design", *(names[name] for name in own)],
+                [[str(i), *(_cell(row[name]) for name in own)] for i, row in enumerate(rows, 1)],
+                words=[1 + own.index("motion_type")] if "motion_type" in own else [],
+            )
+            parts += [Text(), table]
+    return Group(*parts)
+
+
+def as_dict(found: SurveyResult) -> dict[str, Any]:
+    """The answer as plain values: angles in radians but in columns whose names say deg."""
+    return {
+        **found.task.request(),
+        "judged": found.tally.count,
+        "unfinished": found.unfinished or None,
+        "answer": found.answer,
+        "tally": found.tally.as_dict(),
+        "nearest": found.nearest,
+        "polished": found.polished,
+        "refused": [{"fault": r.fault, "detail": r.detail} for r in found.refusals],
+        "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
+    }
+
+
+def _axes(found: SurveyResult) -> str:
+    low, high = map(math.degrees, found.task.table["angle"])
+    return f"at {low:g} deg" if low == high else f"at {low:g}..{high:g} deg"
+
+
+def _cell(value: object) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def _head(command: str, found: SurveyResult) -> list[str]:
+    return [
+        f"wanted: {found.task.want.title}",
+        f"must hold: {found.task.text()}",
+        f"made by: {command}",
+        "drawn where the readings start: both dials read zero there",
+    ]
+
+
+def _no_figure(found: SurveyResult, candidate: Candidate) -> Any:
+    raise NotImplementedError

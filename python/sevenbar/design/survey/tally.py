@@ -1,0 +1,168 @@
+"""The tally of a survey: why linkages were refused, how measures are spread, the best so far.
+
+Tallies are put together in any order: counts are summed, and of each part of the space of numbers the best
+linkage is kept, earlier ones first where two are as good. A part of the space that is among the first hundred
+of all linkages is among the first hundred of those where its best is, so that a hundred are enough to keep.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sevenbar.kinematics.batches import CODES
+from sevenbar.kinematics.surveys import VERDICTS, RawTally
+
+#: How many of the best are kept.
+BEST = 100
+
+#: Motion types that are counted.
+TYPES = CODES[:6]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A linkage of a survey: its index and its place, and what was measured of it.
+
+    `place` is its part of the space, or the verdict whose nearest it is. `figure` ranks it, less is better.
+    `error`, `transmission`, `balls` (NaN where not measured) and the input's `start` are angles [rad].
+    `sense` is -1 where the output counts against its axis.
+    """
+
+    index: int
+    place: int
+    figure: float
+    error: float
+    transmission: float
+    balls: tuple[float, float]
+    start: float
+    branch: int
+    sense: float
+
+    @property
+    def order(self) -> tuple[float, int]:
+        """The order among those kept."""
+        return (self.figure, self.index)
+
+
+@dataclass(frozen=True)
+class SurveyTally:
+    """Counts of linkages by verdict, motion type and limits; spreads of measures; the best and the nearest.
+
+    `spreads` have for each measure the width of a cell [rad] and the counts (36,), the last of all beyond.
+    """
+
+    verdicts: tuple[int, ...]
+    types: tuple[int, ...]
+    limits: tuple[int, ...]
+    spreads: Mapping[str, tuple[float, tuple[int, ...]]]
+    best: tuple[Kept, ...]
+    nearest: Mapping[int, Kept]
+
+    @property
+    def count(self) -> int:
+        """The linkages that were judged."""
+        return sum(self.verdicts)
+
+    @property
+    def found(self) -> int:
+        """Those that do what is wanted."""
+        return self.verdicts[0]
+
+    @property
+    def refused(self) -> dict[str, int]:
+        """Those refused, by verdict."""
+        return dict(zip(VERDICTS[1:], self.verdicts[1:], strict=True))
+
+    @staticmethod
+    def of(raw: RawTally) -> SurveyTally:
+        """The tally of one part, as the core has it."""
+        spreads = {name: (step, tuple(counts)) for name, (step, counts) in sorted(raw.spreads.items())}
+        nearest = {kept.place: kept for kept in _kept(raw.nearest)}
+        return SurveyTally(
+            tuple(raw.verdicts), tuple(raw.types), tuple(raw.limits), spreads, tuple(_kept(raw.best)), nearest
+        )
+
+    def __add__(self, other: SurveyTally) -> SurveyTally:
+        """Both put together."""
+        best: dict[int, Kept] = {}
+        for kept in (*self.best, *other.best):
+            known = best.get(kept.place)
+            if known is None or kept.order < known.order:
+                best[kept.place] = kept
+        nearest = dict(self.nearest)
+        for verdict, kept in other.nearest.items():
+            if verdict not in nearest or kept.order < nearest[verdict].order:
+                nearest[verdict] = kept
+        spreads = {
+            name: (step, _summed(counts, other.spreads[name][1]))
+            for name, (step, counts) in self.spreads.items()
+        }
+        return SurveyTally(
+            _summed(self.verdicts, other.verdicts),
+            _summed(self.types, other.types),
+            _summed(self.limits, other.limits),
+            spreads,
+            tuple(sorted(best.values(), key=lambda kept: kept.order)[:BEST]),
+            dict(sorted(nearest.items())),
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """As plain values."""
+        return {
+            "verdicts": dict(zip(VERDICTS, self.verdicts, strict=True)),
+            "motion_types": dict(zip(TYPES, self.types, strict=True)),
+            "limits": dict(zip(("0", "2", "4"), self.limits, strict=True)),
+            "spreads": {
+                name: {"step": step, "counts": list(counts)} for name, (step, counts) in self.spreads.items()
+            },
+            "best": [_row(kept) for kept in self.best],
+            "nearest": [_row(kept) for kept in self.nearest.values()],
+        }
+
+    def line(self) -> str:
+        """As one line of a journal."""
+        return json.dumps(self.as_dict(), separators=(",", ":"))
+
+    @staticmethod
+    def of_dict(plain: Mapping[str, Any]) -> SurveyTally:
+        """The tally of plain values; raises `KeyError`, `TypeError` or `ValueError` where they are none."""
+        return SurveyTally(
+            tuple(plain["verdicts"].values()),
+            tuple(plain["motion_types"].values()),
+            tuple(plain["limits"].values()),
+            {name: (s["step"], tuple(s["counts"])) for name, s in plain["spreads"].items()},
+            tuple(_of_row(row) for row in plain["best"]),
+            {kept.place: kept for kept in map(_of_row, plain["nearest"])},
+        )
+
+
+def _kept(entries: tuple[Any, Any, Any]) -> list[Kept]:
+    indices, places, rows = (array.tolist() for array in entries)
+    return [
+        Kept(index, place, row[0], row[1], row[2], (row[3], row[4]), row[5], int(row[6]), row[7])
+        for index, place, row in zip(indices, places, rows, strict=True)
+    ]
+
+
+def _row(kept: Kept) -> list[Any]:
+    """A linkage as plain values; what was not measured is null."""
+    balls = [None if math.isnan(angle) else angle for angle in kept.balls]
+    return [
+        kept.index, kept.place, kept.figure, kept.error, kept.transmission, *balls,
+        kept.start, kept.branch, kept.sense,
+    ]  # fmt: skip
+
+
+def _of_row(row: Sequence[Any]) -> Kept:
+    balls = tuple(math.nan if angle is None else float(angle) for angle in row[5:7])
+    return Kept(row[0], row[1], row[2], row[3], row[4], (balls[0], balls[1]), row[7], row[8], row[9])
+
+
+def _summed(a: Sequence[int], b: Sequence[int]) -> tuple[int, ...]:
+    return tuple(np.add(a, b).tolist())

@@ -1,0 +1,267 @@
+"""What a survey is asked: bounds of the numbers, what is wanted, what must hold. Any part follows from it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.synthesis.function.wish import Wish
+from sevenbar.design.synthesis.limits import MOST_RATIO, MOTION_TYPES, USUAL_SIZE
+from sevenbar.errors import RequestError, shown, suggestion
+from sevenbar.kinematics.batches import CODES
+from sevenbar.kinematics.surveys import NUMBERS, CoreSurvey, core_survey
+
+#: The format of a survey's description.
+FORMAT = 1
+
+#: Linkages of a part: what a processor judges in some tenths of a second.
+PART = 2**18
+
+#: Most linkages: indices beyond are no whole numbers in every program's JSON.
+MOST = 2**50
+
+#: Readings at which linkages are compared: about so far apart [rad], and how many.
+READING_STEP, FEWEST_READINGS, MOST_READINGS = math.radians(7.5), 7, 16
+
+#: Ratios to L3 where no bounds are given, and the angle between the axes [rad].
+USUAL_BOUNDS: Mapping[str, tuple[float, float]] = {
+    "M": (-3.0, 3.0),
+    "N": (-3.0, 3.0),
+    "L1": (0.1, 3.0),
+    "L2": (0.2, 4.0),
+    "L3": (1.0, 1.0),
+    "D": (-3.0, 3.0),
+    "angle": (0.0, math.pi),
+}
+
+#: By what linkages that do what is wanted are ranked.
+RANKS = ("error", "transmission", "ball angle")
+
+
+@dataclass(frozen=True, eq=False)
+class Travel:
+    """The output moves one way through `output` while the input turns through `input` [rad]."""
+
+    input: float
+    output: float
+
+    @property
+    def title(self) -> str:
+        """The travel in words."""
+        return f"{math.degrees(self.input):g} deg in, {math.degrees(self.output):g} deg out"
+
+
+@dataclass(frozen=True, eq=False)
+class SwingWish:
+    """The output of a crank-rocker swings through `angle` [rad], slower one way by `time_ratio` >= 1."""
+
+    angle: float
+    time_ratio: float = 1.0
+
+    @property
+    def slow(self) -> float:
+        """The turn of the input on the slower stroke [rad]."""
+        return math.tau * self.time_ratio / (1 + self.time_ratio)
+
+    @property
+    def title(self) -> str:
+        """The swing in words."""
+        return f"swing {math.degrees(self.angle):g} deg, time ratio {self.time_ratio:g}"
+
+
+@dataclass(frozen=True, eq=False)
+class SurveyTask:
+    """What is wanted of RSSRs within bounds.
+
+    `bounds` of `NUMBERS`: lengths relative to one another, the angle between the axes in radians; those not
+    given are `USUAL_BOUNDS`. `want` is a function or pairs (`Wish`), a `Travel` or a `SwingWish`; within
+    `tolerance` [rad] of it a linkage does what is wanted. It must keep `transmission_lowest` [rad] over the
+    range that is used, `motion_type`, `ratio` (longest length over shortest link), and turn its balls no
+    further than `ball_angle` [rad] from the best seat of each. Raises `RequestError`.
+    """
+
+    want: Wish | Travel | SwingWish
+    bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    count: int = 10**6
+    seed: int = 0
+    tolerance: float = math.radians(1)
+    transmission_lowest: float = math.radians(30)
+    ball_angle: float = math.pi
+    motion_type: str | None = None
+    ratio: float = MOST_RATIO
+    rank: str = "error"
+
+    def __post_init__(self) -> None:
+        for name in self.bounds:
+            if name not in NUMBERS:
+                known = ", ".join(NUMBERS)
+                raise RequestError(
+                    f"bounds: {shown(name)} is no number of an RSSR; "
+                    f"{suggestion(name, NUMBERS)}give some of {known}"
+                )
+        for name, (low, high) in self.table.items():
+            if not (math.isfinite(low) and math.isfinite(high) and low <= high):
+                raise RequestError(f"{name}: {low:g}:{high:g} is no range; give two numbers that rise")
+            if name in ("L1", "L2", "L3") and low <= 0:
+                raise RequestError(f"{name}: {low:g}:{high:g} holds no length only; give numbers > 0")
+        lengths = [table for name, table in self.table.items() if name != "angle"]
+        longest = max(abs(x) for ends in lengths for x in ends)
+        shortest = min(self.table[name][1] for name in ("L1", "L2", "L3"))
+        if longest > 1e6 * shortest:
+            raise RequestError(f"bounds: lengths from {shortest:g} to {longest:g} are no linkage to build")
+        if not 1 <= self.count <= MOST:
+            raise RequestError(f"count: {self.count} is no number of linkages; give 1 to {MOST}")
+        if self.seed < 0:
+            raise RequestError(f"seed: {self.seed} is no seed; give a number >= 0")
+        if not 0 < self.tolerance <= math.pi:
+            degrees = math.degrees(self.tolerance)
+            raise RequestError(f"tolerance: {degrees:g} deg is none; give an angle > 0")
+        if not 0 <= self.transmission_lowest < math.pi / 2:
+            degrees = math.degrees(self.transmission_lowest)
+            raise RequestError(
+                f"transmission: {degrees:g} deg is no limit; give an angle from 0 to below 90 deg"
+            )
+        if not 0 < self.ball_angle <= math.pi:
+            degrees = math.degrees(self.ball_angle)
+            raise RequestError(f"ball angle: {degrees:g} deg is no limit; give an angle up to 180 deg")
+        if not self.ratio > 1:
+            raise RequestError(f"ratio: {self.ratio:g} is no ratio of lengths; give a number > 1")
+        for name, word, words in (
+            ("motion type", self.motion_type, MOTION_TYPES),
+            ("rank", self.rank, RANKS),
+        ):
+            if word is not None and word not in words:
+                raise RequestError(
+                    f"{name}: {shown(word)} is not offered; "
+                    f"{suggestion(word, words)}give one of {', '.join(words)}"
+                )
+        _check_want(self.want, self.motion_type)
+
+    @property
+    def table(self) -> dict[str, tuple[float, float]]:
+        """The bounds of all numbers."""
+        return {name: self.bounds.get(name, USUAL_BOUNDS[name]) for name in NUMBERS}
+
+    @property
+    def parts(self) -> int:
+        """The number of parts."""
+        return -(-self.count // PART)
+
+    def linkages(self, part: int) -> range:
+        """The linkages of a part."""
+        return range(part * PART, min((part + 1) * PART, self.count))
+
+    @property
+    def readings(self) -> tuple[Floats, Floats]:
+        """The readings (n,) [rad] of input and output at which linkages are compared, from 0."""
+        if isinstance(self.want, SwingWish):
+            return np.empty(0), np.empty(0)
+        if isinstance(self.want, Travel):
+            inputs = np.linspace(0.0, self.want.input, _readings_over(self.want.input))
+            return inputs, self.want.output * inputs / self.want.input
+        wish = self.want
+        if wish.function is not None:
+            span = wish.input[-1] - wish.input[0]
+            inputs = np.linspace(wish.input[0], wish.input[-1], _readings_over(span))
+            outputs = wish.function(inputs)
+        else:
+            places = np.unique(np.linspace(0, wish.input.size - 1, MOST_READINGS).round().astype(int))
+            inputs, outputs = wish.input[places], wish.output[places]
+        return inputs - inputs[0], outputs - outputs[0]
+
+    def core(self) -> CoreSurvey:
+        """The core's survey of this task."""
+        wish: dict[str, Any] = {
+            "tolerance": self.tolerance,
+            "motion_type": None if self.motion_type is None else CODES.index(self.motion_type),
+            "ratio": self.ratio,
+            "transmission": self.transmission_lowest,
+            "cones": [self.ball_angle] * 2,
+            "seats": [None, None],
+            "rank": self.rank.replace("ball angle", "cone"),
+        }
+        if isinstance(self.want, SwingWish):
+            wish["swing"] = [self.want.angle, self.want.slow]
+        else:
+            wish["readings"] = np.array(self.readings)
+            wish["ends_only"] = wish["monotone"] = isinstance(self.want, Travel)
+        return core_survey(np.array(list(self.table.values())), self.seed, **wish)
+
+    def request(self) -> dict[str, Any]:
+        """What the survey is, as plain values: two surveys with one request have the same answer."""
+        inputs, outputs = self.readings
+        return {
+            "format": FORMAT,
+            "wanted": self.want.title,
+            "readings": [inputs.tolist(), outputs.tolist()],
+            "bounds": {name: list(ends) for name, ends in self.table.items()},
+            "count": self.count,
+            "seed": self.seed,
+            "tolerance": self.tolerance,
+            "transmission_lowest": self.transmission_lowest,
+            "ball_angle": self.ball_angle,
+            "motion_type": self.motion_type,
+            "ratio": self.ratio,
+            "rank": self.rank,
+            "part_size": PART,
+        }
+
+    def digest(self) -> str:
+        """The mark of the survey, which its journal carries."""
+        return hashlib.sha256(json.dumps(self.request(), sort_keys=True).encode()).hexdigest()
+
+    def text(self) -> str:
+        """What must hold, in words."""
+        parts = [f"within {math.degrees(self.tolerance):g} deg"]
+        if self.transmission_lowest:
+            parts.append(f"transmission angle >= {math.degrees(self.transmission_lowest):g} deg")
+        if self.ball_angle < math.pi:
+            parts.append(f"ball angles <= {math.degrees(self.ball_angle):g} deg")
+        if self.motion_type is not None:
+            parts.append(self.motion_type)
+        return "; ".join([*parts, f"longest length <= {self.ratio:g} shortest links"])
+
+
+def _readings_over(span: float) -> int:
+    return min(max(round(span / READING_STEP) + 1, FEWEST_READINGS), MOST_READINGS)
+
+
+def _check_want(want: Wish | Travel | SwingWish, motion_type: str | None) -> None:
+    """Raises `RequestError` for a want that is none."""
+    if isinstance(want, Wish):
+        if want.zeros is not None:
+            raise RequestError("zeros: are chosen by a survey; leave them out")
+    elif isinstance(want, Travel):
+        for name, value in (("input", want.input), ("output", abs(want.output))):
+            if not 0 < value < math.tau:
+                raise RequestError(
+                    f"{name} range: {math.degrees(value):g} deg is no part of a turn; "
+                    "give two angles less than 360 deg apart, as in 0:90deg"
+                )
+    else:
+        if not 0 < want.angle < math.tau or not 1 <= want.time_ratio <= MOST_RATIO:
+            raise RequestError(
+                f"swing: {want.title} is not offered; give a swing between 0 and 360 deg, "
+                f"a time ratio from 1 to {MOST_RATIO:g}"
+            )
+        if motion_type not in (None, "crank-rocker"):
+            raise RequestError(
+                f"motion type: a {motion_type} has no swing with a time ratio; give crank-rocker, or none"
+            )
+
+
+def drawn_numbers(task: SurveyTask, indices: Sequence[int]) -> Floats:
+    """The numbers (n, 7) of linkages by their indices."""
+    return task.core().numbers(np.array(indices, dtype=np.int64))
+
+
+def scale_of(numbers: Floats) -> float:
+    """What makes the longest of the numbers (7,) the usual size [mm]."""
+    return USUAL_SIZE / float(np.abs(numbers[:6]).max())
