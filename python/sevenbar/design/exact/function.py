@@ -31,7 +31,7 @@ from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, judged
 from sevenbar.design.exact.closures import SkewRssr, designed, products, rssr_of
 from sevenbar.design.exact.draws import directions
 from sevenbar.design.synthesis.function.precision import null_angles, reflected
-from sevenbar.design.synthesis.function.wish import wish_of_pairs
+from sevenbar.design.wish import wish_of_pairs
 from sevenbar.errors import RequestError, ends_here
 
 #: Coefficients of a closure: with free zeros, with the zeros given, and with zeros and axes given.

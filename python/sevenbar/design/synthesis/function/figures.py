@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from sevenbar.design.candidates import Candidate
 from sevenbar.design.closure import outputs, row_of, transmissions
-from sevenbar.design.synthesis.function.wish import Wish
+from sevenbar.design.wish import Wish
 from sevenbar.drawing.figure import page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled

@@ -31,8 +31,8 @@ from sevenbar.design.closure import (
     transmissions,
 )
 from sevenbar.design.limits import INPUT_TURNS, Limits, size_room, turning_room
-from sevenbar.design.synthesis.function.programs import MISSED, MinimaxValues, lowered
-from sevenbar.design.synthesis.function.wish import Wish
+from sevenbar.design.task.programs import MISSED, MinimaxValues, lowered
+from sevenbar.design.wish import Wish
 
 #: Columns of a row (6,) that are unknown: all but L3.
 FREE = (0, 1, 2, 3, 5)

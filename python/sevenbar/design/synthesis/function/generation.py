@@ -32,7 +32,7 @@ from sevenbar.design.course import SearchCourse
 from sevenbar.design.limits import INPUT_TURNS, Limits
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.precision import designs_of, reflected, system, through
-from sevenbar.design.synthesis.function.wish import Wish, wish_of_function, wish_of_pairs
+from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import MissingExtraError, RequestError
 from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed

@@ -37,7 +37,7 @@ from sevenbar.design.limits import Limits, size_room, turning_room
 from sevenbar.design.synthesis.function.fitting import FREE
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, need_scipy
 from sevenbar.design.synthesis.function.precision import reflected
-from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
+from sevenbar.design.task.programs import MinimaxValues, lowered
 from sevenbar.errors import RequestError
 from sevenbar.text.progress import Progress, silent
 
