@@ -172,7 +172,7 @@ impl Along<'_> {
         force / mass
     }
 
-    /// The motion from a state until a time, or until it comes to one of the bounds.
+    /// The motion from a state until a time, or until it reaches one of the bounds.
     pub fn driven(&self, begin: Begin, bounds: (f64, f64), mut motor: Option<&mut Torque<'_>>) -> Steps {
         let rule = Collocation::new();
         let Begin { mut time, mut place, mut speed, until, place_error, speed_error } = begin;

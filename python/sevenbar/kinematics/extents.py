@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -120,6 +120,11 @@ class WithExtents:
 
     _answers: Any
 
+    if TYPE_CHECKING:
+
+        def fleeting(self) -> Any:
+            """The circuit for one look at its rows."""
+
     @cached_property
     def joint_ranges(self) -> Mapping[str, JointRange]:
         """The range of every column but a ball's [rad, or length], by its name.
@@ -132,7 +137,7 @@ class WithExtents:
             >>> round(math.degrees(rocker.extent), 6)
             69.937942
         """
-        found: Mapping[str, JointRange] = self._answers.joint_ranges(self)
+        found: Mapping[str, JointRange] = self._answers.joint_ranges(self.fleeting())
         return found
 
     @cached_property
@@ -147,7 +152,7 @@ class WithExtents:
 
         Source: docs/theory_measures.md, (12) and (13).
         """
-        found: Mapping[str, BallCone] = self._answers.ball_cones(self)
+        found: Mapping[str, BallCone] = self._answers.ball_cones(self.fleeting())
         return found
 
     @property
@@ -156,7 +161,7 @@ class WithExtents:
 
         The angle between seat and stud of `ball_cones`; NaN on rows in which a ball's turns are undefined.
         """
-        found: Mapping[str, Floats] = self._answers.bends(self)
+        found: Mapping[str, Floats] = self._answers.bends(self.fleeting())
         return found
 
     @ends_here
@@ -182,7 +187,7 @@ class WithExtents:
             >>> round(math.degrees(cone.least.value), 3), round(math.degrees(cone.greatest.value), 3)
             (39.739, 79.047)
         """
-        found: BallCone = self._answers.ball_cone(self, joint, {"seat": seat, "stud": stud})
+        found: BallCone = self._answers.ball_cone(self.fleeting(), joint, {"seat": seat, "stud": stud})
         return found
 
     @cached_property
@@ -198,7 +203,7 @@ class WithExtents:
             >>> one.links, round(one.distance.value, 3)
             ((1, 3), 753.55)
         """
-        found: tuple[Clearance, ...] = self._answers.clearances(self)
+        found: tuple[Clearance, ...] = self._answers.clearances(self.fleeting())
         return found
 
     @cached_property
@@ -213,5 +218,5 @@ class WithExtents:
             >>> [span.last_stop for span in found.spans], round(found.share, 3)
             (['cone of ball_b', 'cone of ball_b'], 0.545)
         """
-        found: Allowed = self._answers.allowed(self)
+        found: Allowed = self._answers.allowed(self.fleeting())
         return found

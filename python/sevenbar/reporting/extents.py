@@ -76,7 +76,7 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
 
 def span_rows(motion: Motion) -> tuple[Row, list[Row]]:
     """Heads, and a row for each part of each circuit that its stops allow."""
-    heads = (say("circuit"), say("usable part"), say("from"), say("to"), say("ended by"))
+    heads = (say("circuit"), say("usable part"), say("begins at"), say("ends at"), say("ended by"))
     place = Shown("rad" if motion.linkage.unit_of(motion.input) == "rad" else motion.linkage.length_unit)
     rows: list[Row] = []
     for circuit in motion:

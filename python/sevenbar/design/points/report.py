@@ -85,7 +85,8 @@ def least_text(found: LeastPoint) -> RenderableType:
     if found.before:
         rows = [[p.name, _place(p.at), f"{p.value:.6g}", _times(p.value, found)] for p in found.before]
         rows.append([say("found"), _place(found.at), f"{found.value:.6g}", ""])
-        head = ["point", "at", f"{word} [{unit}]", "times"]
+        size = say("root mean square") if found.measure == "rms" else say("greatest")
+        head = ["point", "at", f"{size} [{unit}]", "times"]
         parts += [Text(), number_table(head, rows, words=[1])]
     return Group(*parts)
 
