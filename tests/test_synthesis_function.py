@@ -268,7 +268,7 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
 @pytest.mark.parametrize(
     ("name", "count"),
     [
-        ("design.wish", 1),
+        ("design.wish", 2),
         ("design.course", 3),
     ],
 )
