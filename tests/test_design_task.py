@@ -10,7 +10,7 @@ import sevenbar as sb
 from evidence.design.__main__ import FOUND, is_whole, unit_of
 from evidence.design.tasks import tasks
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.candidates import Refusal
+from sevenbar.design.candidates import Refusal
 from sevenbar.design.task import (
     Apart,
     DesignTask,

@@ -8,10 +8,10 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.arrays import short_way
+from sevenbar.design.candidates import Candidate
+from sevenbar.design.closure import row_of
 from sevenbar.design.exact import function_pairs
 from sevenbar.design.exact.closures import SkewRssr, rssr_of
-from sevenbar.design.synthesis.candidates import Candidate
-from sevenbar.design.synthesis.closure import row_of
 from sevenbar.design.synthesis.function.precision import through
 from sevenbar.errors import RequestError
 

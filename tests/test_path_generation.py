@@ -8,13 +8,13 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.candidates import Candidate, Refusal
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.candidates import Candidate, Refusal
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.check import checked_path
 from sevenbar.design.synthesis.path.generation import path_generation
-from sevenbar.design.synthesis.path.match import STILL, in_order, placed
 from sevenbar.design.synthesis.path.refine import Refined
 from sevenbar.design.synthesis.path.task import path_task
+from sevenbar.design.task.match import STILL, in_order, placed
 from sevenbar.errors import RequestError
 
 

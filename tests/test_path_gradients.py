@@ -5,7 +5,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.point import PointLoop
 from sevenbar.design.synthesis.path.refine import PathProblem
 from sevenbar.design.synthesis.path.search import Seed

@@ -20,7 +20,7 @@ from sevenbar.design.survey.journal import JOURNAL
 from sevenbar.design.survey.polish import ball_angle, draft_of
 from sevenbar.design.survey.skew_closure import L2, poses, reach
 from sevenbar.design.survey.task import drawn_numbers
-from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
+from sevenbar.design.wish import wish_of_function, wish_of_pairs
 from sevenbar.errors import OutputError, RequestError
 from sevenbar.kinematics.surveys import VERDICTS, survey_figures
 

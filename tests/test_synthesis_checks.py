@@ -9,7 +9,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.candidates import (
+from sevenbar.design.candidates import (
     Candidate,
     Claim,
     Refusal,
@@ -18,9 +18,9 @@ from sevenbar.design.synthesis.candidates import (
     ranked,
     renamed,
 )
-from sevenbar.design.synthesis.closure import draft_of
-from sevenbar.design.synthesis.files import design_files
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.closure import draft_of
+from sevenbar.design.files import design_files
+from sevenbar.design.limits import Limits
 from sevenbar.errors import OutputError, RequestError
 from sevenbar.reporting.files import Report
 

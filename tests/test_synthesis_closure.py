@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.design.synthesis.closure import (
+from sevenbar.design.closure import (
     NAMES,
     draft_of,
     output_slopes,
@@ -16,7 +16,7 @@ from sevenbar.design.synthesis.closure import (
     transmission_slopes,
     transmissions,
 )
-from sevenbar.design.synthesis.limits import Limits, size_room
+from sevenbar.design.limits import Limits, size_room
 from sevenbar.kinematics.sensitivity import Numbers
 
 DESIGNS = np.array(

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.design.synthesis.closure import NAMES
+from sevenbar.design.closure import NAMES
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.generation import function_generation
 from sevenbar.design.synthesis.function.report import synthesis_report
-from sevenbar.design.synthesis.function.wish import wish_of_function, wish_of_pairs
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.wish import wish_of_function, wish_of_pairs
 from sevenbar.errors import RequestError
 from sevenbar.text.expression import function_of
 
@@ -268,7 +268,7 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
 @pytest.mark.parametrize(
     ("name", "count"),
     [
-        ("design.synthesis.function.precision", 1),
+        ("design.wish", 2),
         ("design.course", 3),
     ],
 )

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.design.synthesis.closure import NAMES, outputs
+from sevenbar.design.closure import NAMES, outputs
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.generation import function_generation
-from sevenbar.design.synthesis.function.precision import chebyshev, coefficients, system, through
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.synthesis.function.precision import coefficients, system, through
+from sevenbar.design.wish import chebyshev
 
 #: A design with L3 = 1, the zeros of its dials, readings of its input.
 KNOWN = np.array([300.0, 200.0, 250.0, 420.0, 350.0, -100.0]) / 350.0

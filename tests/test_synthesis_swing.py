@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from sevenbar.design.synthesis.closure import NAMES, outputs, transmissions
+from sevenbar.design.closure import NAMES, outputs, transmissions
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.function.swing import ends_of_swing, swing_generation
-from sevenbar.design.synthesis.limits import Limits
 from sevenbar.errors import RequestError
 
 CRANK = np.array([700.0, 700.0, 250.0, 1000.0, 550.0, -150.0]) / 550.0

@@ -16,7 +16,7 @@ import sevenbar as sb
 from sevenbar.arrays import Floats
 from sevenbar.description import gallery
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.function.wish import wish_of_function
+from sevenbar.design.wish import wish_of_function
 from sevenbar.errors import RequestError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.law import Law

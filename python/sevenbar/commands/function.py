@@ -66,7 +66,7 @@ def function(
 ) -> None:
     """RSSR linkages whose output follows a function, or pairs of angles (extra 'design')."""
     from sevenbar.design.synthesis.function.generation import function_generation
-    from sevenbar.design.synthesis.function.wish import read_pairs
+    from sevenbar.design.wish import read_pairs
 
     report = _before(out, designs, figures, force)
     if (y is None) == (table is None):

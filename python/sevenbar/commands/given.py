@@ -16,7 +16,7 @@ from sevenbar.text.units import amount, examples_of, sizes_of
 
 if TYPE_CHECKING:
     from sevenbar.description.draft import Draft
-    from sevenbar.design.synthesis.limits import Limits
+    from sevenbar.design.limits import Limits
     from sevenbar.kinematics.law import Law
     from sevenbar.reporting.figures import FigureLook
 
@@ -149,7 +149,7 @@ def numbers(option: str, text: str) -> tuple[float, float]:
 
 def limits_of(transmission: str, size: str | None, motion_type: str | None, unit: str) -> Limits:
     """What a design must keep; a size without a unit is in `unit`."""
-    from sevenbar.design.synthesis.limits import Limits
+    from sevenbar.design.limits import Limits
 
     ends = None if size is None else lengths("--size", size, unit)
     return Limits(angle("--transmission", transmission), ends, motion_type)

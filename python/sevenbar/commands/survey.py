@@ -20,7 +20,7 @@ from sevenbar.text.ranges import split_name
 
 if TYPE_CHECKING:
     from sevenbar.design.survey.task import SwingWish, Travel
-    from sevenbar.design.synthesis.function.wish import Wish
+    from sevenbar.design.wish import Wish
 
 #: An example of a bound, in messages.
 EXAMPLE = "as in L1=0.2:1, D=0 or angle=60:120deg"
@@ -150,7 +150,7 @@ def survey(
 
 def _readings(y: str | None, x: str, table: Path | None, input_range: str, output_range: str) -> Wish:
     """The wish for a function or the pairs of a table."""
-    from sevenbar.design.synthesis.function.wish import read_pairs, wish_of_function, wish_of_pairs
+    from sevenbar.design.wish import read_pairs, wish_of_function, wish_of_pairs
     from sevenbar.text.expression import function_of
 
     if table is not None:

@@ -9,8 +9,8 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.design.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
 from sevenbar.design.exact.dyads import Dyad
-from sevenbar.design.synthesis.candidates import CHECK_SAMPLES, Candidate, Claim, Refusal, checked
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.printing import Printed, lines, text_of
 

@@ -25,13 +25,13 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array, finite_number
 from sevenbar.description.draft import Draft
+from sevenbar.design.candidates import Claim
+from sevenbar.design.closure import draft_of
 from sevenbar.design.exact.answers import ExactAnswer, ExactAnswers, judged
 from sevenbar.design.exact.closures import SkewRssr, designed, products, rssr_of
 from sevenbar.design.exact.draws import directions
-from sevenbar.design.synthesis.candidates import Claim
-from sevenbar.design.synthesis.closure import draft_of
 from sevenbar.design.synthesis.function.precision import null_angles, reflected
-from sevenbar.design.synthesis.function.wish import wish_of_pairs
+from sevenbar.design.wish import wish_of_pairs
 from sevenbar.errors import RequestError, ends_here, shown
 
 #: Coefficients of a closure: with free zeros, with the zeros given, and with zeros and axes given.

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from sevenbar.description.draft import Draft
+from sevenbar.design.candidates import Claim
 from sevenbar.design.exact.answers import ExactAnswer, judged
 from sevenbar.design.exact.dyads import Dyad, plain, share_a_line
 from sevenbar.design.exact.given import Displacements
-from sevenbar.design.synthesis.candidates import Claim
 from sevenbar.kinematics.rigid import inverse
 
 #: The joints of a loop, in its order.

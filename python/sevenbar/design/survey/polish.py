@@ -17,12 +17,12 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.design.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
+from sevenbar.design.limits import Limits
 from sevenbar.design.survey.skew_closure import ANGLE, COUNT, START, Poses, least_square, poses
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel, drawn_numbers, scale_of
-from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
-from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.task.programs import MinimaxValues, lowered
 from sevenbar.kinematics.surveys import NUMBERS
 from sevenbar.text.progress import Progress
 

@@ -9,9 +9,9 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from sevenbar.design.candidates import Candidate, tally
+from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
-from sevenbar.design.synthesis.candidates import Candidate, tally
-from sevenbar.design.synthesis.files import design_files
 from sevenbar.kinematics.surveys import NUMBERS
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table

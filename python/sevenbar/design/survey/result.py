@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from sevenbar.design.candidates import Candidate, Refusal
 from sevenbar.design.survey.tally import SurveyTally
 from sevenbar.design.survey.task import SurveyTask, drawn_numbers
-from sevenbar.design.synthesis.candidates import Candidate, Refusal
 from sevenbar.kinematics.surveys import NUMBERS, VERDICTS
 from sevenbar.text.printing import Printed, lines, text_of
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.function.wish import Wish
-from sevenbar.design.synthesis.limits import MOST_RATIO, MOTION_TYPES, USUAL_SIZE
+from sevenbar.design.limits import MOST_RATIO, MOTION_TYPES, USUAL_SIZE
+from sevenbar.design.wish import Wish
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.batches import CODES
 from sevenbar.kinematics.surveys import NUMBERS, CoreSurvey, core_survey

@@ -10,7 +10,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.candidates import (
+from sevenbar.design.candidates import (
     CHECK_SAMPLES,
     Candidate,
     Claim,
@@ -19,12 +19,12 @@ from sevenbar.design.synthesis.candidates import (
     checked,
     within_limits,
 )
-from sevenbar.design.synthesis.path.check import moved, standing
-from sevenbar.design.synthesis.path.match import Placing
 from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.match import Placing
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
+from sevenbar.design.task.standing import moved, standing
 from sevenbar.design.task.task import Apart, FigureMust, InBox, InCone, InRange, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted

@@ -9,7 +9,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.idle_link import refuse_idle_link
-from sevenbar.design.synthesis.path.task import wanted_inputs, wanted_places
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must
 from sevenbar.design.task.task import (
@@ -24,6 +23,7 @@ from sevenbar.design.task.task import (
     StraightWant,
     Want,
 )
+from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
 from sevenbar.kinematics.linkage import Linkage
 

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.path.figures import PathPage, path_page
 from sevenbar.design.task.along import DesignAlong
+from sevenbar.design.task.path_page import PathPage, path_page
 from sevenbar.design.task.task import DwellWant, FunctionWant, PathWant, PoseWant
 from sevenbar.design.task.words import must_words
 from sevenbar.drawing.figure import page_figure

@@ -19,9 +19,9 @@ from itertools import pairwise
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.limits import INPUT_TURNS, transmission_room, turning_room
-from sevenbar.design.synthesis.path.match import STILL, Placing, placed
+from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
+from sevenbar.design.task.match import STILL, Placing, placed
 from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (

@@ -11,8 +11,8 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.synthesis.candidates import Candidate
-from sevenbar.design.synthesis.files import design_files
+from sevenbar.design.candidates import Candidate
+from sevenbar.design.files import design_files
 from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure

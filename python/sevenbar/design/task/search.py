@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from sevenbar.design.candidates import Refusal, likeness, tally
 from sevenbar.design.course import SearchCourse
-from sevenbar.design.synthesis.candidates import Refusal, likeness, tally
 from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.solve import LOOK, Solved, solved

@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskValues
+from sevenbar.design.task.programs import MinimaxValues, lowered
 from sevenbar.design.task.wants.places import PlacesWanted
 
 #: Evaluations of a first look, and of a design that is kept.

@@ -19,7 +19,7 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.limits import Limits
 
 #: What is made least of the residuals.
 Goal = Literal["least squares", "minimax"]

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from sevenbar.design.synthesis.candidates import Candidate
-from sevenbar.design.synthesis.closure import outputs, row_of, transmissions
-from sevenbar.design.synthesis.function.wish import Wish
+from sevenbar.design.candidates import Candidate
+from sevenbar.design.closure import outputs, row_of, transmissions
+from sevenbar.design.wish import Wish
 from sevenbar.drawing.figure import page_figure
 from sevenbar.drawing.names import short
 from sevenbar.drawing.style import COMPUTED, OTHER, styled

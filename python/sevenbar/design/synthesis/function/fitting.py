@@ -24,15 +24,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.synthesis.closure import (
+from sevenbar.design.closure import (
     output_slopes,
     outputs,
     transmission_slopes,
     transmissions,
 )
-from sevenbar.design.synthesis.function.programs import MISSED, MinimaxValues, lowered
-from sevenbar.design.synthesis.function.wish import Wish
-from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits, size_room, turning_room
+from sevenbar.design.limits import INPUT_TURNS, Limits, size_room, turning_room
+from sevenbar.design.task.programs import MISSED, MinimaxValues, lowered
+from sevenbar.design.wish import Wish
 
 #: Columns of a row (6,) that are unknown: all but L3.
 FREE = (0, 1, 2, 3, 5)

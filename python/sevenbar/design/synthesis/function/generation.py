@@ -15,8 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, short_way
-from sevenbar.design.course import SearchCourse
-from sevenbar.design.synthesis.candidates import (
+from sevenbar.design.candidates import (
     Candidate,
     Claim,
     Refusal,
@@ -28,11 +27,12 @@ from sevenbar.design.synthesis.candidates import (
     tally,
     transmits_best,
 )
-from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.course import SearchCourse
+from sevenbar.design.limits import INPUT_TURNS, Limits
 from sevenbar.design.synthesis.function.fitting import Estimate, Fit
 from sevenbar.design.synthesis.function.precision import designs_of, reflected, system, through
-from sevenbar.design.synthesis.function.wish import Wish, wish_of_function, wish_of_pairs
-from sevenbar.design.synthesis.limits import INPUT_TURNS, Limits
+from sevenbar.design.wish import Wish, wish_of_function, wish_of_pairs
 from sevenbar.errors import MissingExtraError, RequestError
 from sevenbar.text.expression import function_of
 from sevenbar.text.printing import Printed

@@ -29,30 +29,13 @@ import math
 import numpy as np
 
 from sevenbar.arrays import Floats, short_way
-
-#: Points that determine a design with both zeros given, and with neither.
-FIXED_ZEROS_MOST, FREE_ZEROS_MOST = 5, 7
-
-#: Fewest points that are worth a design.
-FEWEST = 3
+from sevenbar.design.wish import FEWEST, FIXED_ZEROS_MOST, FREE_ZEROS_MOST
 
 #: Rank of a system of points, relative to its greatest singular value, below which points repeat each other.
 RANK = 1e-10
 
 #: Share of L1 (or 1 / L1) in L3 beyond which a design of few points is not tried.
 FARTHEST = 20.0
-
-
-def chebyshev(low: float, high: float, count: int) -> Floats:
-    """Precision points (count,) between two ends, spaced as the zeros of Chebyshev's polynomial.
-
-    Near to them lie the best ones: the error between them is about even.
-
-        >>> chebyshev(0.0, 1.0, 2).round(4).tolist()
-        [0.1464, 0.8536]
-    """
-    angles = (2 * np.arange(count) + 1) * math.pi / (2 * count)
-    return (low + high) / 2 - (high - low) / 2 * np.cos(angles)
 
 
 def coefficients(row: Floats) -> Floats:

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.synthesis.candidates import Candidate
-from sevenbar.design.synthesis.files import design_files
+from sevenbar.design.candidates import Candidate
+from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.function.figures import function_figure, swing_figure
 from sevenbar.design.synthesis.function.generation import Synthesis
 from sevenbar.reporting.files import Report

@@ -20,8 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.course import SearchCourse
-from sevenbar.design.synthesis.candidates import (
+from sevenbar.design.candidates import (
     Candidate,
     Claim,
     Refusal,
@@ -32,12 +31,13 @@ from sevenbar.design.synthesis.candidates import (
     transmits_best,
     within_limits,
 )
-from sevenbar.design.synthesis.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.closure import draft_of, outputs, scaled, transmissions
+from sevenbar.design.course import SearchCourse
+from sevenbar.design.limits import Limits, size_room, turning_room
 from sevenbar.design.synthesis.function.fitting import FREE
 from sevenbar.design.synthesis.function.generation import USUAL, Synthesis, need_scipy
 from sevenbar.design.synthesis.function.precision import reflected
-from sevenbar.design.synthesis.function.programs import MinimaxValues, lowered
-from sevenbar.design.synthesis.limits import Limits, size_room, turning_room
+from sevenbar.design.task.programs import MinimaxValues, lowered
 from sevenbar.errors import RequestError
 from sevenbar.text.progress import Progress, silent
 

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.description.load_moving import moved_loads
-from sevenbar.design.synthesis.candidates import Candidate, Claim, Refusal, checked
-from sevenbar.design.synthesis.path.match import STILL, Placing, placed
+from sevenbar.design.candidates import Candidate, Claim, Refusal, checked
 from sevenbar.design.synthesis.path.refine import Refined
 from sevenbar.design.synthesis.path.search import SAMPLES
 from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.design.task.match import STILL, Placing, placed
+from sevenbar.design.task.standing import moved, standing
 from sevenbar.errors import DescriptionError, RequestError
-from sevenbar.kinematics.dimensions import description_of
 from sevenbar.kinematics.law import Law
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import rotation_vector
 
 #: How much further off than the solution, relative to its error and to the path's extent, the points may be
 #: on one pass: more, and the solution lies on several.
@@ -127,36 +124,3 @@ def checked_path(task: PathTask, solution: Refined) -> Candidate | Refusal:
                 "the path is closed, and a dead centre lies between its last point and its first",
             )
     return candidate
-
-
-def standing(placing: Placing, unit: str) -> Mapping[str, float]:
-    """Where the linkage stands so that its point goes through the wanted points: a turn, then a shift.
-
-    `turn_x`, `turn_y`, `turn_z` is the axis of one turn times its angle.
-    """
-    turn = np.degrees(rotation_vector(placing.rotation))
-    names = [f"shift_{letter}_{unit}" for letter in "xyz"] + [f"turn_{letter}_deg" for letter in "xyz"]
-    return dict(zip(names, map(float, [*placing.shift, *turn]), strict=True))
-
-
-def moved(draft: Draft, placing: Placing) -> Draft:
-    """A drawn linkage with all its places and directions moved."""
-
-    def put(table: Mapping[str, object]) -> dict[str, object]:
-        own = dict(table)
-        for key, value in table.items():
-            if key == "at":
-                own[key] = [float(x) for x in placing.put(np.array(value, dtype=np.float64))]
-            elif key == "axis":
-                own[key] = [float(x) for x in placing.rotation @ np.array(value, dtype=np.float64)]
-            elif key == "axes":
-                own[key] = (np.array(value, dtype=np.float64) @ placing.rotation.T).tolist()
-        return own
-
-    described = description_of(draft.linkage)  # with numbers where the file has formulas
-    draft = draft.with_value(("joint",), [put(joint) for joint in described["joint"]])
-    if "point" in described:
-        draft = draft.with_value(("point",), [put(point) for point in described["point"]])
-    for head, tables in moved_loads(described, placing.put, placing.rotation).items():
-        draft = draft.with_value((head,), tables)
-    return draft

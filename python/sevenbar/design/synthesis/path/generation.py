@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.description.draft import Draft
-from sevenbar.design.course import SearchCourse
-from sevenbar.design.synthesis.candidates import (
+from sevenbar.design.candidates import (
     Candidate,
     Refusal,
     distinct,
@@ -19,11 +18,12 @@ from sevenbar.design.synthesis.candidates import (
     renamed,
     tally,
 )
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.course import SearchCourse
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.check import checked_path
 from sevenbar.design.synthesis.path.refine import LOOK, Refined, refined
 from sevenbar.design.synthesis.path.search import Seed, apart, looked_at, seeds
-from sevenbar.design.synthesis.path.task import MOST_POINTS, PathTask, Where, path_task
+from sevenbar.design.synthesis.path.task import PathTask, Where, path_task
 from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.text.progress import Progress, silent
@@ -34,7 +34,7 @@ STARTS, MOST_STARTS, MOST_DESIGNS = 256, 65536, 50
 #: Of the starts so many for each design wanted are checked closer, and of these so many to the end.
 LOOKED_AT, TAKEN = 8, 3
 
-__all__ = ["MOST_POINTS", "STARTS", "PathFound", "generated", "path_generation", "path_task"]
+__all__ = ["STARTS", "PathFound", "generated", "path_generation", "path_task"]
 
 
 @dataclass(frozen=True, eq=False)

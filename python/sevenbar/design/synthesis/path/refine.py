@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.limits import INPUT_TURNS, transmission_room, turning_room
-from sevenbar.design.synthesis.path.match import STILL, Placing, placed
+from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.synthesis.path.search import Seed
 from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.design.task.match import STILL, Placing, placed
 
 #: Evaluations of a first look, and of a design that is kept.
 LOOK, WHOLE = 40, 400

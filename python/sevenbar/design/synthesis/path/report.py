@@ -10,8 +10,8 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.synthesis.candidates import Candidate
-from sevenbar.design.synthesis.files import design_files
+from sevenbar.design.candidates import Candidate
+from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.path.figures import path_figure
 from sevenbar.design.synthesis.path.task import PathTask
 from sevenbar.reporting.files import Report

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers, short_way
-from sevenbar.design.synthesis.path.match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.design.task.match import STILL, Match, Placing, by_length, matched, placed
 from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Circuit
 

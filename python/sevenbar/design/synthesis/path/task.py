@@ -15,18 +15,13 @@ from sevenbar.arrays import Floats, finite_array
 from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.limits import Limits
 from sevenbar.design.synthesis.path.point import PointLoop
+from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.linkage import Linkage
-
-#: Points of a wanted path: fewer say nothing of a curve; more only cost time, each is an unknown.
-FEWEST_POINTS, MOST_POINTS = 3, 200
-
-#: A path whose last point is this near to its first, relative to its extent, is closed.
-SAME_POINT = 1e-9
 
 #: Bounds where none are given, relative to the greater of the linkage's longest dimension and the path's
 #: extent: of lengths that must be positive, and how far others may go from zero.
@@ -192,55 +187,6 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
     name = next(n for n in ("P", "path_point", *(f"P{i}" for i in range(1, 1000))) if n not in taken)
     made = draft.with_point(name, int(link), tuple(map(float, place)))
     return made, next(p for p in made.linkage.points if p.name == name)
-
-
-def wanted_places(points: npt.ArrayLike) -> tuple[Floats, bool]:
-    """The wanted points (n, 3), and whether the last repeats the first."""
-    try:
-        wanted = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise RequestError("points: not an array of numbers; give rows of x, y and z") from None
-    if wanted.ndim != 2 or wanted.shape[1] != 3:
-        raise RequestError(f"points: an array of shape {wanted.shape} does not fit; give rows of x, y and z")
-    bad = np.argwhere(~np.isfinite(wanted))
-    if bad.size:
-        row, axis = bad[0]
-        raise RequestError(f"points: {'xyz'[axis]} of point {row + 1} is not a finite number; mend it")
-    extent = float(np.ptp(wanted, axis=0).max(initial=0.0))
-    closed = len(wanted) > 1 and bool(np.abs(wanted[-1] - wanted[0]).max() <= SAME_POINT * extent)
-    count = len(wanted) - closed
-    if count < FEWEST_POINTS:
-        raise RequestError(f"points: {count} given; a path needs at least {FEWEST_POINTS}")
-    if count > MOST_POINTS:
-        raise RequestError(f"points: {count} given; give at most {MOST_POINTS}, thinned out evenly")
-    if not extent > 0:
-        raise RequestError("points: all are one place; give points along a path")
-    again = np.flatnonzero(np.abs(np.diff(wanted, axis=0)).max(axis=1) <= SAME_POINT * extent)
-    if again.size:
-        raise RequestError(f"points: {again[0] + 1} and {again[0] + 2} are one place; leave one out")
-    return wanted, closed
-
-
-def wanted_inputs(timing: npt.ArrayLike | None, wanted: Floats, closed: bool) -> Floats | None:
-    """The inputs of the points, that of the closing one left out."""
-    if timing is None:
-        return None
-    inputs = finite_array("timing", timing)
-    if inputs.size == len(wanted) - closed and closed:
-        closing = inputs
-    elif inputs.size == len(wanted):
-        closing = inputs[:-1] if closed else inputs
-    else:
-        raise RequestError(
-            f"timing: {inputs.size} inputs for {len(wanted)} points; give one for each, in their order"
-        )
-    steps = np.diff(inputs)
-    if not ((steps > 0).all() or (steps < 0).all()):
-        i = int(np.flatnonzero(np.sign(steps) != np.sign(steps[0]))[0]) if steps[0] else 0
-        raise RequestError(
-            f"timing: the input of point {i + 2} turns back; inputs must rise, or fall, from point to point"
-        )
-    return closing
 
 
 def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:

@@ -14,7 +14,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.files import toml_tables, toml_text
 from sevenbar.description.gallery import names as gallery_names
 from sevenbar.description.table_form import TableForm
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
 from sevenbar.design.task.file.musts import must_of
 from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form

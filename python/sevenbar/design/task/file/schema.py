@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, ValidationError, WithJsonSchema
 from sevenbar.description.mistakes import FileForms
 from sevenbar.description.table_form import TableForm, key
 from sevenbar.description.values import Direction, Text, one_of, refuse
-from sevenbar.design.synthesis.limits import MOTION_TYPES
+from sevenbar.design.limits import MOTION_TYPES
 from sevenbar.design.task.file.values import (
     Flag,
     Goal,

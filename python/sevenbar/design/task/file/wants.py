@@ -11,9 +11,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve
-from sevenbar.design.synthesis.function.precision import chebyshev
-from sevenbar.design.synthesis.function.wish import read_pairs, wish_of_function
-from sevenbar.design.synthesis.path.task import wanted_inputs, wanted_places
 from sevenbar.design.task.file.musts import linkage_size
 from sevenbar.design.task.file.pose_table import read_poses
 from sevenbar.design.task.file.schema import (
@@ -37,6 +34,8 @@ from sevenbar.design.task.task import (
     StraightWant,
     Want,
 )
+from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
+from sevenbar.design.wish import chebyshev, read_pairs, wish_of_function
 from sevenbar.errors import RequestError, TableError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.rigid import inverse, pose

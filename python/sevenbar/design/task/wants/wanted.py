@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 
 from sevenbar.arrays import Floats, Integers
-from sevenbar.design.synthesis.path.match import Placing
 from sevenbar.design.task.loop import Here
+from sevenbar.design.task.match import Placing
 from sevenbar.design.task.passes import InputPass
 from sevenbar.kinematics.circuits import Circuit
 

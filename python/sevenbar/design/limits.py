@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sevenbar.arrays import Floats
-from sevenbar.design.synthesis.closure import transmission_slopes, transmissions
+from sevenbar.design.closure import transmission_slopes, transmissions
 from sevenbar.errors import RequestError, shown, suggestion
 
 #: What a linkage can be asked to be, seen from its input.

@@ -12,10 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
-from sevenbar.design.synthesis.function.precision import FEWEST, FREE_ZEROS_MOST, chebyshev
 from sevenbar.errors import RequestError
 from sevenbar.text.expression import greatest_angle
 from sevenbar.text.table import read_table
+
+#: Points that determine a design with both zeros given, and with neither.
+FIXED_ZEROS_MOST, FREE_ZEROS_MOST = 5, 7
+
+#: Fewest points that are worth a design.
+FEWEST = 3
 
 #: Readings over the range at which a fit looks at the error: between them it rises by less than 1% of it.
 FIT_SAMPLES = 81
@@ -85,6 +90,18 @@ class Wish:
     def dense(self) -> Floats:
         """Readings of the input over its range (361,) [rad]."""
         return np.linspace(self.input[0], self.input[-1], DENSE_SAMPLES)
+
+
+def chebyshev(low: float, high: float, count: int) -> Floats:
+    """Precision points (count,) between two ends, spaced as the zeros of Chebyshev's polynomial.
+
+    Near to them lie the best ones: the error between them is about even.
+
+        >>> chebyshev(0.0, 1.0, 2).round(4).tolist()
+        [0.1464, 0.8536]
+    """
+    angles = (2 * np.arange(count) + 1) * math.pi / (2 * count)
+    return (low + high) / 2 - (high - low) / 2 * np.cos(angles)
 
 
 def wish_of_function(

@@ -12,8 +12,8 @@ import numpy as np
 
 from sevenbar.arrays import Booleans, Floats, Integers, short_way
 from sevenbar.description.draft import Draft
-from sevenbar.design.synthesis.closure import row_of, transmission_slopes, transmissions
-from sevenbar.design.synthesis.limits import Limits
+from sevenbar.design.closure import row_of, transmission_slopes, transmissions
+from sevenbar.design.limits import Limits
 from sevenbar.errors import DescriptionError, RequestError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.linkage import Linkage

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from sevenbar.description.files import loads
-from sevenbar.design.synthesis.candidates import Candidate
+from sevenbar.design.candidates import Candidate
 from sevenbar.reporting.files import Write, figure_files, json_file
 from sevenbar.reporting.folder import write_csv
 
