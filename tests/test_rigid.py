@@ -89,3 +89,9 @@ def test_the_axial_vector_is_that_of_the_cross_product() -> None:
     found = rigid.axial(matrices + np.eye(3))
     np.testing.assert_allclose(found, w, atol=1e-15)
     np.testing.assert_allclose((matrices @ v[:, :, None])[..., 0], np.cross(found, v), atol=1e-15)
+
+
+def test_a_turn_by_any_number_is_a_rotation():
+    for angle in (1e6, 4e7, 1e16, 1.7e98, 1e300):
+        turn = rigid.about(0, angle)
+        assert np.allclose(turn @ turn.T, np.eye(3), atol=1e-15)

@@ -18,6 +18,9 @@ from sevenbar.arrays import Floats
 #: Below this share of the way to a place the place lies on an axis.
 ON_AXIS = 1e-12
 
+#: What is rounding of a cosine or sine at most, however large the angle.
+MOST_ROUNDING = 1e-9
+
 
 def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Floats:
     """The rigid motion (..., 4, 4) with this rotation (..., 3, 3) and this origin (..., 3) [length]."""
@@ -44,7 +47,7 @@ def about(axis: int, angle: npt.ArrayLike) -> Floats:
     Quarter turns are exact: a cosine or sine of which only rounding is left is 0.
     """
     angles = np.asarray(angle, dtype=np.float64)
-    rounding = np.finfo(float).eps * np.abs(angles)
+    rounding = np.minimum(np.finfo(float).eps * np.abs(angles), MOST_ROUNDING)
     cosine, sine = (np.where(np.abs(v) < rounding, 0.0, v) for v in (np.cos(angles), np.sin(angles)))
     matrix = np.zeros((*angles.shape, 3, 3))
     first, second = (axis + 1) % 3, (axis + 2) % 3
