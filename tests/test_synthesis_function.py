@@ -286,7 +286,7 @@ def test_examples_of_long_searches_give_what_they_show(name):
 
 @pytest.mark.slow
 def test_the_example_of_the_page_prints_what_its_comments_say():
-    code, _ = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
+    code, *_ = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), flags=re.DOTALL)
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(code, {})

@@ -49,10 +49,11 @@ __all__ = [
 ]
 
 
-def as_dict(motion: Motion) -> dict[str, Any]:
+def as_dict(motion: Motion, *, ranges: bool = False) -> dict[str, Any]:
     """The report as plain values: angles in radians, lengths in the linkage's unit, null beside a status.
 
-    Values of a sliding input or output are lengths; `linkage.columns` says which slide.
+    Values of a sliding input or output are lengths; `linkage.columns` says which slide. With `ranges`, and
+    where the linkage has stops, circuits have the ranges, bends and distances of their joints and links.
 
         >>> import sevenbar as sb
         >>> found = as_dict(sb.load("rssr").motion())
@@ -60,6 +61,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         ('crank-rocker', 2)
     """
     linkage = motion.linkage
+    with_extents = ranges or not linkage.stops.is_empty
     report = {
         "format": 1,
         "linkage": {
@@ -108,7 +110,7 @@ def as_dict(motion: Motion) -> dict[str, Any]:
         "near_motion": None if motion.near_motion is None else vars(motion.near_motion),
         "circuits": [
             _circuit_dict(circuit)
-            | extents_dict(circuit, linkage)
+            | (extents_dict(circuit, linkage) if with_extents else {})
             | {"forces": None if linkage.loading.is_empty else peaks_dict(circuit)}
             for circuit in motion.circuits
         ],
@@ -150,9 +152,9 @@ def _extremes_dict(extremes: Extremes | None, otherwise: str) -> dict[str, Any]:
     return {"status": "ok", **vars(extremes)}
 
 
-def as_json(motion: Motion) -> str:
+def as_json(motion: Motion, *, ranges: bool = False) -> str:
     """`as_dict` as JSON text."""
-    return json_text(as_dict(motion))
+    return json_text(as_dict(motion, ranges=ranges))
 
 
 class _Page:
@@ -235,17 +237,18 @@ def motion_report(
 ) -> Report[Motion]:
     """How a motion is reported, with the figures in these formats, of a circuit, drawn in a way.
 
-    With `ranges` tables of all joints' ranges, bends and distances are part of the page.
+    With `ranges` those of all joints, bends and distances are part of the page and of the JSON.
 
     `drawn` gives the motion that the figures show, where it is another, such as one of fewer rows.
     """
+    plain = partial(as_dict, ranges=ranges)
     files: Files[Motion] = {
-        "report.json": json_file(as_dict),
+        "report.json": json_file(plain),
         "motion.csv": LongTable(Motion.column_parts, row_count),
     }
     return Report(
         partial(text, ranges=ranges),
-        as_dict,
+        plain,
         files,
         lambda motion: report_figures(drawn(motion), figures, circuit=circuit, look=look),
         {"report.md": partial(_write_markdown, ranges=ranges)},
