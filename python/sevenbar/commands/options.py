@@ -36,6 +36,11 @@ Source = Annotated[
         autocompletion=_known,
     ),
 ]
+Mixed = Annotated[bool, typer.Option("--mixed", help="Also with parts of another version or vector unit.")]
+Threads = Annotated[
+    int | None, typer.Option(help="Threads of this machine; one for each processor by default.")
+]
+Scheduler = Annotated[str | None, typer.Option(help="Address of a Dask scheduler, as in tcp://host:8786.")]
 Follow = Annotated[
     list[str] | None,
     typer.Option(help="A dimension that the file leaves out (L2), to follow from the others; else held."),

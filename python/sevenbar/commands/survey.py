@@ -12,7 +12,7 @@ from sevenbar.commands.command import count_of, number_of
 from sevenbar.commands.deliver import check_out, command_line, deliver
 from sevenbar.commands.function import refuse_degrees_twice, seed_of
 from sevenbar.commands.given import angle, angles, numbers
-from sevenbar.commands.options import Force, Json
+from sevenbar.commands.options import Force, Json, Mixed, Scheduler, Threads
 from sevenbar.commands.progress import progress_bar
 from sevenbar.commands.unfinished import end_of_work
 from sevenbar.errors import RequestError, shown
@@ -91,15 +91,9 @@ def survey(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the parts that the journal has.")
     ] = False,
-    mixed: Annotated[
-        bool, typer.Option("--mixed", help="Also with parts of another version or vector unit.")
-    ] = False,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads of this machine; one for each processor by default.")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler, as in tcp://host:8786.")
-    ] = None,
+    mixed: Mixed = False,
+    threads: Threads = None,
+    scheduler: Scheduler = None,
     force: Force = False,
     json: Json = False,
 ) -> None:

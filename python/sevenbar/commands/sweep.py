@@ -14,7 +14,18 @@ from rich.text import Text
 
 from sevenbar.commands.deliver import deliver
 from sevenbar.commands.given import drafted
-from sevenbar.commands.options import Agree, Follow, InputJoint, Json, OutputJoint, Source, words
+from sevenbar.commands.options import (
+    Agree,
+    Follow,
+    InputJoint,
+    Json,
+    Mixed,
+    OutputJoint,
+    Scheduler,
+    Source,
+    Threads,
+    words,
+)
 from sevenbar.commands.progress import progress_bar
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report
@@ -55,15 +66,9 @@ def sweep(
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the parts that the folder has.")
     ] = False,
-    mixed: Annotated[
-        bool, typer.Option("--mixed", help="Also with parts of another version or vector unit.")
-    ] = False,
-    threads: Annotated[
-        int | None, typer.Option(help="Threads of this machine; one for each processor by default.")
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler, as in tcp://host:8786.")
-    ] = None,
+    mixed: Mixed = False,
+    threads: Threads = None,
+    scheduler: Scheduler = None,
     part_size: Annotated[int | None, typer.Option(help="Linkages of a part.")] = None,
     follow: Follow = None,
     agree: Agree = None,

@@ -1,10 +1,11 @@
-"""Lowest values and crossings of a quantity of which only a bound of the slope is known: nothing is missed.
+"""Lowest values and crossings of a quantity of which only a bound of the slope is known.
 
 Between two places a and b, with |f'| <= B there,
 
     f >= (f(a) + f(b) - B (b - a)) / 2                                                                    (15)
 
-so a stretch on which this is above the lowest value found is done, and any other is halved.
+so a stretch on which this is above the lowest value found is done, and any other is halved. Nothing is missed
+but of a quantity that rests near the value that is wanted on more stretches than `MOST`.
 
 Source: docs/theory_measures.md, (15).
 """

@@ -33,18 +33,20 @@ def design_files(
     formats: Sequence[str],
     *,
     head: Callable[[T], Sequence[str]],
-    figure: Callable[[T, Candidate], Figure],
+    figure: Callable[[T, Candidate], Figure] | None = None,
     as_dict: Callable[[T], dict[str, Any]],
 ) -> dict[str, Write[T]]:
     """The files of at most `count` designs: design_1.toml with its figure, .., summary.csv, summary.json.
 
-    `head` are the lines of comment that a design's file begins with: what was wanted.
+    `head` are the lines of comment that a design's file begins with: what was wanted. Without a `figure`
+    there are none.
     """
     files: dict[str, Write[T]] = {}
     for place in range(count):
         name = f"design_{place + 1}"
         files[f"{name}.toml"] = partial(_write_design, place=place, head=head)
-        files |= figure_files(name, formats, partial(_figure, place=place, figure=figure))
+        if figure is not None:
+            files |= figure_files(name, formats, partial(_figure, place=place, figure=figure))
     return files | {"summary.csv": write_summary, "summary.json": json_file(as_dict)}
 
 

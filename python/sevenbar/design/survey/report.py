@@ -9,7 +9,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sevenbar.design.candidates import Candidate, tally
+from sevenbar.design.candidates import tally
 from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.kinematics.surveys import NUMBERS
@@ -31,7 +31,7 @@ NUMBER_COLUMNS = {f"{name}_ratio": name for name in NUMBERS[:6]} | {"axes_deg": 
 
 def survey_report(count: int, command: str) -> Report[SurveyResult]:
     """How a survey is reported with the files of at most `count` designs, whose heads name the `command`."""
-    files = design_files(count, (), head=partial(_head, command), figure=_no_figure, as_dict=as_dict)
+    files = design_files(count, (), head=partial(_head, command), as_dict=as_dict)
     return Report(partial(text, count), as_dict, files)
 
 
@@ -107,7 +107,3 @@ def _head(command: str, found: SurveyResult) -> list[str]:
         f"made by: {command}",
         "drawn where the readings start: both dials read zero there",
     ]
-
-
-def _no_figure(found: SurveyResult, candidate: Candidate) -> Any:
-    raise NotImplementedError
