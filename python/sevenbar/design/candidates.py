@@ -212,11 +212,11 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
         turning = motion.linkage.turning[columns]
         rows = circuit.q[:, columns]
         poses = np.column_stack([inputs, outputs]) if whole is None else whole[:, columns]
-        steps = _apart(np.roll(rows, -1, axis=0) - rows, turning, circuit.size)
+        steps = joint_differences(np.roll(rows, -1, axis=0) - rows, turning, circuit.size)
         if not circuit.closed:
             steps[-1] = 0.0
         # (n, rows, columns)
-        off = _apart(poses[:, None, :] - rows[None], turning, circuit.size)
+        off = joint_differences(poses[:, None, :] - rows[None], turning, circuit.size)
         length = np.maximum((steps**2).sum(axis=1), np.finfo(float).tiny)
         share = np.clip(np.nan_to_num((off * steps).sum(axis=2) / length), 0.0, 1.0)
         distance = np.linalg.norm(off - share[:, :, None] * steps, axis=2)
@@ -231,7 +231,7 @@ def located(motion: Motion, inputs: Floats, outputs: Floats, whole: Floats | Non
     return best
 
 
-def _apart(difference: Floats, turning: Booleans, size: float) -> Floats:
+def joint_differences(difference: Floats, turning: Booleans, size: float) -> Floats:
     """Differences of joint values (.., columns), angles to the nearest turn, slides relative to the size."""
     return np.where(turning, short_way(difference), difference / size)
 

@@ -17,6 +17,7 @@ from sevenbar.design.candidates import (
     Fault,
     Refusal,
     checked,
+    joint_differences,
     within_limits,
 )
 from sevenbar.design.task.loop import TaskLoop
@@ -178,16 +179,15 @@ def _candidate(
             draft, figures = moved(draft, solution.seed.placing), {}
         unit = linkage.length_unit if _unit(model.loop, one) != "rad" else "deg"
         claim = Claim(solution.inputs[number], own[0].outputs, own[0].errors, unit, figures)
-        if one.stations.ordered:
-            candidate = checked(draft, claim, limits, poses=own[0].poses)
-            if isinstance(candidate, Refusal):
-                return candidate
-            found.append(candidate)
-            if one.stations.round and not motion.circuits[candidate.circuit].goes_round:
-                return Refusal(
-                    "dead centre",
-                    "the path is closed, and a dead centre lies between its last point and its first",
-                )
+        candidate = checked(draft, claim, limits, poses=own[0].poses)
+        if isinstance(candidate, Refusal):
+            return candidate
+        found.append(candidate)
+        if one.stations.round and not motion.circuits[candidate.circuit].goes_round:
+            return Refusal(
+                "dead centre",
+                "the path is closed, and a dead centre lies between its last point and its first",
+            )
     other = next(
         (one for one in found if (one.circuit, one.branch) != (found[0].circuit, found[0].branch)), None
     )
@@ -305,7 +305,8 @@ def _dense(loop: TaskLoop, linkage: Linkage, way: _Way, dense: Floats) -> Floats
     for begin in range(0, len(circuit.q), len(dense)):
         rows = circuit.q[begin : begin + len(dense)]
         if np.isfinite(rows).all():
-            off = float(np.abs(np.sin((rows[0] - first)[columns] / 2)).max(initial=0.0))
+            apart = joint_differences(rows[0] - first, loop.numbers.turns, loop.size)[columns]
+            off = float(np.abs(apart).max(initial=0.0))
             if off < least:
                 best, least = rows, off
     return np.asarray(best)

@@ -169,7 +169,7 @@ class TaskProblem:
             by.append(matrix)
             self._rows.append(slice(count, count + len(steady)))
             count += len(steady)
-            if self.model.holds and one.stations.ordered:
+            if self.model.holds:
                 held += _spread(steady, matrix, one.stations, self._periods[len(self._rows) - 1])
         self._count = count
         return Stations(

@@ -18,13 +18,12 @@ from sevenbar.kinematics.circuits import Circuit
 class Stations:
     """The inputs `fixed + by u` (n,) of a want with own unknowns u (m,), whose units are `scales` (m,).
 
-    `ordered`: they follow each other; `round`: the last leads to the first again; `free`: each is an unknown.
+    They follow each other; `round`: the last leads to the first again; `free`: each is an unknown.
     """
 
     fixed: Floats
     by: Floats
     scales: Floats
-    ordered: bool = True
     round: bool = False
     free: bool = False
 
