@@ -28,12 +28,13 @@ from sevenbar.design.task import (
 )
 from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.levenberg import nearest_least
-from sevenbar.design.task.musts import nearest_shares, pose_rooms
+from sevenbar.design.task.musts import pose_rooms
 from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
 from sevenbar.kinematics.ball_angle import ball_angle
+from sevenbar.kinematics.rods import nearest_shares
 
 KNOWN = Draft.of_linkage(sb.load("rssr")).with_values({"L2": 1000.0}).with_point("Q", 3, (50.0, 60.0, 20.0))
 NAMES = ("M", "N", "L1", "L2", "L3", "D")

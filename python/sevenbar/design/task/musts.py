@@ -10,6 +10,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must
+from sevenbar.kinematics.rods import nearest_shares
 
 #: Rooms (n, r) at n poses, and their slopes (n, r, unknowns).
 Rooms = tuple[Floats, Floats]
@@ -132,22 +133,3 @@ def _apart(loop: TaskLoop, must: Apart) -> Callable[[Here], Rooms]:
         return (size - must.least)[:, None] / loop.size, slopes[:, None] / loop.size
 
     return rooms
-
-
-def nearest_shares(a: Floats, b: Floats, c: Floats, d: Floats) -> tuple[Floats, Floats]:
-    """The shares s, t (n,) in 0 to 1 at which `a + s (b - a)` and `c + t (d - c)` are nearest, all (n, 3)."""
-    u, v, w = b - a, d - c, a - c
-    uu, uv, vv = (u * u).sum(1), (u * v).sum(1), (v * v).sum(1)
-    uw, vw = (u * w).sum(1), (v * w).sum(1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        free = np.nan_to_num((uv * vw - vv * uw) / (uu * vv - uv**2))
-        tried = [np.clip(free, 0.0, 1.0), np.zeros(len(a)), np.ones(len(a))]
-        pairs = [(s, np.clip(np.nan_to_num((vw + s * uv) / vv), 0.0, 1.0)) for s in tried]
-        # and from the ends of the other
-        pairs += [
-            (np.clip(np.nan_to_num((t * uv - uw) / uu), 0.0, 1.0), np.full(len(a), t)) for t in (0.0, 1.0)
-        ]
-    far = [np.linalg.norm(w + s[:, None] * u - t[:, None] * v, axis=1) for s, t in pairs]
-    best = np.argmin(far, axis=0)
-    every = np.arange(len(a))
-    return np.stack([s for s, _ in pairs])[best, every], np.stack([t for _, t in pairs])[best, every]
