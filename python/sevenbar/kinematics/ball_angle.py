@@ -27,6 +27,9 @@ from sevenbar.kinematics.sensitivity import Numbers
 #: Sine of a bend below which it has a kink: there its slopes are those of a cone's tip, zero.
 TIP = 1e-12
 
+#: Sine of the angle of two lines below which it has a kink: its slopes are known to half the digits there.
+KINK = 1e-9
+
 #: A rod shorter than this part of the size has no direction.
 NO_LENGTH = 1e-9
 
@@ -135,6 +138,22 @@ def ball_angle(
     return BallAngle(own.name, linkage.places[place], unit(before @ u), unit(after @ v), turns, end)
 
 
+def line_angles(ends: Floats, by: Floats) -> tuple[Floats, Floats]:
+    """The angles (n,) between the line from place 0 to 1 and that from 2 to 3, and their slopes (n, k).
+
+    `ends` (n, 4, 3) are the places, `by` (n, 4, 3, k) their slopes. At a kink slopes are NaN.
+    """
+    lines, by_lines = ends[:, 1::2] - ends[:, ::2], by[:, 1::2] - by[:, ::2]
+    sizes = np.linalg.norm(lines, axis=2, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u, v = np.moveaxis(lines / sizes, 1, 0)
+        cross = np.cross(u, v)
+        sine = np.linalg.norm(cross, axis=1)
+        axis = cross / np.where(sine > KINK, sine, np.nan)[:, None]
+        across = np.stack([np.cross(u, axis), np.cross(axis, v)], axis=1) / sizes
+    return np.arctan2(sine, (u * v).sum(axis=1)), np.einsum("nli,nlik->nk", across, by_lines)
+
+
 def joint_at(linkage: Loop, name: str) -> int:
     """The place of a joint S or U of a name; `RequestError` where there is none."""
     bent = [joint.name for joint in linkage.joints if joint.row.bends]
@@ -170,6 +189,13 @@ def rod_ends(linkage: Loop, link: int) -> tuple[Floats, Floats]:
     return back[:3, 3], (back @ linkage.links[link - 1])[:3, 3]
 
 
+def has_length(linkage: Loop, link: int) -> bool:
+    """Whether the joints before and after a link are at two places."""
+    start, end = rod_ends(linkage, link)
+    size = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
+    return bool(np.linalg.norm(end - start) > NO_LENGTH * size)
+
+
 def rod(linkage: Loop, link: int, joint: int) -> Floats:
     """The direction (3,) of a link from a joint of it to its other one, as its points are written.
 
@@ -178,10 +204,8 @@ def rod(linkage: Loop, link: int, joint: int) -> Floats:
     start, end = rod_ends(linkage, link)
     count = len(linkage.joints)
     ahead = joint == link - 1
-    way = end - start if ahead else start - end
-    size = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
-    if np.linalg.norm(way) > NO_LENGTH * size:
-        return unit(way)
+    if has_length(linkage, link):
+        return unit(end - start if ahead else start - end)
     other = linkage.joints[link % count if ahead else link - 1]
     if other.row.is_ball:
         side = "stud" if ahead else "seat"

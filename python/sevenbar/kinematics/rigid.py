@@ -18,6 +18,9 @@ from sevenbar.arrays import Floats
 #: Below this share of the way to a place the place lies on an axis.
 ON_AXIS = 1e-12
 
+#: How far the product of a rotation and its transpose may be from 1: figures written with four decimals pass.
+ROUNDED = 1e-3
+
 #: What is rounding of a cosine or sine at most, however large the angle.
 MOST_ROUNDING = 1e-9
 
@@ -28,6 +31,17 @@ def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Fl
     matrix = np.zeros((*np.broadcast_shapes(turn.shape[:-2], place.shape[:-1]), 4, 4))
     matrix[..., :3, :3], matrix[..., :3, 3], matrix[..., 3, 3] = turn, place, 1.0
     return matrix
+
+
+def flaw_of_rotation(matrix: Floats) -> str:
+    """Why a matrix (3, 3) is no rotation; empty for one that is, to the digits of `ROUNDED`."""
+    off = float(np.abs(matrix @ matrix.T - np.eye(3)).max())
+    if off > ROUNDED:
+        return (
+            f"is no rotation: its rows are not of length 1 and at right angles (off by {off:.2g}); "
+            "give a rotation, or axis and angle"
+        )
+    return "is no rotation: it mirrors; change the sign of one row" if np.linalg.det(matrix) < 0 else ""
 
 
 def inverse(motion: Floats) -> Floats:

@@ -125,5 +125,18 @@ def rod_distance(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
     return np.asarray(np.linalg.norm(_on(a, b, t) - _on(c, d, r), axis=1))
 
 
+def distance_slopes(ends: Floats, by: Floats) -> tuple[Floats, Floats]:
+    """The least distance (n,) of two rods by their ends (n, 4, 3), with slopes (n, k) by theirs (n, 4, 3, k).
+
+    The nearest points follow the ends alone, as (14) has it. Where the rods cross the slopes are 0.
+    """
+    t, r = nearest_shares(*np.moveaxis(ends, 1, 0))
+    weights = np.stack([1 - t, t, r - 1, -r], axis=1)
+    way = np.einsum("ne,nej->nj", weights, ends)
+    size = np.linalg.norm(way, axis=1)
+    slopes = np.einsum("ne,nj,nejk->nk", weights, way, by)
+    return size, slopes / np.maximum(size, np.finfo(float).tiny)[:, None]
+
+
 def _on(start: Floats, end: Floats, share: Floats) -> Floats:
     return np.asarray(start + share[:, None] * (end - start))

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
-from sevenbar.design.task.task import DesignTask, FigureWant
+from sevenbar.design.task.task import DesignTask, FigureWant, PathWant, PoseWant, StraightWant
 from sevenbar.design.task.words import task_facts, want_words
 from sevenbar.drawing.figure import page_figure
 from sevenbar.drawing.names import short
@@ -54,8 +54,7 @@ def _axis(task: DesignTask, place: int) -> tuple[str, str, float]:
         (measure,) = measures_named([want.name])
         off = "" if isinstance(want.value, str) else "off_"
         return f"{off}{want.name}", measure.unit(linkage, linkage.drive.output).replace("_", " "), 1.0
-    places = hasattr(want, "point") or hasattr(want, "arm")
-    if places or not linkage.turns(linkage.drive.output):
+    if isinstance(want, PathWant | PoseWant | StraightWant) or not linkage.turns(linkage.drive.output):
         return f"want_{place + 1}_greatest", linkage.length_unit, 1.0
     return f"want_{place + 1}_greatest", "deg", math.degrees(1.0)
 

@@ -11,7 +11,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve
-from sevenbar.design.task.file.musts import linkage_size
 from sevenbar.design.task.file.pose_table import read_poses
 from sevenbar.design.task.file.schema import (
     DwellForm,
@@ -33,6 +32,7 @@ from sevenbar.design.task.task import (
     PoseWant,
     StraightWant,
     Want,
+    linkage_size,
 )
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.design.wish import chebyshev, read_pairs, wish_of_function
