@@ -180,7 +180,7 @@ def _of_clearance(course: JointCourse, numbers: Numbers, name: str) -> MeasureSl
         return None
     least = {pair: course.rods(*pair).least() for pair in pairs}
     pair = min(pairs, key=lambda one: least[one][1] - thick[one])
-    place, distance = least[pair]
+    place, distance, _ = least[pair]
     slopes = np.full(len(numbers.names), np.nan)
     if distance > CROSSED * course.size:
         q, driver = course.pose(place)
