@@ -71,10 +71,15 @@ def about(axis: int, angle: npt.ArrayLike) -> Floats:
     return matrix
 
 
+def cross_matrix(vector: npt.ArrayLike) -> Floats:
+    """The matrix (3, 3) that takes a vector to its product with one on its left: `W v = w x v`."""
+    x, y, z = np.asarray(vector, dtype=np.float64).tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
 def turns_about(axis: Floats, angles: Floats) -> Floats:
     """The rotations (n, 3, 3) about a direction (3,) of length 1 by angles (n,) [rad] (Rodrigues)."""
-    x, y, z = axis
-    tilde = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    tilde = cross_matrix(axis)
     sines, versed = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
     return np.asarray(np.eye(3) + sines * tilde + versed * (tilde @ tilde))
 
@@ -187,8 +192,8 @@ def axis_to_z(axis: int) -> Floats:
 
 def adjoint(motion: Floats) -> Floats:
     """The matrix (6, 6) that takes twists of a frame (4, 4) to the frame in which that is given."""
-    rotation, (x, y, z) = motion[:3, :3], motion[:3, 3].tolist()
+    rotation = motion[:3, :3]
     found = np.zeros((6, 6))
     found[:3, :3] = found[3:, 3:] = rotation
-    found[3:, :3] = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) @ rotation
+    found[3:, :3] = cross_matrix(motion[:3, 3]) @ rotation
     return found
