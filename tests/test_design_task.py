@@ -167,16 +167,37 @@ def test_the_nearest_places_of_two_rods_are_those_of_all():
 
 
 def test_least_squares_follow_a_bent_valley_and_stop_at_bounds():
+    tried, taken = [], []
+
     def valley(z):
-        left = np.array([100 * (z[1] - z[0] ** 2), 1 - z[0], 0.0])
-        return left, np.array([[-200 * z[0], 100.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1e-18]])
+        tried.append(z)
+        return np.array([100 * (z[1] - z[0] ** 2), 1 - z[0], 0.0])
+
+    def slopes(z):
+        taken.append(z)
+        return np.array([[-200 * z[0], 100.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1e-18]])
 
     wide = np.full(3, 9.0)
-    ways = {"evaluations": 200, "first": 1e-3, "taken": lambda _: None}
-    found = nearest_least(valley, np.array([-1.2, 1.0, 0.5]), -wide, wide, **ways)
-    assert found[:2] == pytest.approx([1.0, 1.0], abs=1e-12)
-    low = nearest_least(valley, np.array([-1.2, 1.0, 0.5]), -wide, np.array([0.5, 9.0, 9.0]), **ways)
-    assert low[:2] == pytest.approx([0.5, 0.25], abs=1e-9)
+    ways = {"evaluations": 200, "first": 1e-3}
+    found = nearest_least(valley, slopes, np.array([-1.2, 1.0, 0.5]), -wide, wide, **ways)
+    assert found.z[:2] == pytest.approx([1.0, 1.0], abs=1e-12)
+    # slopes cost the most, so they are asked for where a step was taken alone
+    assert len(taken) < len(tried) < 200
+    assert all((valley(a) ** 2).sum() > (valley(b) ** 2).sum() for a, b in pairwise(taken))
+    low = nearest_least(valley, slopes, np.array([-1.2, 1.0, 0.5]), -wide, np.array([0.5, 9.0, 9.0]), **ways)
+    assert low.z[:2] == pytest.approx([0.5, 0.25], abs=1e-9)
+
+
+def test_least_squares_say_where_no_step_leads_on():
+    def residuals(z):
+        return np.array([z[0]]) if z[0] >= 1 else None
+
+    ways = {"evaluations": 200, "first": 1e-3}
+    wide = np.full(1, 9.0)
+    found = nearest_least(residuals, lambda _: np.eye(1), np.array([2.0]), -wide, wide, **ways)
+    assert found.stuck
+    assert found.z[0] == pytest.approx(1.0, abs=1e-6)
+    assert nearest_least(residuals, lambda _: np.eye(1), np.zeros(1), -wide, wide, **ways) is None
 
 
 CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10), "cusp": (3,)}

@@ -89,7 +89,8 @@ def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
         places, by = here.points[:, numbers], here.points_by[:, numbers]
         values = np.concatenate([places - low, high - places], axis=1) / loop.size
         slopes = np.concatenate([by, -by], axis=1) / loop.size
-        return values.reshape(len(values), -1), slopes.reshape(len(values), -1, by.shape[-1])
+        rooms = values.reshape(len(values), -1)
+        return rooms, slopes.reshape(*rooms.shape, by.shape[-1])
 
     return rooms
 

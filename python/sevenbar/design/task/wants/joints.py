@@ -45,7 +45,7 @@ class ReadingsWanted:
         zero = u[-1] if self._output_free else self._zero
         by = here.q_by[:, self._column].copy()
         if self._output_free:
-            by[:, -1] -= 1.0
+            by[:, -1:] -= 1.0
         return self._apart(here.q[:, self._column] - self.readings - zero) / self.unit, by / self.unit
 
     def begun(
