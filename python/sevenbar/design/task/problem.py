@@ -12,17 +12,18 @@ Source: docs/theory_design.md, (29).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import STILL, Placing, placed
-from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.musts import FAULTS, pose_rooms
 from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
@@ -55,7 +56,7 @@ class TaskSeed:
     """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
 
     `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
-    input gains in a round of the circuit, 0 where it does not go round.
+    input gains in a round of the circuit, 0 where it does not go round; `circuit` is its number where begun.
     """
 
     values: Floats
@@ -65,17 +66,22 @@ class TaskSeed:
     error: float
     placing: Placing = STILL
     period: float = 0.0
+    circuit: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class TaskValues:
-    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes, and the placing."""
+    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes, and the placing.
+
+    `least` has the least room of each kind of must, by what is at fault where it is missed.
+    """
 
     left: Floats
     left_by: Floats
     room: Floats
     room_by: Floats
     placing: Placing
+    least: Mapping[Fault, float]
 
 
 class TaskModel:
@@ -265,12 +271,15 @@ class TaskProblem:
             parts.append((left, wide * self.scales))
         placing = self._placing(z, [left for left, _ in parts])
         lefts, slopes = self._placed(z, parts, placing)
-        rooms, rooms_by = self._rooms(z, here, list(zip(lefts, slopes, strict=True)))
+        rooms = self._rooms(z, here, list(zip(lefts, slopes, strict=True)))
         figures = self._figures(values)
         if figures is None:
             return None
-        room = np.concatenate([*rooms, figures[2]])
-        room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
+        rooms.append(("figure", figures[2], self._wide(figures[3])))
+        room, room_by = (np.concatenate([one[part] for one in rooms]) for part in (1, 2))  # type: ignore[misc]
+        least: dict[Fault, float] = {}
+        for fault, own_room, _ in rooms:
+            least[fault] = min(least.get(fault, math.inf), float(own_room.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
         found = TaskValues(
             np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]]),
@@ -278,6 +287,7 @@ class TaskProblem:
             room,
             room_by,
             placing,
+            least,
         )
         good = all(np.isfinite(part).all() for part in (found.left, found.left_by, room, room_by))
         return found if good else None
@@ -366,28 +376,24 @@ class TaskProblem:
 
     def _rooms(
         self, z: Floats, here: Here, wants: Sequence[tuple[Floats, Floats]]
-    ) -> tuple[list[Floats], list[Floats]]:
-        rooms, slopes = [np.empty(0)], [np.empty((0, len(z)))]
+    ) -> list[tuple[Fault, Floats, Floats]]:
+        """Rooms with their slopes, each with what is at fault where it is missed."""
+        rooms: list[tuple[Fault, Floats, Floats]] = []
         if self.model.rooms:
             wide = here.along(self._stations.by)
-            for _, room in self.model.rooms:
+            for place, room in self.model.rooms:
                 values, by = room(wide)
-                rooms.append(values.ravel())
-                slopes.append(self._joined(by.reshape(-1, by.shape[-1])))
+                fault = FAULTS[type(self.model.task.musts[place])]
+                rooms.append((fault, values.ravel(), self._joined(by.reshape(-1, by.shape[-1]))))
         if self.model.transmits or self.model.turns:
-            for values, by in self._transmission(z):
-                rooms.append(values)
-                slopes.append(by)
+            rooms += self._transmission(z)
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
-                values, by = self._order(z, i)
-                rooms.append(values)
-                slopes.append(by)
+                rooms.append(("order", *self._order(z, i)))
         for i, most in self.model.most.items():
             left, by = wants[i]
-            rooms += [most - left, most + left]
-            slopes += [-by, by]
-        return rooms, slopes
+            rooms += [("error", most - left, -by), ("error", most + left, by)]
+        return rooms
 
     def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
         """The ways between free inputs that follow each other, a round at most, in the seed's sense."""
@@ -406,7 +412,7 @@ class TaskProblem:
         found[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
         return found
 
-    def _transmission(self, z: Floats) -> list[tuple[Floats, Floats]]:
+    def _transmission(self, z: Floats) -> list[tuple[Fault, Floats, Floats]]:
         """The transmission angle of an RSSR over what is used, and that its input turns."""
         loop, limits = self.loop, self.model.task.limits
         places = {d.place[1]: i for i, d in enumerate(loop.numbers.dimensions) if d.place[0] == "rssr"}
@@ -418,13 +424,14 @@ class TaskProblem:
             every[:, columns] = by_row
             return self._wide(loop.all_slopes(self.values(z), every))
 
-        found = []
+        found: list[tuple[Fault, Floats, Floats]] = []
         if self.model.transmits and len(self._stations.fixed):
             room, by_row, by_input = transmission_room(row, self._stations.inputs(z), limits)
-            found.append((room, wide(by_row) + by_input[:, None] * self._stations.by))
+            by = wide(by_row) + by_input[:, None] * self._stations.by
+            found.append(("transmission", room, by))
         if self.model.turns:
             room, by_row = turning_room(row)
-            found.append((room, wide(by_row)))
+            found.append(("motion type", room, wide(by_row)))
         return found
 
     def _figures(self, values: Floats) -> tuple[Floats, Floats, Floats, Floats] | None:
