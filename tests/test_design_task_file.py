@@ -192,6 +192,19 @@ def test_a_linkage_may_stand_in_the_file_itself(tmp_path):
     assert read_task(written(tmp_path, body, linkage="")).draft.linkage.kind == "RRRR"
 
 
+def test_files_that_a_linkage_in_the_task_names_lie_beside_it_and_its_mistakes_have_their_place(tmp_path):
+    inner = gallery_text("planar_4r").replace("[[", "[[linkage.").replace("\n[drive", "\n[linkage.drive")
+    head, _, rest = inner.partition("\n[")
+    load = '[[linkage.load]]\nlink = 3\ntorque = [0, 0, 2]\ntable = "press.csv"\n'
+    (tmp_path / "press.csv").write_text("theta_1 [deg],factor\n0,1\n180,0.5\n360,1\n")
+    task = written(tmp_path, FREE + FUNCTION + f"[linkage]\n{head}\n[{rest}\n{load}", linkage="")
+    (row,) = read_task(task).draft.raw["load"]
+    assert row["table"][1] == [180.0, 0.5]
+    (tmp_path / "press.csv").unlink()
+    with pytest.raises(DescriptionError, match=r"task\.toml: linkage\.load\[1\]\.table: .*press\.csv"):
+        read_task(task)
+
+
 def test_a_closed_path_does_not_repeat_its_first_place(tmp_path):
     rows = "[[0, 100], [20, 110], [40, 100], [0, 100]]"
     body = FREE + f'[[want]]\nkind = "path"\npoint = "P"\nplaces = {rows}\n'

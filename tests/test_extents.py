@@ -13,7 +13,7 @@ from sevenbar.forces.cones import Bounds, least_greatest_size
 from sevenbar.kinematics.allowed import distances
 from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.rods import nearest_shares, rod_distance
-from sevenbar.reporting.extents import extent_rows
+from sevenbar.reporting.extents import extent_rows, span_rows
 
 
 def degrees(found):
@@ -191,6 +191,15 @@ def test_a_circuit_without_stops_is_whole_and_one_that_stops_forbid_has_no_span(
     assert none.spans == ()
     assert none.share == 0.0
     assert set(none.stopped_by.tolist()) == {"range of rocker"}
+
+
+def test_every_stop_that_forbids_a_circuit_is_named():
+    ranges, cones = {"rocker": ("100 deg", "120 deg")}, {"ball_a": sb.Cone(math.radians(1), seat=(0, 0, 1))}
+    motion = sb.load("rssr").stopped(ranges=ranges, cones=cones).motion(72)
+    allowed = motion.circuits[0].allowed
+    assert set(allowed.stopped_by.tolist()) == {"range of rocker, cone of ball_a"}
+    assert not allowed.within.any()
+    assert span_rows(motion)[1][0][-1] == "cone of ball_a; range of rocker"
 
 
 def test_a_range_that_ends_at_the_joint_s_own_extremes_stops_nothing():

@@ -97,7 +97,7 @@ class AllowedSpan:
 class Allowed:
     """The parts of a circuit within its stops, in order; all of it, one span without stops, has share 1.
 
-    `within` (n,) says it of each row of the circuit, `stopped_by` (n,) which stop forbids a row, else "".
+    `within` (n,) says it of each row of the circuit, `stopped_by` (n,) which stops forbid a row, else "".
     """
 
     spans: tuple[AllowedSpan, ...]

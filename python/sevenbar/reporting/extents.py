@@ -103,7 +103,9 @@ def span_rows(motion: Motion) -> tuple[Row, list[Row]]:
 def _reasons(found: Allowed | None) -> str:
     if found is None:
         return "-"
-    return "; ".join(sorted({str(name) for name in found.stopped_by if name})) or "-"
+    return (
+        "; ".join(sorted({name for row in set(found.stopped_by) for name in row.split(", ") if name})) or "-"
+    )
 
 
 def _percent(share: float) -> str:

@@ -115,9 +115,11 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
     """The linkage that a task is about; `DescriptionError` where there is none."""
     given = raw.get("linkage")
     if isinstance(given, dict):
-        import tomlkit
-
-        return Draft.of(tomlkit.dumps(given), f"{source}: [linkage]", agree=agree)
+        try:
+            return Draft.of_tables(given, source, agree=agree)
+        except DescriptionError as error:
+            problems = [Problem(f"linkage.{p.place}".rstrip("."), p.message) for p in error.problems]
+            raise DescriptionError(problems, source) from None
     if not isinstance(given, str) or not given.strip():
         what = "is missing" if given is None else f"{shown(given)} is none"
         hint = (
