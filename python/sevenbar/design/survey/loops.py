@@ -191,7 +191,7 @@ def _judged(model: TaskModel, index: int, values: Floats) -> tuple[str, Kept | N
         if here is None:
             continue
         missed: list[str] = [fault for fault, room in here.least.items() if room < -ROUNDING]
-        if size_fault(model.loop.drawn(seed.values), limits) is not None:
+        if limits.size and size_fault(model.loop.drawn(seed.values), limits) is not None:
             missed.insert(0, "size")
         verdict = missed[0] if missed else "found"
         error = float(np.linalg.norm(here.left))
