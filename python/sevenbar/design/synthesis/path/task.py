@@ -222,11 +222,12 @@ def _varied(draft: Draft, point: Point, vary: Sequence[str] | None) -> list[Dime
     if not chosen:
         raise RequestError(f"vary: no dimension may change; give some of {', '.join(names)}")
     chosen.sort()
-    openers = opening_numbers(TaskLoop(draft, [names[i] for i in chosen]))
+    motion = draft.linkage.motion(OPENINGS)
+    openers = opening_numbers(TaskLoop(draft, [names[i] for i in chosen]), motion.circuits)
     if openers is None:
         raise RequestError(
-            f"linkage: {draft.linkage.motion(OPENINGS).motion_type}, the loop moves nowhere as it is "
-            "described, so it cannot be a start; give dimensions with which it moves"
+            f"linkage: {motion.motion_type}, the loop moves nowhere as it is described, so it cannot be a "
+            "start; give dimensions with which it moves"
         )
     opening = [chosen[k] for k in openers]
     if vary is None:

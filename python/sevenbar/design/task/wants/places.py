@@ -27,6 +27,8 @@ FIRST_AT = 2
 class PlacesWanted:
     """Places (n, p, 3) that p points of one link shall take at n stations, relative to a `unit` [length]."""
 
+    turns = False
+
     def __init__(self, loop: TaskLoop, want: PathWant | PoseWant) -> None:
         self._loop = loop
         self.weight = want.weight

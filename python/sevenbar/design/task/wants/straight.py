@@ -21,9 +21,11 @@ class LineWanted:
     and what the point's way from first to last lacks of the length, where one is given.
     """
 
+    turns = False
+
     def __init__(self, loop: TaskLoop, want: StraightWant) -> None:
         self.weight = want.weight
-        self._number, self._name = loop.named(want.point), want.point
+        self.numbers, self._name = [loop.named(want.point)], want.point
         self._length = want.length
         self.unit = loop.size if want.length is None else want.length
         inputs = np.linspace(*want.inputs, want.samples)
@@ -32,7 +34,7 @@ class LineWanted:
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """The residuals (r,), and their slopes (r, k + 6)."""
-        p, by = here.points[:, self._number], here.points_by[:, self._number]
+        p, by = here.points[:, self.numbers[0]], here.points_by[:, self.numbers[0]]
         a, way = u[:3], u[3:] - u[:3]
         square = float(way @ way)
         off = p - a
