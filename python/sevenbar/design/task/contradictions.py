@@ -90,22 +90,28 @@ def start_flaws(task: DesignTask) -> Iterator[Problem]:
     for i, must in enumerate(task.musts):
         if isinstance(must, InCone):
             yield from _far_side(f"must[{i + 1}]", must, loop.linkage, circuits)
+    found = opening_numbers(loop, circuits)
+    if found is None:
+        yield Problem(
+            "linkage",
+            "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
+        )
+    for number in found or ():
+        yield Problem(
+            f"free.{task.free[number].name}", "cannot change alone without opening the loop; leave it out"
+        )
+
+
+def opening_numbers(loop: TaskLoop, circuits: Sequence[Circuit]) -> list[int] | None:
+    """The free numbers that open a loop as soon as they change; `None` where it moves nowhere."""
     for circuit in circuits:
         good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
         if good.size:
             q = loop.closed(loop.start, circuit.input[good], loop.poses(loop.start, circuit.q[good]))
             q = q[np.isfinite(q).all(axis=1)]
             if len(q):
-                for number in loop.openings(loop.start, q):
-                    yield Problem(
-                        f"free.{task.free[number].name}",
-                        "cannot change alone without opening the loop; leave it out",
-                    )
-                return
-    yield Problem(
-        "linkage",
-        "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
-    )
+                return loop.openings(loop.start, q)
+    return None
 
 
 def _far_side(place: str, must: InCone, linkage: Linkage, circuits: Sequence[Circuit]) -> Iterator[Problem]:
