@@ -127,6 +127,7 @@ def test_nothing_found_says_what_was_nearest_and_what_to_ease(task_path):
     assert "a wider range of the joint" in str(caught.value) or "wider bounds" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_front_holds_no_point_that_another_beats():
     linkage = sb.load("planar_4r")
     rows = linkage.motion(18).circuits[0]
