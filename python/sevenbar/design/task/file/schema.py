@@ -33,7 +33,7 @@ from sevenbar.design.task.file.values import (
     Weight,
     Zero,
 )
-from sevenbar.errors import DescriptionError, Problem, shown
+from sevenbar.errors import DescriptionError, shown
 
 GOALS = ("least squares", "minimax")
 PLACEMENTS = ("fixed", "free", "free with scale")
@@ -41,12 +41,8 @@ PLACEMENTS = ("fixed", "free", "free with scale")
 _OF_INPUT = "degrees, or length"
 
 
-def _names(value: object) -> object:
-    return [value] if isinstance(value, str) else value
-
-
 def _words(value: object) -> tuple[str, ...]:
-    found = _names(value)
+    found = [value] if isinstance(value, str) else value
     if not isinstance(found, list) or not found or not all(isinstance(word, str) and word for word in found):
         raise refuse(f"{shown(value)} are no names; give some in quotes, as in ['A', 'P']")
     return tuple(found)
@@ -329,8 +325,4 @@ def check_form(raw: Mapping[str, Any], length_unit: str, source: str) -> TaskFor
         return TaskForm.model_validate(raw, context={"length_unit": length_unit, "angle_unit": "deg"})
     except ValidationError as error:
         problems = [TASK_FORMS.problem(detail) for detail in error.errors(include_url=False)]
-        raise DescriptionError(_once(problems), source) from None
-
-
-def _once(problems: list[Problem]) -> list[Problem]:
-    return list(dict.fromkeys(problems))
+        raise DescriptionError(list(dict.fromkeys(problems)), source) from None
