@@ -327,19 +327,28 @@ def _within(found: Candidate, limits: Limits) -> Refusal | None:
         return Refusal(
             "transmission", f"transmission angle down to {angle:.4g} deg, {wanted:g} deg are required"
         )
-    if limits.size is not None:
-        low, high = limits.size
-        links = [d.value for d in found.draft.dimensions if d.kind == "length" and d.positive]
-        shortest = min(links, default=math.inf)
-        if shortest < low * (1 - LIMIT_ROUNDING) or found.size > high * (1 + LIMIT_ROUNDING):
-            return Refusal(
-                "size",
-                f"shortest link {shortest:.4g}, longest dimension {found.size:.4g}; "
-                f"{low:g} to {high:g} are allowed",
-            )
+    fault = size_fault(found.draft, limits)
+    if fault is not None:
+        return fault
     if limits.motion_type is not None and found.motion_type != limits.motion_type:
         return Refusal("motion type", f"is a {found.motion_type}, required is a {limits.motion_type}")
     return None
+
+
+def size_fault(draft: Draft, limits: Limits) -> Refusal | None:
+    """Which length a description has that is shorter or longer than the limits let it be, if any."""
+    if limits.size is None:
+        return None
+    low, high = limits.size
+    lengths = [d for d in draft.dimensions if d.kind == "length"]
+    shortest = min((d.value for d in lengths if d.positive), default=math.inf)
+    longest = max(abs(d.value) for d in lengths)
+    if shortest >= low * (1 - LIMIT_ROUNDING) and longest <= high * (1 + LIMIT_ROUNDING):
+        return None
+    return Refusal(
+        "size",
+        f"shortest link {shortest:.4g}, longest dimension {longest:.4g}; {low:g} to {high:g} are allowed",
+    )
 
 
 def least_error(kept: Sequence[Candidate]) -> str:

@@ -14,7 +14,6 @@ from sevenbar.design.candidates import (
     CHECK_SAMPLES,
     Candidate,
     Claim,
-    Fault,
     Refusal,
     checked,
     joint_differences,
@@ -22,11 +21,11 @@ from sevenbar.design.candidates import (
 )
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.match import Placing
-from sevenbar.design.task.musts import pose_rooms, room_unit
+from sevenbar.design.task.musts import FAULTS, pose_rooms, room_unit
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
 from sevenbar.design.task.standing import moved, standing
-from sevenbar.design.task.task import Apart, FigureMust, InBox, InCone, InRange, Most
+from sevenbar.design.task.task import FigureMust, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 from sevenbar.design.task.words import must_words
@@ -46,8 +45,6 @@ DENSE, MISSED = 361, 1e-4
 
 #: By how much a measure may miss its limit through rounding, relative to it.
 ROUNDING = 1e-6
-
-FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 @dataclass(frozen=True, eq=False)

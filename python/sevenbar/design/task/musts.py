@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.candidates import Fault
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must, PoseMust
 from sevenbar.kinematics.ball_angle import has_length, line_angles, rod
@@ -18,6 +19,9 @@ from sevenbar.kinematics.stops import Three
 
 #: Rooms (n, r) at n poses, and their slopes (n, r, unknowns).
 Rooms = tuple[Floats, Floats]
+
+#: What is at fault where a must about poses is missed.
+FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callable[[Here], Rooms]]]:

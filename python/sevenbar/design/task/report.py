@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -49,13 +49,18 @@ ON_BOUND = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class TaskDesigns:
-    """What a search found, with the name and source of the task and what the search was given."""
+    """What a search found, with the name and source of the task and what the search was given.
+
+    `survey` has what a survey says that went before, by labels, and `plain` the same as plain values.
+    """
 
     found: DesignsFound
     name: str
     source: str
     starts: int
     seed: int
+    survey: Sequence[tuple[str, str]] = ()
+    plain: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def task(self) -> DesignTask:
@@ -163,10 +168,13 @@ def _of_musts(found: TaskDesigns, *, place: int) -> Any:
 
 def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
     facts = task_facts(found.task)
-    begun = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
-    facts.append(("searched", begun))
+    if found.survey:
+        facts += [("drawn", f"{found.starts} linkages, seed {found.seed}"), *found.survey]
+    else:
+        begun = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
+        facts.append(("searched", begun))
     if found.found.refusals:
-        facts.append(("refused", found.found.refused))
+        facts.append(("of the best" if found.survey else "refused", found.found.refused))
     return facts
 
 
@@ -181,17 +189,17 @@ def text(found: TaskDesigns) -> RenderableType:
     """The designs for people."""
     facts = Facts()
     for label, words in _facts(found):
-        facts.add(label, words, "bold" if label == "wanted" else "")
+        facts.add(label, words, "bold" if label in ("wanted", "answer") else "")
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
     parts: list[RenderableType] = [
         Text(f"Design: {found.name}", style="bold underline"),
         facts.grid,
     ]
-    for table in _tables(found):
+    for table in _tables(found) if found.found.designs else ():
         parts += [Text(), table]
     free = found.task.free
-    for begin in range(0, len(free), ACROSS):
+    for begin in range(0, len(free) if found.found.designs else 0, ACROSS):
         some = free[begin : begin + ACROSS]
         units = [found.task.draft.dimension(one.name).unit for one in some]
         heads = [f"{one.name}\n[{unit}]" if unit else one.name for one, unit in zip(some, units, strict=True)]
@@ -282,6 +290,7 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                 zip(found.found.designs, found.candidates, strict=True), 1
             )
         ],
+        **found.plain,
     }
 
 
