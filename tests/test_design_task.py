@@ -36,6 +36,7 @@ from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
+from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.rods import nearest_shares
 
@@ -392,3 +393,12 @@ def test_a_bound_of_1e_6_is_checked_to_its_digits():
     refusal = checked_design(model, solution)
     assert isinstance(refusal, Refusal)
     assert refusal.detail == "the greatest error is 0.002865 deg, at most 5.73e-05 deg is asked"
+
+
+def test_what_shall_be_great_is_better_the_greater_it_is_below_zero_too():
+    want, steps = FigureWant("clearance", "great", 10.0), np.array([-50.0, -1.0, 0.0, 9.9, 10.0, 10.1, 80.0])
+    left, by = zip(*(figure_left(want, x, np.ones(1)) for x in steps), strict=True)
+    assert (np.diff(left) < 0).all()
+    assert np.concatenate(by).max() < 0
+    # without a step or a corner at the unit
+    assert left[4] == pytest.approx((left[3] + left[5]) / 2, abs=1e-4)

@@ -16,7 +16,7 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.limits import Limits
-from sevenbar.design.task.contradictions import OPENINGS, opening_numbers
+from sevenbar.design.task.contradictions import OPENINGS, closed_poses
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import DesignTask, FreeNumber, PathWant, Placement
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
@@ -223,13 +223,14 @@ def _varied(draft: Draft, point: Point, vary: Sequence[str] | None) -> list[Dime
         raise RequestError(f"vary: no dimension may change; give some of {', '.join(names)}")
     chosen.sort()
     motion = draft.linkage.motion(OPENINGS)
-    openers = opening_numbers(TaskLoop(draft, [names[i] for i in chosen]), motion.circuits)
-    if openers is None:
+    loop = TaskLoop(draft, [names[i] for i in chosen])
+    q = closed_poses(loop, motion.circuits)
+    if q is None:
         raise RequestError(
             f"linkage: {motion.motion_type}, the loop moves nowhere as it is described, so it cannot be a "
             "start; give dimensions with which it moves"
         )
-    opening = [chosen[k] for k in openers]
+    opening = [chosen[k] for k in loop.openings(loop.start, q)]
     if vary is None:
         # the point's own coordinates open nothing
         chosen = [i for i in chosen if i not in opening]
