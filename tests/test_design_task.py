@@ -11,6 +11,7 @@ from evidence.design.__main__ import FOUND, is_whole, unit_of
 from evidence.design.tasks import tasks
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Refusal
+from sevenbar.design.limits import Limits
 from sevenbar.design.task import (
     Apart,
     DesignTask,
@@ -98,6 +99,7 @@ MUSTS = (
         ((FunctionWant(INPUTS, OUTPUTS),), {"musts": MUSTS}),
         ((DwellWant((0.5, 1.0)),), {"musts": MUSTS}),
         ((StraightWant("Q", (0.5, 1.5), 5000.0),), {}),
+        ((PATH,), {"limits": Limits(np.radians(30.0), None, "crank-rocker")}),
         (
             (FigureWant("swing", 60.0, 50.0), FunctionWant(INPUTS, OUTPUTS)),
             {"musts": (FigureMust("swing", 70.0),)},
@@ -113,6 +115,9 @@ def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
     problem.take(z)
     gradient, rooms = here.left_by.T @ here.left, here.room_by
     assert len(here.left) >= 6
+    tried = problem.tried(z)
+    assert tried.left == pytest.approx(here.left, abs=1e-12)
+    assert tried.room == pytest.approx(here.room, abs=1e-12)
     for k in range(len(z)):
         step = np.zeros(len(z))
         step[k] = 1e-5
@@ -286,6 +291,29 @@ def test_a_defective_design_is_refused_however_well_it_fits(rows, others, fault)
     else:
         assert isinstance(answer, TaskDesign)
         assert answer.met[0].greatest < 1e-9
+
+
+def test_places_with_a_dead_centre_between_are_refused():
+    # a long crank rocks between two dead centres and has two passes
+    draft = Draft.of_linkage(sb.rssr(M=700, N=700, L1=550, L3=250, D=0)).holding()
+    draft = draft.with_point("Q", 3, (40.0, 60.0, 0.0))
+    circuit = next(c for c in draft.linkage.motion(48).circuits if c.input_range is not None)
+    passes = [np.flatnonzero((circuit.branch == b) & (circuit.status == "ok")) for b in (0, 1)]
+
+    def answer(rows, *, closed=False):
+        places = circuit.point("Q").position[rows]
+        model = TaskModel(DesignTask(draft, free(draft, NAMES), (PathWant("Q", places, closed),)))
+        return checked_design(model, as_solution(model, rows, [circuit] * len(rows)))
+
+    over = answer(np.concatenate([passes[0][-6:-2:2], passes[1][2:6:2]]))
+    assert isinstance(over, Refusal)
+    assert over.fault == "dead centre"
+    along = passes[0][2:10:2]
+    assert isinstance(answer(along), TaskDesign)
+    # a closed path needs the way back, too
+    back = answer(along, closed=True)
+    assert isinstance(back, Refusal)
+    assert "between its last point and its first" in back.detail
 
 
 def test_a_missed_must_is_refused_by_its_name():

@@ -101,23 +101,30 @@ def start_flaws(task: DesignTask) -> Iterator[Problem]:
     for i, must in enumerate(task.musts):
         if isinstance(must, InCone):
             yield from _far_side(f"must[{i + 1}]", must, loop.linkage, circuits)
+    q = closed_poses(loop, circuits)
+    if q is None:
+        yield Problem(
+            "linkage",
+            "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
+        )
+        return
+    for number in loop.openings(loop.start, q):
+        yield Problem(
+            f"free.{task.free[number].name}", "cannot change alone without opening the loop; leave it out"
+        )
+    yield from _outside(task, loop, q)
+
+
+def closed_poses(loop: TaskLoop, circuits: Sequence[Circuit]) -> Floats | None:
+    """Poses (n, columns) of the first circuit that has some; `None` where the loop moves nowhere."""
     for circuit in circuits:
         good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
         if good.size:
             q = loop.closed(loop.start, circuit.input[good], loop.poses(loop.start, circuit.q[good]))
             q = q[np.isfinite(q).all(axis=1)]
             if len(q):
-                for number in loop.openings(loop.start, q):
-                    yield Problem(
-                        f"free.{task.free[number].name}",
-                        "cannot change alone without opening the loop; leave it out",
-                    )
-                yield from _outside(task, loop, q)
-                return
-    yield Problem(
-        "linkage",
-        "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
-    )
+                return q
+    return None
 
 
 def _outside(task: DesignTask, loop: TaskLoop, q: Floats) -> Iterator[Problem]:

@@ -19,26 +19,8 @@ from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
 from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
 from sevenbar.design.task.words import must_words, task_facts, want_words
-from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.page import Facts, number_table
-
-#: What may be given up where a kind of fault is the commonest.
-EASE = {
-    "assembly": "wider bounds, more starts, or another start",
-    "circuit": "wider bounds, or more starts: the poses lie on two circuits",
-    "dead centre": "another joint as the input, or wider bounds",
-    "order": "more starts, or another order",
-    "error": "a greater `most`, fewer exact points, or more free numbers",
-    "transmission": "a smaller least transmission angle",
-    "size": "a wider range of sizes",
-    "motion type": "another motion type, or any",
-    "range": "a wider range of the joint",
-    "cone": "a wider cone, or another seat",
-    "box": "a larger box",
-    "distance": "a smaller distance of the links",
-    "figure": "other ends of the measure",
-}
 
 #: Numbers in a printed table, side by side.
 ACROSS = 7
@@ -81,29 +63,6 @@ class TaskDesigns:
                 claim=replace(one.candidate.claim, figures=design_figures(self.task, one)),
             )
             for one in self.found.designs
-        )
-
-    def required(self) -> None:
-        """Raises `RequestError` where nothing was found: what was nearest, and what to ease."""
-        if self.found.designs:
-            return
-        tried = f"{self.starts + 1} linkage{'s' * (self.starts > 0)}"
-        if not self.found.starts:
-            raise RequestError(
-                f"design: none of {tried} within the bounds can begin: no pass of a circuit has what is "
-                "wanted without a dead centre of the input; give wider bounds, more starts, or another joint "
-                "as the input"
-            )
-        if not self.found.refusals:
-            raise RequestError(
-                f"design: {tried} gave {self.found.starts} ways to begin, and none could be followed; give "
-                "wider bounds, or more starts"
-            )
-        faults = list(dict.fromkeys(refusal.fault for refusal in self.found.refusals))
-        ease = "; or ".join(dict.fromkeys(EASE[fault] for fault in faults))
-        raise RequestError(
-            f"design: nothing does what is asked; of {tried} {len(self.found.refusals)} were solved, "
-            f"refused: {self.found.refused}; the nearest: {self.found.refusals[0].detail}; give {ease}"
         )
 
 
