@@ -8,6 +8,7 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.curves.least_cone import least_axis
+from sevenbar.curves.lipschitz import lowest
 from sevenbar.errors import RequestError
 from sevenbar.forces.cones import Bounds, least_greatest_size
 from sevenbar.kinematics.allowed import distances
@@ -158,6 +159,26 @@ def test_the_nearest_points_of_two_rods_are_those_of_a_grid():
     assert (grid - found <= 0.011 * lengths).all()
     for share in nearest_shares(*ends):
         assert ((share >= 0) & (share <= 1)).all()
+
+
+def test_a_search_that_ends_at_its_limit_says_what_it_may_have_missed():
+    edges, bounds = np.linspace(0, 10, 81), np.full(80, 10.0)
+    place, value, missed = lowest(lambda s: np.full(len(s), 1.0), edges, bounds, 1e-7, floor=0.0)
+    assert (place, value) == (0.0, 1.0)
+    assert 1e-7 < missed < 1e-2
+    # nothing lies below the floor
+    assert lowest(np.zeros_like, edges, bounds, 1e-7, floor=0.0) == (0.0, 0.0, 0.0)
+    place, value, missed = lowest(lambda s: (s - 3.3) ** 2, edges, bounds, 1e-7, floor=-math.inf)
+    assert place == pytest.approx(3.3, abs=1e-3)
+    assert value - missed <= 0 <= value <= 1e-7
+
+
+@pytest.mark.parametrize("angle", [1e-3, 1e-5, 1e-6, 9e-7, 1e-7, 1e-9, 1e-12, 1e-16, 0.0])
+def test_rods_that_cross_at_any_angle_meet(angle):
+    ends = np.array([[[-1.0, 0, 0]], [[1, 0, 0]], [[-1, -0.4 * angle, 0.1]], [[1, 1.6 * angle, 0.1]]])
+    assert rod_distance(*ends)[0] == pytest.approx(0.1, abs=1e-16)
+    ends[2:, :, 2] = 0.0
+    assert rod_distance(*ends)[0] < 1e-12
 
 
 STOPS = {

@@ -24,15 +24,15 @@ from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
 
-#: Cases of each way.
+#: Cases of each way: of loops five of each family, of their edges eight, of RSSRs twenty.
 CASES = {
     "rssr batch": 60_000,
     "loop batch": 320,
-    "rssr": 600,
-    "loop": 300,
-    "edge": 300,
-    "screw": 6,
-    "file": 20_000,
+    "rssr": 140,
+    "loop": 105,
+    "edge": 64,
+    "screw": 4,
+    "file": 8000,
     "table": 1000,
 }
 

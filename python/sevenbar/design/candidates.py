@@ -155,7 +155,10 @@ def checked(
     if not motion.circuits:
         return Refusal("assembly", "cannot be assembled at any input")
     ways = located(motion, claim.inputs, claim.outputs, poses)
-    fault = _one_way(ways)
+    lost = np.flatnonzero(ways.circuit < 0)
+    if lost.size:
+        return Refusal("assembly", f"point {lost[0] + 1} of {len(ways.circuit)} is reached by no circuit")
+    fault = one_way(ways.circuit, ways.branch)
     if fault is not None:
         return fault
     circuit = motion.circuits[ways.circuit[0]]
@@ -236,24 +239,21 @@ def joint_differences(difference: Floats, turning: Booleans, size: float) -> Flo
     return np.where(turning, short_way(difference), difference / size)
 
 
-def _one_way(ways: Ways) -> Refusal | None:
-    """Why poses are not on one pass of one circuit."""
-    lost = np.flatnonzero(ways.circuit < 0)
-    if lost.size:
-        return Refusal("assembly", f"point {lost[0] + 1} of {len(ways.circuit)} is reached by no circuit")
-    other = np.flatnonzero(ways.circuit != ways.circuit[0])
+def one_way(circuit: Integers, branch: Integers) -> Refusal | None:
+    """Why poses (n,) on these circuits and branches are not on one pass of one circuit."""
+    other = np.flatnonzero(circuit != circuit[0])
     if other.size:
         return Refusal(
             "circuit",
-            f"point 1 lies on circuit {ways.circuit[0]}, point {other[0] + 1} on circuit "
-            f"{ways.circuit[other[0]]}: it must be taken apart between them",
+            f"point 1 lies on circuit {circuit[0]}, point {other[0] + 1} on circuit {circuit[other[0]]}: it "
+            "must be taken apart between them",
         )
-    other = np.flatnonzero(ways.branch != ways.branch[0])
+    other = np.flatnonzero(branch != branch[0])
     if other.size:
         return Refusal(
             "dead centre",
-            f"point 1 lies on branch {ways.branch[0]}, point {other[0] + 1} on branch "
-            f"{ways.branch[other[0]]} of circuit {ways.circuit[0]}: a dead centre of the input lies between",
+            f"point 1 lies on branch {branch[0]}, point {other[0] + 1} on branch {branch[other[0]]} of "
+            f"circuit {circuit[0]}: a dead centre of the input lies between",
         )
     return None
 

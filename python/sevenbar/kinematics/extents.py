@@ -64,11 +64,15 @@ class BallCone:
 
 @dataclass(frozen=True)
 class Clearance:
-    """The least distance [length] of two links as rods, and what is left of it between their `radii`."""
+    """The least distance [length] of two links as rods, and what is left of it between their `radii`.
+
+    It may be less by `missed`: more than 0 where the distance rests near its least over much of the circuit.
+    """
 
     links: tuple[int, int]
     distance: Peak
     radii: float = 0.0
+    missed: float = 0.0
 
     @property
     def gap(self) -> float:

@@ -71,7 +71,9 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
         draft = draft.holding(form.follow or ())
     free = _free(draft, form, mistakes)
     wants, exact = _wants(draft.linkage, form, folder, mistakes)
-    musts = [*_musts(draft.linkage, form, wants, mistakes), *exact]
+    # a want that is wrong moves the places of those behind it
+    known = wants if len(wants) == len(form.want) else []
+    musts = [*_musts(draft.linkage, form, known, mistakes), *exact]
     limits = Limits()
     with mistakes.of("limits", LimitsForm):
         limits = _limits(form.limits, draft.linkage)
