@@ -358,7 +358,9 @@ def _conditions(problem: TaskProblem, x: Floats, *, minimax: bool) -> Conditions
     room, by = np.concatenate([here.room, room]), np.concatenate([here.room_by, by])
     if not minimax:
         columns = np.linalg.norm(here.left_by, axis=0)
-        unit = max(float(np.linalg.norm(here.left)), LEAST) * max(float(columns.max(initial=0.0)), 1e-300)
+        # at the least of a single figure its slopes vanish, so they alone are no unit
+        size = float(np.linalg.norm(here.left))
+        unit = max(size, LEAST) * max(float(columns.max(initial=0.0)), size, 1e-300)
         gradient = here.left_by.T @ here.left
         return Conditions(
             gradient, here.left_by.T @ here.left_by, float(here.left @ here.left), room, by, unit
