@@ -286,7 +286,8 @@ def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: L
         if isinstance(must, Most):
             number = model.sampled.index(must.want)
             unit = float(getattr(model.wanted[number], "unit", 1.0))
-            worst = must.most - float(np.abs(ways[number][0].errors).max()) / unit
+            errors = ways[number][0].errors[slice(None) if must.at is None else list(must.at)]
+            worst = must.most - float(np.abs(errors).max()) / unit
             if worst < -MISSED:
                 return Refusal(
                     "error", f"a residual is {must.most - worst:.4g}, at most {must.most:g} is asked"

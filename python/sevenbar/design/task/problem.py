@@ -23,6 +23,7 @@ from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import STILL, Placing, placed
 from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.rssr import loop_of
 from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
@@ -83,7 +84,7 @@ class TaskModel:
 
     def __init__(self, task: DesignTask) -> None:
         self.task = task
-        self.loop = loop = TaskLoop(task.draft.holding(task.follow), task.names)
+        self.loop = loop = loop_of(task)
         self.wanted: list[Wanted] = [
             self._wanted(loop, want) for want in task.wants if not isinstance(want, FigureWant)
         ]
@@ -97,10 +98,10 @@ class TaskModel:
         self.placed = task.placement != "fixed"
         linkage = loop.linkage
         closed_form = linkage.form == "rssr" and loop.input == 0
-        self.transmits = closed_form and task.limits.transmission_lowest > 0
+        self.transmits = closed_form and (task.limits.transmission_lowest > 0 or task.goal == "transmission")
         self.turns = closed_form and task.limits.motion_type in INPUT_TURNS
-        #: Which of the wants have been asked to stay within a greatest residual.
-        self.most = {self.sampled.index(m.want): m.most for m in task.musts if isinstance(m, Most)}
+        #: Wants, by their places among the sampled, whose residuals have been asked to stay small.
+        self.most = [(self.sampled.index(m.want), m) for m in task.musts if isinstance(m, Most)]
 
     @staticmethod
     def _wanted(loop: TaskLoop, want: SampledWant) -> Wanted:
@@ -184,7 +185,7 @@ class TaskProblem:
         known = self.loop.closed(seed.values, inputs[: self._count], seed.poses)
         more = inputs[self._count :]
         from_row = np.abs(more[:, None] - inputs[: self._count]).argmin(axis=1)
-        return np.concatenate([known, self.loop.at(seed.values).closed(more, known[from_row])])
+        return np.concatenate([known, self.loop.closed(seed.values, more, known[from_row])])
 
     def size(self, z: Floats) -> float:
         """The root of the weighted mean squares at z; infinite where there are none."""
@@ -198,6 +199,11 @@ class TaskProblem:
     def own(self, z: Floats) -> tuple[Floats, ...]:
         """The unknowns of each want."""
         return tuple(z[place] * self.scales[place] for place in self._own)
+
+    @property
+    def looked_at(self) -> int:
+        """The number of inputs at which the linkage is seen."""
+        return len(self._stations.fixed)
 
     def inputs(self, z: Floats) -> list[Floats]:
         """The inputs (n,) of each want."""
@@ -368,24 +374,26 @@ class TaskProblem:
         self, z: Floats, here: Here, wants: Sequence[tuple[Floats, Floats]]
     ) -> tuple[list[Floats], list[Floats]]:
         rooms, slopes = [np.empty(0)], [np.empty((0, len(z)))]
+        if self.model.transmits or self.model.turns:
+            # first, where the goal "transmission" looks for them
+            for values, by in self._transmission(z):
+                rooms.append(values)
+                slopes.append(by)
         if self.model.rooms:
             wide = here.along(self._stations.by)
             for _, room in self.model.rooms:
                 values, by = room(wide)
                 rooms.append(values.ravel())
                 slopes.append(self._joined(by.reshape(-1, by.shape[-1])))
-        if self.model.transmits or self.model.turns:
-            for values, by in self._transmission(z):
-                rooms.append(values)
-                slopes.append(by)
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
                 values, by = self._order(z, i)
                 rooms.append(values)
                 slopes.append(by)
-        for i, most in self.model.most.items():
-            left, by = wants[i]
-            rooms += [most - left, most + left]
+        for i, must in self.model.most:
+            at = slice(None) if must.at is None else list(must.at)
+            left, by = wants[i][0][at], wants[i][1][at]
+            rooms += [must.most - left, must.most + left]
             slopes += [-by, by]
         return rooms, slopes
 
@@ -463,7 +471,7 @@ def _spread(steady: Floats, by: Floats, stations: Stations, period: float) -> li
     n = len(steady)
     if n < 2:
         return []
-    each = max(math.ceil(HELD / n), 2)
+    each = math.ceil(HELD / n)
     found = []
     for j in range(n if stations.round else n - 1):
         then = (j + 1) % n
