@@ -1,8 +1,6 @@
 """Function generation: exact gradients, error figures of x^2 and log, and files that do what they tell."""
 
 import contextlib
-import doctest
-import importlib
 import io
 import math
 import re
@@ -262,25 +260,6 @@ def test_wrong_pairs_are_told_in_a_line(a, b, words):
     with pytest.raises(RequestError, match=r"^[^\n]*$") as told:
         wish_of_pairs(a, b)
     assert words in str(told.value)
-
-
-@pytest.mark.parametrize(
-    ("name", "count"),
-    [
-        ("design.wish", 2),
-        ("design.course", 3),
-    ],
-)
-def test_examples_in_docstrings_give_what_they_show(name, count):
-    module = importlib.import_module(f"sevenbar.{name}")
-    assert doctest.testmod(module) == (0, count)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["generation", "swing"])
-def test_examples_of_long_searches_give_what_they_show(name):
-    module = importlib.import_module(f"sevenbar.design.synthesis.function.{name}")
-    assert doctest.testmod(module) == (0, 2)
 
 
 @pytest.mark.slow

@@ -104,6 +104,19 @@ impl Numbers {
         ])
     }
 
+    /// The points (n, points, 3) at poses (n, columns).
+    fn places<'py>(&self, py: Python<'py>, values: PyReadonlyArray2<'py, f64>) -> PyResult<Array<'py>> {
+        let rows = values.shape()[0];
+        if values.shape()[1] != self.0.columns() {
+            return Err(CoreError::new_err("places: give rows of all columns"));
+        }
+        let values = values
+            .as_slice()
+            .map_err(|_| CoreError::new_err("values: the array is not contiguous"))?;
+        let found = py.detach(|| self.0.places(values));
+        shaped(py, found, &[rows, self.0.points(), 3])
+    }
+
     /// Poses (designs, n, columns) of designs, transforms (designs, joints + 1, 4, 4) and advances (designs, joints), at inputs
     /// (n,), from poses (n, columns) of this loop moved by `steps` (designs, n, columns), and the determinants (designs, n) that
     /// change their sign at a dead centre; NaN where a pose is lost.

@@ -67,7 +67,8 @@ def task(
         check_out(report, out, force=force)
         with progress_bar(f"searching a front of {read.name}") as progress:
             front = front_of(read.task, *pair, points=points, starts=starts, seed=seed, progress=progress)
-        deliver(FrontFound(front, read.name, read.source, starts, seed), report, out, json=json, force=force)
+        whole = FrontFound(front.found, read.name, read.source, starts, seed, front)
+        deliver(whole, report, out, json=json, force=force)
         end_of_work(front.unfinished)
         return
     single = task_report(read.task, designs, command_line(), formats)

@@ -128,9 +128,12 @@ class SurveyTask:
             raise RequestError(
                 f"transmission: {degrees:g} deg is no limit; give an angle from 0 to below 90 deg"
             )
-        if not 0 < self.ball_angle <= math.pi:
+        # the core's smallest cones are those within half a space
+        if not (0 < self.ball_angle <= math.pi / 2 or self.ball_angle == math.pi):
             degrees = math.degrees(self.ball_angle)
-            raise RequestError(f"ball angle: {degrees:g} deg is no limit; give an angle up to 180 deg")
+            raise RequestError(
+                f"ball angle: {degrees:g} deg is no limit; give an angle up to 90 deg, or 180 deg for none"
+            )
         if not self.ratio > 1:
             raise RequestError(f"ratio: {self.ratio:g} is no ratio of lengths; give a number > 1")
         for name, word, words in (

@@ -19,7 +19,8 @@ from sevenbar.kinematics.word import Carried
 class Here:
     """A loop at closed poses (n, columns): columns and points (n, points, 3), with slopes (.., k + 1).
 
-    Slopes are by the k free numbers, then by the input. A ball's columns are its rotation in their slopes.
+    Slopes are by the k free numbers, then by the input, or (.., 0) by nothing. A ball's columns are its
+    rotation in their slopes.
     """
 
     q: Floats
@@ -35,6 +36,8 @@ class Here:
         """The same with slopes by free numbers and unknowns, by which the inputs change so (n, unknowns)."""
 
         def chained(by: Floats) -> Floats:
+            if not by.shape[-1]:
+                return by
             own = inputs_by.reshape(len(inputs_by), *(1,) * (by.ndim - 2), -1)
             return np.concatenate([by[..., :-1], by[..., -1:] * own], axis=-1)
 
@@ -114,8 +117,11 @@ class TaskLoop:
         """The poses (n, columns) at inputs x (n,), by Newton's method from those nearby; NaN where lost."""
         return np.asarray(self.at(values).followed(x, q)[0][0])
 
-    def here(self, values: Floats, q: Floats) -> Here:
-        """What is at closed poses (n, columns); NaN at dead centres of the input."""
+    def here(self, values: Floats, q: Floats, *, slopes: bool = True) -> Here:
+        """What is at closed poses (n, columns); slopes are NaN at dead centres of the input."""
+        if not slopes:
+            points = self.at(values).places(q)
+            return Here(q, np.empty((*q.shape, 0)), points, np.empty((*points.shape, 0)))
         found = self.at(values).slopes(q, 0)
         by_q = np.moveaxis(found.by_number[:, 0], 1, 2)
         by_points = np.moveaxis(found.points_by_number[:, :, 0], 2, 3)

@@ -70,7 +70,7 @@ class TaskSeed:
 
 @dataclass(frozen=True, eq=False)
 class TaskValues:
-    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes, and the placing."""
+    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes (.., unknowns or 0), and the placing."""
 
     left: Floats
     left_by: Floats
@@ -145,7 +145,7 @@ class TaskProblem:
         ]
         self._periods = [way * seed.period for way in self._senses]
         self._stations = self._all_stations()
-        if len(self._poses) < len(self._stations.fixed):
+        if model.rooms and len(self._poses) < len(self._stations.fixed):
             self._poses = self._between(seed)
         places = [one.places.reshape(-1, 3) for _, one in self._places()]
         self._middle = np.concatenate(places).mean(axis=0) if places else np.zeros(3)
@@ -211,10 +211,14 @@ class TaskProblem:
         return [inputs[rows] for rows in self._rows]
 
     def poses(self, z: Floats) -> Floats | None:
-        """The closed poses (n, columns) of all stations, from those last taken; `None` off the branch."""
+        """The closed poses (n, columns) of all stations, from those last taken; `None` off the branch.
+
+        Those between the wants' are left out where only the closed form is asked there.
+        """
         key = z.tobytes()
         if self._asked is None or self._asked[0] != key:
-            poses = self.loop.closed(self.values(z), self._stations.inputs(z), self._poses)
+            inputs = self._stations.inputs(z)[: len(self._poses)]
+            poses = self.loop.closed(self.values(z), inputs, self._poses)
             step = np.abs(poses - self._poses) / self.loop.units
             step[:, self.loop.input] = 0.0
             good = bool(np.isfinite(poses).all()) and bool((step <= LONGEST_STEP).all())
@@ -257,36 +261,40 @@ class TaskProblem:
             self._known = key, self._at(z)
         return self._known[1]
 
-    def _at(self, z: Floats) -> TaskValues | None:
+    def tried(self, z: Floats) -> TaskValues | None:
+        """Residuals and rooms at z without their slopes, which cost the most."""
+        return self._at(z, slopes=False)
+
+    def _at(self, z: Floats, *, slopes: bool = True) -> TaskValues | None:
         poses = self.poses(z)
         if poses is None:
             return None
         values, own = self.values(z), self.own(z)
-        here = self.loop.here(values, poses)
+        here = self.loop.here(values, poses, slopes=slopes)
         parts = []
         for one, u, rows, place in zip(self.model.wanted, own, self._rows, self._own, strict=True):
             left, by = one.left(here.part(rows).along(one.stations.by), u)
-            wide = np.zeros((*by.shape[:-1], len(z)))
-            wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
-            parts.append((left, wide * self.scales))
+            if slopes:
+                wide = np.zeros((*by.shape[:-1], len(z)))
+                wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
+                by = wide * self.scales
+            parts.append((left, by))
         placing = self._placing(z, [left for left, _ in parts])
-        lefts, slopes = self._placed(z, parts, placing)
-        rooms, rooms_by = self._rooms(z, here, list(zip(lefts, slopes, strict=True)))
-        figures = self._figures(values)
+        lefts, lefts_by = self._placed(z, parts, placing)
+        rooms, rooms_by = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
+        figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
-        room = np.concatenate([*rooms, figures[2]])
-        room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
-        found = TaskValues(
-            np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]]),
-            np.concatenate([*(w * r for w, r in zip(weights, slopes, strict=True)), self._wide(figures[1])]),
-            room,
-            room_by,
-            placing,
-        )
-        good = all(np.isfinite(part).all() for part in (found.left, found.left_by, room, room_by))
-        return found if good else None
+        left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]])
+        room = np.concatenate([*rooms, figures[2]])
+        left_by, room_by = np.empty((len(left), 0)), np.empty((len(room), 0))
+        if slopes:
+            by_all = (w * r for w, r in zip(weights, lefts_by, strict=True))
+            left_by = np.concatenate([*by_all, self._wide(figures[1])])
+            room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
+        good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
+        return TaskValues(left, left_by, room, room_by, placing) if good else None
 
     def _wide(self, by: Floats) -> Floats:
         """Slopes (r, k) by the free numbers as those by all unknowns."""
@@ -319,11 +327,11 @@ class TaskProblem:
         for i, one in own:
             put = placing.put(left[i])
             by = np.einsum("ij,njk->nik", placing.rotation, slopes[i])
-            if self._turned:
+            if self._turned and by.shape[-1]:
                 by[..., -6:] = self._by_moves(z, put)
             left[i] = (put - one.places.reshape(-1, 3)).ravel() / one.unit
-            slopes[i] = by.reshape(-1, len(z)) / one.unit
-        if self.model.placed and not self._turned:
+            slopes[i] = by.reshape(left[i].size, -1) / one.unit
+        if self.model.placed and not self._turned and slopes[own[0][0]].size:
             self._project(own, parts, placing, slopes)
         return left, slopes
 
@@ -384,7 +392,7 @@ class TaskProblem:
             for _, room in self.model.rooms:
                 values, by = room(wide)
                 rooms.append(values.ravel())
-                slopes.append(self._joined(by.reshape(-1, by.shape[-1])))
+                slopes.append(self._joined(by.reshape(values.size, -1)))
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
                 values, by = self._order(z, i)
@@ -410,6 +418,8 @@ class TaskProblem:
 
     def _joined(self, by: Floats) -> Floats:
         """Slopes (r, k + all unknowns), those by the free numbers and through the inputs, by all unknowns."""
+        if not by.size:
+            return by
         found = by[:, self._k :].copy()
         found[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
         return found
@@ -435,22 +445,22 @@ class TaskProblem:
             found.append((room, wide(by_row)))
         return found
 
-    def _figures(self, values: Floats) -> tuple[Floats, Floats, Floats, Floats] | None:
+    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Floats, Floats, Floats, Floats] | None:
         """Residuals of figures, rooms of figures, each with its slopes by the free numbers."""
         model = self.model
         none = np.empty((0, self._k))
         if not model.figures.names:
             return np.empty(0), none, np.empty(0), none
-        found = model.figures.at(values, self._anchor)
+        found = model.figures.at(values, self._anchor, slopes=slopes)
         if found is None:
             return None
         read, by = found
         place = {name: i for i, name in enumerate(model.figures.names)}
-        left, slopes, rooms, rooms_by = [], [none], [], [none]
+        left, left_by, rooms, rooms_by = [], [none], [], [none]
         for want in model.figure_wants:
             value, own = figure_left(want, read[place[want.name]], by[place[want.name]])
             left.append(want.weight * value)
-            slopes.append(want.weight * own[None])
+            left_by.append(want.weight * own[None])
         for must in model.figure_musts:
             value, own = read[place[must.name]], by[place[must.name]]
             for way, end in ((1.0, must.least), (-1.0, must.most)):
@@ -458,7 +468,7 @@ class TaskProblem:
                     unit = max(abs(end), 1e-3)
                     rooms.append(way * (value - end) / unit)
                     rooms_by.append(way * own[None] / unit)
-        return np.array(left), np.concatenate(slopes), np.array(rooms), np.concatenate(rooms_by)
+        return np.array(left), np.concatenate(left_by), np.array(rooms), np.concatenate(rooms_by)
 
 
 def _sense(inputs: Floats) -> float:

@@ -17,7 +17,7 @@ from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
-from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
+from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
 from sevenbar.design.task.words import must_words, task_facts, want_words
 from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report, figure_files
@@ -135,23 +135,18 @@ def task_report(
     task: DesignTask, count: int, command: str, formats: Sequence[str] = ("png",)
 ) -> Report[TaskDesigns]:
     """How at most `count` designs of a task are reported; the heads of their files name the `command`."""
-    drawn = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
     files: dict[str, Any] = {}
-    toml = design_files(count, (), head=partial(_head, command), figure=_none, as_dict=as_dict)
+    toml = design_files(count, (), head=partial(_head, command), as_dict=as_dict)
     for place in range(count):
         name = f"design_{place + 1}"
         files[f"{name}.toml"] = toml[f"{name}.toml"]
-        for number, want in enumerate(drawn):
+        for number, (want, _) in enumerate(task.sampled):
             files |= figure_files(
                 f"{name}_want_{want + 1}", formats, partial(_of_want, place=place, number=number)
             )
-        if any(type(must).__name__ in ("InRange", "InCone", "InBox", "Apart") for must in task.musts):
+        if any(isinstance(must, PoseMust) for must in task.musts):
             files |= figure_files(f"{name}_musts", formats, partial(_of_musts, place=place))
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
-
-
-def _none(found: TaskDesigns, candidate: Candidate) -> Any:
-    raise AssertionError((found, candidate))
 
 
 def _of_want(found: TaskDesigns, *, place: int, number: int) -> Any:
@@ -224,7 +219,7 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     """Tables with a line for each design: how well each want is met; the musts, the optimum, what it is."""
     task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
     met: list[tuple[str, list[str]]] = []
-    for number, place in enumerate(_sampled(task)):
+    for number, (place, _) in enumerate(task.sampled):
         mets = [design.met[number] for design in designs]
         own, scale = ("deg", 180 / math.pi) if mets[0].unit == "rad" else (mets[0].unit, 1.0)
         met += [
@@ -278,7 +273,7 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                 **candidate.columns,
                 "wants": [
                     {"want": place + 1, "greatest": met.greatest, "rms": met.rms, "unit": met.unit}
-                    for place, met in zip(_sampled(task), design.met, strict=True)
+                    for (place, _), met in zip(task.sampled, design.met, strict=True)
                 ],
                 "musts": _rooms(task, design),
                 "values": dict(zip(task.names, map(float, design.values), strict=True)),
@@ -290,10 +285,6 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
     }
 
 
-def _sampled(task: DesignTask) -> list[int]:
-    return [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
-
-
 def _rooms(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
     """The least room of each must about poses, over all wants."""
     along = DesignAlong(task, design)
@@ -301,10 +292,5 @@ def _rooms(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
     for place, _, _, values in along.rooms():
         least[place] = min(least.get(place, math.inf), float(values.min()))
     return [
-        {
-            "must": place + 1,
-            "room": math.degrees(room) if along.room_unit(task.musts[place]) == "deg" else room,
-            "unit": along.room_unit(task.musts[place]),
-        }
-        for place, room in least.items()
+        {"must": place + 1, "room": room, "unit": along.room_unit(place)} for place, room in least.items()
     ]

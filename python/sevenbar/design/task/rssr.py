@@ -33,8 +33,11 @@ class RssrLoop(TaskLoop):
         found[:, self.output] += np.where(np.abs(second) < np.abs(first), second, first)
         return found
 
-    def here(self, values: Floats, q: Floats) -> Here:
-        """What is at closed poses (n, columns); infinite at dead centres of the input."""
+    def here(self, values: Floats, q: Floats, *, slopes: bool = True) -> Here:
+        """What is at closed poses (n, columns); slopes are infinite at dead centres of the input."""
+        none = np.empty((len(q), 0, 3))
+        if not slopes:
+            return Here(q, np.empty((*q.shape, 0)), none, np.empty((*none.shape, 0)))
         row = self.whole(values)[None, self._columns]
         by_row, by_input = output_slopes(row, q[None, :, self.input], q[None, :, self.output])
         every = np.zeros((len(q), len(self.numbers.names)))
@@ -42,7 +45,7 @@ class RssrLoop(TaskLoop):
         by = np.zeros((*q.shape, len(self.free) + 1))
         by[:, self.output] = np.column_stack([self.all_slopes(values, every), by_input[0]])
         by[:, self.input, -1] = 1.0
-        return Here(q, by, np.empty((len(q), 0, 3)), np.empty((len(q), 0, 3, by.shape[-1])))
+        return Here(q, by, none, np.empty((*none.shape, by.shape[-1])))
 
 
 def loop_of(task: DesignTask) -> TaskLoop:

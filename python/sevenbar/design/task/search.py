@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -25,6 +26,10 @@ TRIED, TAKEN = 8, 3
 
 #: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
+
+#: A look leads to a design that is kept where no dimension differs by more; and it is left where its least
+#: squares are more than so many times those of the designs that are kept.
+ONE, HOPELESS = 1e-3, 2.0
 
 #: A cost below which a task is met exactly: no other start can be better.
 EXACT = 1e-11
@@ -106,27 +111,52 @@ def _search(
     refusals: list[Refusal],
 ) -> None:
     tried: list[Solved] = []
+    nearest = math.inf
     for one in apart(model, begun, TRIED * count):
         look = _first_look(model, one)
         if look is not None:
-            tried.append(look)
-        nearest = min((look.cost for look in tried), default=None)
-        course.step("" if nearest is None else f"nearest: {nearest:.3g}")
+            nearest = min(nearest, look.cost)
+            if look.cost < EXACT:
+                _take(model, look, count, kept, refusals)
+            else:
+                tried.append(look)
+        course.step(f"nearest: {nearest:.3g}" if look else "")
+        if _worst(kept, count) < EXACT:
+            return
     tried.sort(key=lambda look: (look.room < -0.01, look.cost))
     for i, look in enumerate(tried):
         if len(distinct_designs(kept)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
-        solution = solved(model, look.seed)
-        if solution is None:
-            refusals.append(Refusal("assembly", "the linkage is lost on the way to its optimum"))
-            continue
-        answer = checked_design(model, solution)
-        if isinstance(answer, Refusal):
-            refusals.append(answer)
-        else:
-            kept.append(answer)
-            kept.sort(key=lambda design: design.cost)
+        _take(model, look, count, kept, refusals)
         course.step(f"best: {kept[0].cost:.3g}" if kept else "", done=int(course.done < course.total))
+
+
+def _worst(kept: Sequence[TaskDesign], count: int) -> float:
+    """The cost of the last of so many distinct designs; infinite while there are fewer."""
+    found = distinct_designs(kept)[:count]
+    return found[-1].cost if len(found) == count else math.inf
+
+
+def _take(
+    model: TaskModel, look: Solved, count: int, kept: list[TaskDesign], refusals: list[Refusal]
+) -> None:
+    """Solves a first look to the end, and keeps it or tells why not; one without prospects is left."""
+    own = likeness(model.loop.drawn(look.seed.values), scale_free=False)
+    if any(np.abs(own - likeness(one.draft, scale_free=False)).max() < ONE for one in kept):
+        return
+    most = HOPELESS * _worst(kept, count)
+    solution = solved(model, look.seed, most=most)
+    if solution is None:
+        refusals.append(Refusal("assembly", "the linkage is lost on the way to its optimum"))
+        return
+    if solution.cost > most:
+        return
+    answer = checked_design(model, solution)
+    if isinstance(answer, Refusal):
+        refusals.append(answer)
+    else:
+        kept.append(answer)
+        kept.sort(key=lambda design: design.cost)
 
 
 def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:

@@ -55,10 +55,10 @@ ENDS_APART = 1e-2
 
 #: Evaluations of the least squares a start begins with: in each of three rounds where anything must hold,
 #: and in the one where nothing must.
-LOOK, FREE_LOOK = 16, 60
+LOOK, FREE_LOOK = 30, 120
 
-#: Designs for each wanted after which no other start is tried, where those wanted differ.
-ENOUGH = 2
+#: Designs, at least, after which no other start is tried, where as many as are wanted differ.
+ENOUGH = 5
 
 #: A start whose least squares end so many times above those of the worst design wanted is left.
 HOPELESS = 1.1
@@ -199,9 +199,10 @@ def _found(
             ends: list[Floats] = []
             costs: list[float] = []
             for start in begun:
-                if len(costs) >= ENOUGH * count and len(distinct(kept, scale_free=True)) >= count:
+                if len(costs) >= max(ENOUGH, 2 * count) and len(distinct(kept, scale_free=True)) >= count:
                     break
-                hopeless = HOPELESS * sorted(costs)[count - 1] if len(costs) >= count else math.inf
+                others = len(costs) >= count and not hold
+                hopeless = HOPELESS * sorted(costs)[count - 1] if others else math.inf
                 fitted = _fitted(wish, limits, start, ends, hopeless, hold=hold)
                 if fitted is not None:
                     error, result = _judged(wish, fitted, limits, tolerance)

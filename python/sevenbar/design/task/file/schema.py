@@ -55,6 +55,19 @@ def _words(value: object) -> tuple[str, ...]:
     return tuple(found)
 
 
+def _flat(value: object) -> object:
+    """Tables in tables as one: TOML reads a name with a dot and no quotes, as in P.x, as a table."""
+    if not isinstance(value, dict):
+        return value
+    found: dict[str, object] = {}
+    for name, own in value.items():
+        inner = _flat(own)
+        found |= (
+            {f"{name}.{key}": one for key, one in inner.items()} if isinstance(inner, dict) else {name: own}
+        )
+    return found
+
+
 _Words = Annotated[
     tuple[str, ...], BeforeValidator(_words), WithJsonSchema({"type": "array", "items": {"type": "string"}})
 ]
@@ -282,6 +295,7 @@ class TaskForm(TableForm):
     want: Annotated[tuple[_Want, ...], key("what is wanted; one or more")]
     free: Annotated[
         dict[str, Span],
+        BeforeValidator(_flat),
         key("numbers that may change and their bounds, by name or pattern", "as in the linkage's file"),
     ]
     must: Annotated[tuple[_Must, ...], key("what must hold")] = ()

@@ -6,18 +6,17 @@ import math
 from functools import partial
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
 from sevenbar.description.values import FORMULA, POSITIVE, Vector, number_for, refuse, three
 from sevenbar.errors import shown
+from sevenbar.kinematics.rigid import flaw_of_rotation
 from sevenbar.text.expression import constant_of
 from sevenbar.text.ranges import split_range
 
 #: A number, or a text with a unit, as it is written: what it belongs to decides its unit.
 Given = str | float
-
-#: How far the product of a rotation and its transpose may be from 1: figures written with four decimals pass.
-ROUNDED = 1e-3
 
 
 def _given(value: object, *, what: str = "a value", example: str = "30, '30deg' or '12mm'") -> Given:
@@ -108,23 +107,9 @@ def _matrix(value: object, info: ValidationInfo) -> tuple[tuple[float, float, fl
     if not isinstance(value, list) or len(value) != 3:
         raise refuse(f"{shown(value)} is no matrix; give three rows of three numbers")
     rows = tuple(three(row, info, "number") for row in value)
-    if flaw := flaw_of_rotation(rows):
+    if flaw := flaw_of_rotation(np.array(rows)):
         raise refuse(flaw)
     return rows
-
-
-def flaw_of_rotation(rows: tuple[tuple[float, ...], ...]) -> str:
-    """Why a matrix is no rotation; empty for one that is, to the digits of `ROUNDED`."""
-    products = [[sum(x * y for x, y in zip(a, b, strict=True)) for b in rows] for a in rows]
-    off = max(abs(products[i][j] - (i == j)) for i in range(3) for j in range(3))
-    if off > ROUNDED:
-        return (
-            f"is no rotation: its rows are not of length 1 and at right angles (off by {off:.2g}); "
-            "give a rotation, or axis and angle"
-        )
-    a, b, c = rows
-    turned = sum(c[i] * (a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2]) for i in range(3))
-    return "is no rotation: it mirrors; change the sign of one row" if turned < 0 else ""
 
 
 def _links(value: object) -> tuple[int, int]:

@@ -26,7 +26,7 @@ class ReadingsWanted:
         else:
             inputs = np.linspace(*want.inputs, want.samples)
             self.readings, first, second = np.zeros(want.samples), 0.0, want.level
-        self._turns = bool(loop.numbers.turns[loop.output])
+        self.turns = bool(loop.numbers.turns[loop.output])
         self.unit = float(loop.units[loop.output])
         self._column = loop.output
         self._input_free, self._output_free = first is None, second is None
@@ -38,14 +38,14 @@ class ReadingsWanted:
         self.count = len(inputs)
 
     def _apart(self, values: Floats) -> Floats:
-        return short_way(values) if self._turns else values
+        return short_way(values) if self.turns else values
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """What the output is off (n,) at its stations, and the slopes (n, k + m)."""
         zero = u[-1] if self._output_free else self._zero
         by = here.q_by[:, self._column].copy()
         if self._output_free:
-            by[:, -1] -= 1.0
+            by[:, -1:] -= 1.0
         return self._apart(here.q[:, self._column] - self.readings - zero) / self.unit, by / self.unit
 
     def begun(

@@ -27,6 +27,8 @@ FIRST_AT = 2
 class PlacesWanted:
     """Places (n, p, 3) that p points of one link shall take at n stations, relative to a `unit` [length]."""
 
+    turns = False
+
     def __init__(self, loop: TaskLoop, want: PathWant | PoseWant) -> None:
         self._loop = loop
         self.weight = want.weight
@@ -56,7 +58,8 @@ class PlacesWanted:
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:  # noqa: ARG002
         """Where the points are (r / 3, 3) at its stations, and their slopes (r / 3, 3, k + m)."""
         found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
-        return found.reshape(-1, 3), by.reshape(-1, 3, by.shape[-1])
+        left = found.reshape(-1, 3)
+        return left, by.reshape(*left.shape, by.shape[-1])
 
     def curve(self, one: InputPass) -> Floats:
         """The points along a pass (rows, p, 3)."""

@@ -21,9 +21,11 @@ class LineWanted:
     and what the point's way from first to last lacks of the length, where one is given.
     """
 
+    turns = False
+
     def __init__(self, loop: TaskLoop, want: StraightWant) -> None:
         self.weight = want.weight
-        self._number, self._name = loop.named(want.point), want.point
+        self.numbers, self._name = [loop.named(want.point)], want.point
         self._length = want.length
         self.unit = loop.size if want.length is None else want.length
         inputs = np.linspace(*want.inputs, want.samples)
@@ -32,23 +34,27 @@ class LineWanted:
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """The residuals (r,), and their slopes (r, k + 6)."""
-        p, by = here.points[:, self._number], here.points_by[:, self._number]
+        p, by = here.points[:, self.numbers[0]], here.points_by[:, self.numbers[0]]
         a, way = u[:3], u[3:] - u[:3]
         square = float(way @ way)
         off = p - a
         t = off @ way / square
         across = np.eye(3) - np.outer(way, way) / square
+        left = (off - t[:, None] * way).ravel()
+        gone = p[-1] - p[0]
+        size = float(np.linalg.norm(gone)) or 1.0
+        if self._length is not None:
+            left = np.append(left, min(size - self._length, 0.0))
+        if not by.shape[-1]:
+            return left / self.unit, np.empty((len(left), 0))
         slopes = np.einsum("ij,njk->nik", across, by)
         t_a = (-way - off + 2 * t[:, None] * way) / square
         t_b = (off - 2 * t[:, None] * way) / square
         slopes[:, :, -6:-3] += (t[:, None, None] - 1) * np.eye(3) - np.einsum("i,nj->nij", way, t_a)
         slopes[:, :, -3:] += -t[:, None, None] * np.eye(3) - np.einsum("i,nj->nij", way, t_b)
-        left, slopes = (off - t[:, None] * way).ravel(), slopes.reshape(3 * len(p), -1)
+        slopes = slopes.reshape(3 * len(p), -1)
         if self._length is not None:
-            gone = p[-1] - p[0]
-            size = float(np.linalg.norm(gone)) or 1.0
             short = size < self._length
-            left = np.append(left, min(size - self._length, 0.0))
             slopes = np.concatenate([slopes, (short * gone @ (by[-1] - by[0]) / size)[None]])
         return left / self.unit, slopes / self.unit
 
