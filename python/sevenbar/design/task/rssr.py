@@ -11,7 +11,10 @@ from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Most
 
 
 class RssrLoop(TaskLoop):
-    """An RSSR of which crank and rocker alone are seen: the columns of its balls are not followed."""
+    """An RSSR of which crank and rocker alone are seen: the columns of its balls are not followed.
+
+    Once a point is asked for it is a loop as any other.
+    """
 
     @property
     def _columns(self) -> list[int]:
@@ -26,6 +29,8 @@ class RssrLoop(TaskLoop):
 
     def closed(self, values: Floats, x: Floats, q: Floats) -> Floats:
         """The poses (n, columns) at inputs x (n,), on the branch nearest to q; NaN where there is none."""
+        if self.numbers.points:
+            return super().closed(values, x, q)
         found = q.copy()
         ways = [self.on_branch(values, x, branch)[:, self.output] - q[:, self.output] for branch in (0, 1)]
         first, second = short_way(ways[0]), short_way(ways[1])
@@ -35,6 +40,8 @@ class RssrLoop(TaskLoop):
 
     def here(self, values: Floats, q: Floats, *, slopes: bool = True) -> Here:
         """What is at closed poses (n, columns); slopes are infinite at dead centres of the input."""
+        if self.numbers.points:
+            return super().here(values, q, slopes=slopes)
         none = np.empty((len(q), 0, 3))
         if not slopes:
             return Here(q, np.empty((*q.shape, 0)), none, np.empty((*none.shape, 0)))
