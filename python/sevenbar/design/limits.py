@@ -95,22 +95,14 @@ _PAIRS = [
 ]
 
 
-def size_room(row: Floats, limits: Limits, *, scale_free: bool) -> tuple[Floats, Floats]:
-    """What must not be negative for the size, relative to it (k,), and its derivatives (k, 6).
-
-    `scale_free` where all lengths may be made longer together: then only their ratio counts.
-    """
-    if scale_free or limits.size is None:
-        values, slopes = np.empty(len(_PAIRS)), np.zeros((len(_PAIRS), 6))
-        for k, (column, sign, short) in enumerate(_PAIRS):
-            values[k] = row[short] - sign * row[column] / limits.ratio
-            slopes[k, short] += 1.0
-            slopes[k, column] -= sign / limits.ratio
-        return values, slopes
-    low, high = limits.size
-    links, longest = np.eye(6)[2:5], np.concatenate([np.eye(6), -np.eye(6)])
-    values = np.concatenate([links @ row - low, high - longest @ row])
-    return values / high, np.concatenate([links, -longest]) / high
+def size_room(row: Floats, limits: Limits) -> tuple[Floats, Floats]:
+    """What must not be negative for the ratio of the lengths (k,), and its derivatives (k, 6)."""
+    values, slopes = np.empty(len(_PAIRS)), np.zeros((len(_PAIRS), 6))
+    for k, (column, sign, short) in enumerate(_PAIRS):
+        values[k] = row[short] - sign * row[column] / limits.ratio
+        slopes[k, short] += 1.0
+        slopes[k, column] -= sign / limits.ratio
+    return values, slopes
 
 
 def transmission_room(row: Floats, inputs: Floats, limits: Limits) -> tuple[Floats, Floats, Floats]:

@@ -19,6 +19,7 @@ Source: docs/theory_design.md, (38) to (40).
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -195,14 +196,16 @@ def _in_planes(base: Floats, lines: Floats) -> list[Floats]:
     With M the block of products the sides `M^T f_a` and `f_b` must be parallel, a cubic along a line.
     """
 
-    def aside(f: Floats) -> float:
+    def aside(place: float, first: Floats, second: Floats) -> float:
+        f = first + place * second
         x, y = f[1:, 1:].T @ f[1:, 0]
         return float(x * f[0, 2] - y * f[0, 1])
 
     found: list[Floats] = []
     for line in lines:
         first, second = (np.einsum("k,kij->ij", half, base) for half in np.split(line, 2))
-        found += [first + x * second for x in cubic_roots(lambda x, a=first, b=second: aside(a + x * b))]
+        roots = cubic_roots(partial(aside, first=first, second=second))
+        found += [first + x * second for x in roots]
     return found
 
 

@@ -231,7 +231,7 @@ class _Wish:
             if there is None:
                 return None
             square, slopes = turning_room(moved)
-            size, size_slopes = size_room(moved, self.limits, scale_free=True)
+            size, size_slopes = size_room(moved, self.limits)
             off, off_slopes = self.missed(there, rising)
             return MinimaxValues(
                 1.0 - square,
