@@ -299,7 +299,11 @@ def near_joints(kind: str, off: float) -> list[dict[str, object]]:
 
 
 @pytest.mark.parametrize(
-    "kind", ["ball on an axis", "two balls", "axes of a U", "C beside R", "U and S in one place"]
+    "kind",
+    [
+        *("ball on an axis", "axes of a U", "C beside R"),
+        *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("two balls", "U and S in one place")),
+    ],
 )
 def test_joints_that_nearly_fall_together_are_analysed_or_refused_in_words(kind: str) -> None:
     answered = 0

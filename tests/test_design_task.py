@@ -11,6 +11,7 @@ from evidence.design.__main__ import FOUND, is_whole, unit_of
 from evidence.design.tasks import tasks
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Refusal
+from sevenbar.design.limits import Limits
 from sevenbar.design.task import (
     Apart,
     DesignTask,
@@ -35,6 +36,7 @@ from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
+from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.rods import nearest_shares
 
@@ -97,6 +99,7 @@ MUSTS = (
         ((FunctionWant(INPUTS, OUTPUTS),), {"musts": MUSTS}),
         ((DwellWant((0.5, 1.0)),), {"musts": MUSTS}),
         ((StraightWant("Q", (0.5, 1.5), 5000.0),), {}),
+        ((PATH,), {"limits": Limits(np.radians(30.0), None, "crank-rocker")}),
         (
             (FigureWant("swing", 60.0, 50.0), FunctionWant(INPUTS, OUTPUTS)),
             {"musts": (FigureMust("swing", 70.0),)},
@@ -112,6 +115,9 @@ def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
     problem.take(z)
     gradient, rooms = here.left_by.T @ here.left, here.room_by
     assert len(here.left) >= 6
+    tried = problem.tried(z)
+    assert tried.left == pytest.approx(here.left, abs=1e-12)
+    assert tried.room == pytest.approx(here.room, abs=1e-12)
     for k in range(len(z)):
         step = np.zeros(len(z))
         step[k] = 1e-5
@@ -287,6 +293,29 @@ def test_a_defective_design_is_refused_however_well_it_fits(rows, others, fault)
         assert answer.met[0].greatest < 1e-9
 
 
+def test_places_with_a_dead_centre_between_are_refused():
+    # a long crank rocks between two dead centres and has two passes
+    draft = Draft.of_linkage(sb.rssr(M=700, N=700, L1=550, L3=250, D=0)).holding()
+    draft = draft.with_point("Q", 3, (40.0, 60.0, 0.0))
+    circuit = next(c for c in draft.linkage.motion(48).circuits if c.input_range is not None)
+    passes = [np.flatnonzero((circuit.branch == b) & (circuit.status == "ok")) for b in (0, 1)]
+
+    def answer(rows, *, closed=False):
+        places = circuit.point("Q").position[rows]
+        model = TaskModel(DesignTask(draft, free(draft, NAMES), (PathWant("Q", places, closed),)))
+        return checked_design(model, as_solution(model, rows, [circuit] * len(rows)))
+
+    over = answer(np.concatenate([passes[0][-6:-2:2], passes[1][2:6:2]]))
+    assert isinstance(over, Refusal)
+    assert over.fault == "dead centre"
+    along = passes[0][2:10:2]
+    assert isinstance(answer(along), TaskDesign)
+    # a closed path needs the way back, too
+    back = answer(along, closed=True)
+    assert isinstance(back, Refusal)
+    assert "between its last point and its first" in back.detail
+
+
 def test_a_missed_must_is_refused_by_its_name():
     places = CIRCUIT.point("Q").position[[1, 4, 9, 13]]
     for must, fault in (
@@ -364,3 +393,12 @@ def test_a_bound_of_1e_6_is_checked_to_its_digits():
     refusal = checked_design(model, solution)
     assert isinstance(refusal, Refusal)
     assert refusal.detail == "the greatest error is 0.002865 deg, at most 5.73e-05 deg is asked"
+
+
+def test_what_shall_be_great_is_better_the_greater_it_is_below_zero_too():
+    want, steps = FigureWant("clearance", "great", 10.0), np.array([-50.0, -1.0, 0.0, 9.9, 10.0, 10.1, 80.0])
+    left, by = zip(*(figure_left(want, x, np.ones(1)) for x in steps), strict=True)
+    assert (np.diff(left) < 0).all()
+    assert np.concatenate(by).max() < 0
+    # without a step or a corner at the unit
+    assert left[4] == pytest.approx((left[3] + left[5]) / 2, abs=1e-4)

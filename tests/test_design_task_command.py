@@ -121,12 +121,13 @@ def test_nothing_found_says_what_was_nearest_and_what_to_ease(task_path):
     text = task_path.read_text().replace('range = "-170:-60"', 'range = "-1:1"')
     task_path.write_text(text)
     read = task_file(task_path)
-    found = TaskDesigns(designed(read.task, count=1, starts=0), read.name, read.source, 0, 0)
+    found = designed(read.task, count=1, starts=0)
     with pytest.raises(RequestError, match="design: ") as caught:
-        found.required()
+        found.required(0)
     assert "a wider range of the joint" in str(caught.value) or "wider bounds" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_front_holds_no_point_that_another_beats():
     linkage = sb.load("planar_4r")
     rows = linkage.motion(18).circuits[0]

@@ -50,7 +50,11 @@ def frame(rng: np.random.Generator, hostility: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "letters", ["", "R", "RRRR", "RRRRRRR", "RSSR", "SSS", "PPPPP", "RSRPR", "SRSRSRR", "XR"]
+    "letters",
+    [
+        *("", "R", "RRRR", "RSSR", "SSS", "PPPPP", "RSRPR", "SRSRSRR", "XR"),
+        pytest.param("RRRRRRR", marks=pytest.mark.slow),
+    ],
 )
 def test_loops_of_hostile_frames_are_answered_or_refused(letters: str) -> None:
     rng, door = np.random.default_rng(len(letters)), Door()

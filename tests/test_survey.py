@@ -247,10 +247,8 @@ def test_a_survey_that_was_killed_goes_on(tmp_path):
         env=dict(os.environ),
     )
     journal = tmp_path / "a" / JOURNAL
-    begin = time.monotonic()
     while not (journal.exists() and journal.read_bytes().count(b"\n") >= 1):
         assert run.poll() is None
-        assert time.monotonic() - begin < 120
         time.sleep(0.05)
     run.send_signal(signal.SIGKILL)
     run.wait()

@@ -75,8 +75,8 @@ def task(
     check_out(single, out, force=force)
     with progress_bar(f"searching designs of {read.name}") as progress:
         search = designed(read.task, count=designs, starts=starts, seed=seed, progress=progress)
-        found = TaskDesigns(search, read.name, read.source, starts, seed)
         # a search that found nothing says why
-        found.required()
+        search.required(starts)
+    found = TaskDesigns(search, read.name, read.source, starts, seed)
     deliver(found, single, out, json=json, force=force)
     end_of_work(found.unfinished)

@@ -99,10 +99,10 @@ def half_angle(directions: Floats) -> float:
     """Half the opening [rad] of the smallest cone about unit vectors (k, 3)."""
 
     def some(count: int) -> Floats:
-        return directions[np.linspace(0, len(directions) - 1, count).astype(int)]
+        return np.asarray(directions[np.linspace(0, len(directions) - 1, count).astype(int)])
 
     def farthest(axis: Floats) -> Floats:
-        return directions[[int((directions @ axis).argmin())]]
+        return np.asarray(directions[[int((directions @ axis).argmin())]])
 
     return float(angles(directions, exchanged(some, farthest)).max())
 
@@ -112,7 +112,7 @@ def least_cone(curve: Along) -> LeastCone:
     ends = curve.edges[[0, -1]]
 
     def some(count: int) -> Floats:
-        return curve.at(np.linspace(*ends, count, endpoint=False))
+        return curve.at(np.linspace(ends[0], ends[1], count, endpoint=False))
 
     def farthest(axis: Floats) -> Floats:
         return curve.at(np.concatenate([ends, dotted(curve, axis).stationary(0)]))

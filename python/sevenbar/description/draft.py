@@ -71,13 +71,18 @@ class Draft:
 
     def with_value(self, place: Place, value: object) -> Draft:
         """The draft with a value at a place, whose tables are made where the file has none."""
+        return self.with_places({place: value})
+
+    def with_places(self, values: Mapping[Place, object]) -> Draft:
+        """The draft with values at places, whose tables are made where the file has none."""
         raw = copy.deepcopy(dict(self.raw))
-        table: Any = raw
-        for part in place[:-1]:
-            if isinstance(part, str) and part not in table:
-                table[part] = {}
-            table = table[part]
-        table[place[-1]] = value
+        for place, value in values.items():
+            table: Any = raw
+            for part in place[:-1]:
+                if isinstance(part, str) and part not in table:
+                    table[part] = {}
+                table = table[part]
+            table[place[-1]] = value
         return replace(self, raw=raw)
 
     def dimension(self, name: str) -> Dimension:
@@ -96,11 +101,8 @@ class Draft:
 
     def with_values(self, values: Mapping[str, float]) -> Draft:
         """The draft with other values of dimensions, by name, each in the file's unit."""
-        draft = self
-        for name, value in values.items():
-            dimension = self.dimension(name)
-            draft = draft.with_value(dimension.place, self.written(dimension, float(value)))
-        return draft
+        own = [(self.dimension(name), float(value)) for name, value in values.items()]
+        return self.with_places({d.place: self.written(d, value) for d, value in own})
 
     def holding(self, follow: Collection[str] = ()) -> Draft:
         """The draft whose dimensions stay as they are while others change, except those that `follow`.

@@ -14,19 +14,19 @@ from sevenbar.design.candidates import (
     CHECK_SAMPLES,
     Candidate,
     Claim,
-    Fault,
     Refusal,
     checked,
     joint_differences,
+    one_way,
     within_limits,
 )
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.match import Placing
-from sevenbar.design.task.musts import pose_rooms, room_unit
+from sevenbar.design.task.musts import FAULTS, pose_rooms, room_unit
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
 from sevenbar.design.task.standing import moved, standing
-from sevenbar.design.task.task import Apart, FigureMust, InBox, InCone, InRange, Most
+from sevenbar.design.task.task import FigureMust, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
 from sevenbar.design.task.words import must_words
@@ -46,8 +46,6 @@ DENSE, MISSED = 361, 1e-4
 
 #: By how much a measure may miss its limit through rounding, relative to it.
 ROUNDING = 1e-6
-
-FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +194,7 @@ def _candidate(
 
 
 def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> Refusal | None:
-    """Why no pass holds all poses that were solved for: each is compared with those of the best pass."""
+    """Why no pass holds all poses that were solved for, each of which some pass comes near."""
     loop, q = model.loop, solution.seed.poses
     begin = sum(len(inputs) for inputs in solution.inputs[:number])
     poses = q[begin : begin + len(solution.inputs[number])]
@@ -210,7 +208,9 @@ def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> R
     best, expected = (float(np.linalg.norm(each)) / math.sqrt(count) for each in (own[0].errors, off))
     if best <= 2 * expected * (1 + TORN) + TORN * one.unit:
         return None
-    return Refusal(
+    nearest = np.argmin([np.abs(way.errors).reshape(len(poses), -1).max(axis=1) for way in own], axis=0)
+    circuits, branches = (np.array([[way.circuit, way.branch] for way in own])[nearest, k] for k in (0, 1))
+    return one_way(circuits, branches) or Refusal(
         "circuit", "no pass goes through all the poses that were solved for: it must be taken apart"
     )
 

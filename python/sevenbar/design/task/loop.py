@@ -9,10 +9,15 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.factors import Product
 from sevenbar.kinematics.following import Following
+from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.word import Carried
+
+#: Inputs of a turn at which circuits are measured and wants begun: what lies between rows is found there.
+SAMPLES = 72
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +70,7 @@ class TaskLoop:
         self.coupler = Following.among(self.numbers.dimensions, self.free)
         self._points: dict[Carried, int] = {}
         self._loop: tuple[bytes, NumberedLoop] | None = None
+        self._motion: tuple[bytes, Motion | None] | None = None
 
     @property
     def start(self) -> Floats:
@@ -155,5 +161,15 @@ class TaskLoop:
 
     def drawn(self, values: Floats) -> Draft:
         """The draft with these values (k,)."""
-        names = [self.numbers.names[i] for i in self.free]
-        return self.draft.with_values(dict(zip(names, map(float, values), strict=True)))
+        own = [(self.numbers.dimensions[i], float(x)) for i, x in zip(self.free, values, strict=True)]
+        return self.draft.with_places({d.place: self.draft.written(d, x) for d, x in own})
+
+    def motion(self, values: Floats) -> Motion | None:
+        """The motion at these values (k,), kept for the next question; `None` where they make no linkage."""
+        key = values.tobytes()
+        if self._motion is None or self._motion[0] != key:
+            try:
+                self._motion = key, self.drawn(values).linkage.motion(SAMPLES)
+            except (DescriptionError, RequestError, NotCoveredError):
+                self._motion = key, None
+        return self._motion[1]

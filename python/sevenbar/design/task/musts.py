@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.candidates import Fault
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must, PoseMust
 from sevenbar.kinematics.ball_angle import has_length, line_angles, rod
@@ -18,6 +19,9 @@ from sevenbar.kinematics.stops import Three
 
 #: Rooms (n, r) at n poses, and their slopes (n, r, unknowns).
 Rooms = tuple[Floats, Floats]
+
+#: What is at fault where a must about poses is missed.
+FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callable[[Here], Rooms]]]:
@@ -76,13 +80,18 @@ def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[i
     return loop.place(link, (0.0, 0.0, 0.0)), loop.place(link, (x, y, z))
 
 
-def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
+def places_in(loop: TaskLoop, must: InBox) -> list[int]:
+    """The numbers of the points and joints that stay in a box."""
     joints = [joint.name for joint in loop.linkage.joints]
     points = [point.name for point in loop.linkage.points]
-    numbers = [
+    return [
         loop.named(name) if name in points else loop.joint(joints.index(name), ahead=True)
         for name in must.names
     ]
+
+
+def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
+    numbers = places_in(loop, must)
     low, high = np.array(must.low), np.array(must.high)
 
     def rooms(here: Here) -> Rooms:

@@ -12,17 +12,18 @@ Source: docs/theory_design.md, (29).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import STILL, Placing, placed
-from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.musts import FAULTS, pose_rooms
 from sevenbar.design.task.rssr import loop_of
 from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
@@ -56,7 +57,7 @@ class TaskSeed:
     """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
 
     `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
-    input gains in a round of the circuit, 0 where it does not go round.
+    input gains in a round of the circuit, 0 where it does not go round; `circuit` is its number where begun.
     """
 
     values: Floats
@@ -66,17 +67,22 @@ class TaskSeed:
     error: float
     placing: Placing = STILL
     period: float = 0.0
+    circuit: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class TaskValues:
-    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes (.., unknowns or 0), and the placing."""
+    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes (.., unknowns or 0), and the placing.
+
+    `least` has the least room of each kind of must, by what is at fault where it is missed.
+    """
 
     left: Floats
     left_by: Floats
     room: Floats
     room_by: Floats
     placing: Placing
+    least: Mapping[Fault, float]
 
 
 class TaskModel:
@@ -281,20 +287,23 @@ class TaskProblem:
             parts.append((left, by))
         placing = self._placing(z, [left for left, _ in parts])
         lefts, lefts_by = self._placed(z, parts, placing)
-        rooms, rooms_by = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
+        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
         figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
+        least: dict[Fault, float] = {"figure": float(figures[2].min(initial=math.inf))}
+        for fault, own_room, _ in rooms:
+            least[fault] = min(least.get(fault, math.inf), float(own_room.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
         left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]])
-        room = np.concatenate([*rooms, figures[2]])
+        room = np.concatenate([*(own_room for _, own_room, _ in rooms), figures[2]])
         left_by, room_by = np.empty((len(left), 0)), np.empty((len(room), 0))
         if slopes:
             by_all = (w * r for w, r in zip(weights, lefts_by, strict=True))
             left_by = np.concatenate([*by_all, self._wide(figures[1])])
-            room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
+            room_by = np.concatenate([*(by for _, _, by in rooms), self._wide(figures[3])])
         good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
-        return TaskValues(left, left_by, room, room_by, placing) if good else None
+        return TaskValues(left, left_by, room, room_by, placing, least) if good else None
 
     def _wide(self, by: Floats) -> Floats:
         """Slopes (r, k) by the free numbers as those by all unknowns."""
@@ -380,30 +389,25 @@ class TaskProblem:
 
     def _rooms(
         self, z: Floats, here: Here, wants: Sequence[tuple[Floats, Floats]]
-    ) -> tuple[list[Floats], list[Floats]]:
-        rooms, slopes = [np.empty(0)], [np.empty((0, len(z)))]
+    ) -> list[tuple[Fault, Floats, Floats]]:
+        """Rooms with their slopes, each with what is at fault where it is missed."""
+        rooms: list[tuple[Fault, Floats, Floats]] = []
         if self.model.transmits or self.model.turns:
-            # first, where the goal "transmission" looks for them
-            for values, by in self._transmission(z):
-                rooms.append(values)
-                slopes.append(by)
+            rooms += self._transmission(z)  # first, where the goal "transmission" looks for them
         if self.model.rooms:
             wide = here.along(self._stations.by)
-            for _, room in self.model.rooms:
+            for place, room in self.model.rooms:
                 values, by = room(wide)
-                rooms.append(values.ravel())
-                slopes.append(self._joined(by.reshape(values.size, -1)))
+                fault = FAULTS[type(self.model.task.musts[place])]
+                rooms.append((fault, values.ravel(), self._joined(by.reshape(values.size, -1))))
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
-                values, by = self._order(z, i)
-                rooms.append(values)
-                slopes.append(by)
+                rooms.append(("order", *self._order(z, i)))
         for i, must in self.model.most:
             at = slice(None) if must.at is None else list(must.at)
             left, by = wants[i][0][at], wants[i][1][at]
-            rooms += [must.most - left, must.most + left]
-            slopes += [-by, by]
-        return rooms, slopes
+            rooms += [("error", must.most - left, -by), ("error", must.most + left, by)]
+        return rooms
 
     def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
         """The ways between free inputs that follow each other, a round at most, in the seed's sense."""
@@ -424,7 +428,7 @@ class TaskProblem:
         found[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
         return found
 
-    def _transmission(self, z: Floats) -> list[tuple[Floats, Floats]]:
+    def _transmission(self, z: Floats) -> list[tuple[Fault, Floats, Floats]]:
         """The transmission angle of an RSSR over what is used, and that its input turns."""
         loop, limits = self.loop, self.model.task.limits
         places = {d.place[1]: i for i, d in enumerate(loop.numbers.dimensions) if d.place[0] == "rssr"}
@@ -436,13 +440,14 @@ class TaskProblem:
             every[:, columns] = by_row
             return self._wide(loop.all_slopes(self.values(z), every))
 
-        found = []
+        found: list[tuple[Fault, Floats, Floats]] = []
         if self.model.transmits and len(self._stations.fixed):
             room, by_row, by_input = transmission_room(row, self._stations.inputs(z), limits)
-            found.append((room, wide(by_row) + by_input[:, None] * self._stations.by))
+            by = wide(by_row) + by_input[:, None] * self._stations.by
+            found.append(("transmission", room, by))
         if self.model.turns:
             room, by_row = turning_room(row)
-            found.append((room, wide(by_row)))
+            found.append(("motion type", room, wide(by_row)))
         return found
 
     def _figures(self, values: Floats, *, slopes: bool) -> tuple[Floats, Floats, Floats, Floats] | None:

@@ -99,7 +99,8 @@ class FigureWant:
     """A measure of the circuit by its name ("swing", "time_ratio", "peak_torque", ..): a value, or the most.
 
     `value` is in the unit that the measure is read in (degrees, N m, ..), or "small" or "great". The residual
-    is what it is off, relative to `unit`; for "small" the figure itself and for "great" `unit / figure`.
+    is what it is off, relative to `unit`; for "small" the figure itself, and for "great" `unit / figure`,
+    below the unit `2 - figure / unit`.
     """
 
     name: str

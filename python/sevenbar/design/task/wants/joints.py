@@ -56,23 +56,24 @@ class ReadingsWanted:
         scaled: bool,  # noqa: ARG002
     ) -> list[Begun]:
         """From the best starts of the inputs."""
-        found: list[Begun] = []
-        fixed = self.stations.fixed
-        for phase in one.phases(fixed, free=self._input_free):
-            rows = one.nearest(fixed + phase)
-            if rows is None:
-                continue
-            off = one.outputs[rows] - self.readings
-            slope = np.gradient(one.outputs, one.inputs)[rows]
-            gap = fixed + phase - one.inputs[rows]
-            off = off + slope * (short_way(gap) if one.turns else gap)
-            zero = self._zero
-            if self._output_free:
-                zero = off[0] + float(self._apart(off - off[0]).mean())
-            error = float(((self._apart(off - zero) / self.unit) ** 2).mean())
-            u = np.array([phase] * self._input_free + [zero] * self._output_free)
-            found.append(Begun(u, rows, error, placing))
-        return sorted(found, key=lambda begun: begun.error)[:TRIED]
+        fixed, inputs, outputs = self.stations.fixed, one.inputs, one.outputs
+        phases, rows = one.begins(fixed, free=self._input_free)
+        gap = fixed + phases[:, None] - inputs[rows]
+        slope = np.gradient(outputs, inputs)[rows]
+        off = outputs[rows] - self.readings + slope * (short_way(gap) if one.turns else gap)
+        zeros = np.full((len(rows), 1), self._zero)
+        if self._output_free:
+            zeros = off[:, :1] + self._apart(off - off[:, :1]).mean(axis=1, keepdims=True)
+        errors = ((self._apart(off - zeros) / self.unit) ** 2).mean(axis=1)
+        return [
+            Begun(
+                np.array([phases[k]] * self._input_free + [zeros[k, 0]] * self._output_free),
+                rows[k],
+                float(errors[k]),
+                placing,
+            )
+            for k in np.argsort(errors, kind="stable")[:TRIED]
+        ]
 
     def errors(
         self,

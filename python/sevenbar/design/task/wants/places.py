@@ -81,11 +81,9 @@ class PlacesWanted:
     def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         assert self.timing is not None
         found: list[Begun] = []
-        for phase in one.phases(self.timing, free=self.phase):
-            rows = one.nearest(self.timing + phase)
-            if rows is not None:
-                u = np.array([phase] if self.phase else [])
-                found.append(self._begun(u, rows, curve, placing))
+        for phase, rows in zip(*one.begins(self.timing, free=self.phase), strict=True):
+            u = np.array([phase] if self.phase else [])
+            found.append(self._begun(u, rows, curve, placing))
         return sorted(found, key=lambda begun: begun.error)[:1]
 
     def _begun(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> Begun:

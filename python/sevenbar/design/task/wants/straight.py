@@ -68,10 +68,7 @@ class LineWanted:
         """On a pass that has the range of inputs, with the best line of its rows."""
         curve = one.named(self._name)
         found = []
-        for turn in one.phases(self.stations.fixed, free=False):
-            rows = one.nearest(self.stations.fixed + turn)
-            if rows is None:
-                continue
+        for rows in one.begins(self.stations.fixed, free=False)[1][:1]:
             p = curve[rows]
             middle = p.mean(axis=0)
             way = np.linalg.svd(p - middle)[2][0]
@@ -79,7 +76,7 @@ class LineWanted:
             error = float(((p - middle - along[:, None] * way) ** 2).sum() / p.size / self.unit**2)
             u = np.concatenate([middle + along.min() * way, middle + along.max() * way])
             found.append(Begun(u, rows, error, placing))
-        return found[:1]
+        return found
 
     def errors(
         self,
