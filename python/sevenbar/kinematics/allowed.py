@@ -100,11 +100,18 @@ def _spans(course: JointCourse, circuit: Circuit, stops: list[_Stop]) -> tuple[A
                     ends(before % count) if closed or before >= 0 else "",
                     ends(after % count) if closed or after < count else "",
                     float(share),
-                    sum(int(((back > marks[k]) & (back < marks[k + 1])).sum()) for k in run),
+                    _passed(back, float(marks[run[0]]), float(share) * length, length),
                 )
             )
         run = []
     return tuple(found)
+
+
+def _passed(places: Floats, start: float, way: float, length: float) -> int:
+    """How many places a way from a start passes, over the end as well; what is at both ends is one."""
+    ahead = np.sort((places - start) % length)
+    apart = np.diff(ahead, prepend=-length) > SAME * length
+    return int(np.count_nonzero(apart & (ahead > 0.0) & (ahead < way)))
 
 
 def _ranges(linkage: Solvable, course: JointCourse) -> Iterator[_Stop]:
