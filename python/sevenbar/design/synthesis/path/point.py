@@ -10,7 +10,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
-from sevenbar.kinematics.factors import TurnAndSlide
 from sevenbar.kinematics.following import Following
 from sevenbar.kinematics.geometry import Point
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers, Slopes
@@ -111,11 +110,6 @@ class PointLoop:
         letters = {step.letter for step in word.steps[: point.steps]}
         if self.dimensions[0].place[0] == "joint" or letters & {"P", "H"}:
             return None
-        numbers = {d.place: k for k, d in enumerate(self.dimensions)}
-        products = (*word.fixed[: point.steps], point.frame)
-        factors = [factor for product in products for factor in product.factors]
-        slides = [f.slide for f in factors if isinstance(f, TurnAndSlide) and f.slide in numbers]
-        reach = sum(most[numbers[slide]] for slide in slides if slide is not None)
-        place = point.place
-        coordinates = point.at if place is None else [most[numbers[*place, k]] for k in range(3)]
-        return reach + math.hypot(*coordinates)
+        slides = [k for product in (*word.fixed[: point.steps], point.frame) for k in product.slides]
+        coordinates = point.at if point.place is None else [most[k] for k in point.place]
+        return sum(most[k] for k in slides) + math.hypot(*coordinates)
