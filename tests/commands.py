@@ -12,8 +12,7 @@ from sevenbar.commands.cli import main
 def sevenbar(*arguments, cwd=None, before=""):
     """A call of the program; `before` is run in it first, and it is then a program of its own.
 
-    Others are made within this process, which saves the second that a program needs to begin; the tests of the
-    documentation call the program itself.
+    Others are made within this process, which saves the second that a program needs to begin.
     """
     if before:
         code = f"import sys\n{before}\nfrom sevenbar.commands.cli import main\nmain()"

@@ -163,17 +163,21 @@ def test_a_linkage_that_does_not_close_is_an_answer(tmp_path):
 
 @pytest.mark.slow
 def test_animation_goes_where_it_is_told(tmp_path):
-    run = sevenbar("analyze", "rssr", "--samples", 36, "--animate", tmp_path / "move.gif")
+    run = sevenbar("analyze", "rssr", "--samples", 36, "--animate", tmp_path / "move.gif", "--seconds", 0.4)
     assert run.returncode == 0, run.stderr
     assert (tmp_path / "move.gif").read_bytes()[:6] == b"GIF89a"
-    again = sevenbar("analyze", "rssr", "--samples", 36, "--json", "--animate", tmp_path / "again.gif")
+    again = sevenbar(
+        "analyze", "rssr", "--samples", 36, "--json", "--animate", tmp_path / "again.gif", "--seconds", 0.4
+    )
     assert json.loads(again.stdout)["samples"] == 36
     assert (tmp_path / "again.gif").exists()
 
 
 @pytest.mark.slow
 def test_an_animation_goes_into_the_folder_that_is_made_for_the_report(tmp_path):
-    asked = ["analyze", "rssr", "--samples", 36, "--figures", "svg", "--out", "new/report"]
+    asked = [
+        "analyze", "rssr", "--samples", 36, "--figures", "svg", "--out", "new/report", "--seconds", 0.4
+    ]  # fmt: skip
     run = sevenbar(*asked, "--animate", "new/../new/report/move.gif", cwd=tmp_path)
     assert run.returncode == 0, run.stderr
     folder = tmp_path / "new" / "report"

@@ -237,3 +237,19 @@ def test_a_length_that_is_lost_beside_the_others_is_the_callers_mistake(tmp_path
         "linkage: link 1: its two joints coincide, so it has no length; "
         "give it one that is not lost beside the others"
     )
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        ("forces", "rssr_press", "--counterweights", ""),
+        ("forces", "rssr_press", "--joint", " , ", "--out", "here"),
+        ("tolerance", "rssr", "--follow", ""),
+        ("calibrate", "rssr", "motion.csv", "--hold", ""),
+    ],
+)
+def test_an_option_that_lists_nothing_is_a_mistake(call, tmp_path):
+    (tmp_path / "motion.csv").write_text("crank [deg],rocker [deg]\n0,1\n10,2\n20,4\n")
+    option = next(word for word in call if word.startswith("--"))
+    call = [str(tmp_path / word) if word == "motion.csv" else word for word in call]
+    assert mistake(*call) == f"{option}: is empty; give what it lists, or leave it out"

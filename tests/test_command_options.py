@@ -183,7 +183,7 @@ def test_the_shell_completes_commands_options_and_names(line, words):
         "COMP_CWORD": str(line.count(" ")),
     }
     command = [sys.executable, "-m", "sevenbar.commands.cli"]
-    run = subprocess.run(command, env=told, capture_output=True, text=True, check=False, timeout=100)
+    run = subprocess.run(command, env=told, capture_output=True, text=True, check=False, timeout=600)
     assert set(run.stdout.split()) == words
 
 

@@ -11,6 +11,7 @@ from evidence.design.__main__ import FOUND, is_whole, unit_of
 from evidence.design.tasks import tasks
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Refusal
+from sevenbar.design.limits import Limits
 from sevenbar.design.task import (
     Apart,
     DesignTask,
@@ -22,10 +23,12 @@ from sevenbar.design.task import (
     InBox,
     InCone,
     InRange,
+    Most,
     PathWant,
     PoseWant,
     StraightWant,
 )
+from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.levenberg import nearest_least
 from sevenbar.design.task.musts import pose_rooms
@@ -33,6 +36,7 @@ from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed
 from sevenbar.design.task.search import designed
 from sevenbar.design.task.solve import Solved, solved
 from sevenbar.design.task.starts import seeds
+from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.rods import nearest_shares
 
@@ -95,6 +99,7 @@ MUSTS = (
         ((FunctionWant(INPUTS, OUTPUTS),), {"musts": MUSTS}),
         ((DwellWant((0.5, 1.0)),), {"musts": MUSTS}),
         ((StraightWant("Q", (0.5, 1.5), 5000.0),), {}),
+        ((PATH,), {"limits": Limits(np.radians(30.0), None, "crank-rocker")}),
         (
             (FigureWant("swing", 60.0, 50.0), FunctionWant(INPUTS, OUTPUTS)),
             {"musts": (FigureMust("swing", 70.0),)},
@@ -110,6 +115,9 @@ def test_slopes_of_every_want_and_must_are_those_of_differences(wants, more):
     problem.take(z)
     gradient, rooms = here.left_by.T @ here.left, here.room_by
     assert len(here.left) >= 6
+    tried = problem.tried(z)
+    assert tried.left == pytest.approx(here.left, abs=1e-12)
+    assert tried.room == pytest.approx(here.room, abs=1e-12)
     for k in range(len(z)):
         step = np.zeros(len(z))
         step[k] = 1e-5
@@ -165,16 +173,37 @@ def test_the_nearest_places_of_two_rods_are_those_of_all():
 
 
 def test_least_squares_follow_a_bent_valley_and_stop_at_bounds():
+    tried, taken = [], []
+
     def valley(z):
-        left = np.array([100 * (z[1] - z[0] ** 2), 1 - z[0], 0.0])
-        return left, np.array([[-200 * z[0], 100.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1e-18]])
+        tried.append(z)
+        return np.array([100 * (z[1] - z[0] ** 2), 1 - z[0], 0.0])
+
+    def slopes(z):
+        taken.append(z)
+        return np.array([[-200 * z[0], 100.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1e-18]])
 
     wide = np.full(3, 9.0)
-    ways = {"evaluations": 200, "first": 1e-3, "taken": lambda _: None}
-    found = nearest_least(valley, np.array([-1.2, 1.0, 0.5]), -wide, wide, **ways)
-    assert found[:2] == pytest.approx([1.0, 1.0], abs=1e-12)
-    low = nearest_least(valley, np.array([-1.2, 1.0, 0.5]), -wide, np.array([0.5, 9.0, 9.0]), **ways)
-    assert low[:2] == pytest.approx([0.5, 0.25], abs=1e-9)
+    ways = {"evaluations": 200, "first": 1e-3}
+    found = nearest_least(valley, slopes, np.array([-1.2, 1.0, 0.5]), -wide, wide, **ways)
+    assert found.z[:2] == pytest.approx([1.0, 1.0], abs=1e-12)
+    # slopes cost the most, so they are asked for where a step was taken alone
+    assert len(taken) < len(tried) < 200
+    assert all((valley(a) ** 2).sum() > (valley(b) ** 2).sum() for a, b in pairwise(taken))
+    low = nearest_least(valley, slopes, np.array([-1.2, 1.0, 0.5]), -wide, np.array([0.5, 9.0, 9.0]), **ways)
+    assert low.z[:2] == pytest.approx([0.5, 0.25], abs=1e-9)
+
+
+def test_least_squares_say_where_no_step_leads_on():
+    def residuals(z):
+        return np.array([z[0]]) if z[0] >= 1 else None
+
+    ways = {"evaluations": 200, "first": 1e-3}
+    wide = np.full(1, 9.0)
+    found = nearest_least(residuals, lambda _: np.eye(1), np.array([2.0]), -wide, wide, **ways)
+    assert found.stuck
+    assert found.z[0] == pytest.approx(1.0, abs=1e-6)
+    assert nearest_least(residuals, lambda _: np.eye(1), np.zeros(1), -wide, wide, **ways) is None
 
 
 CHOSEN = {"path": (0, 3, 14), "function": (6, 10, 12), "poses": (4, 10), "cusp": (3,)}
@@ -264,6 +293,29 @@ def test_a_defective_design_is_refused_however_well_it_fits(rows, others, fault)
         assert answer.met[0].greatest < 1e-9
 
 
+def test_places_with_a_dead_centre_between_are_refused():
+    # a long crank rocks between two dead centres and has two passes
+    draft = Draft.of_linkage(sb.rssr(M=700, N=700, L1=550, L3=250, D=0)).holding()
+    draft = draft.with_point("Q", 3, (40.0, 60.0, 0.0))
+    circuit = next(c for c in draft.linkage.motion(48).circuits if c.input_range is not None)
+    passes = [np.flatnonzero((circuit.branch == b) & (circuit.status == "ok")) for b in (0, 1)]
+
+    def answer(rows, *, closed=False):
+        places = circuit.point("Q").position[rows]
+        model = TaskModel(DesignTask(draft, free(draft, NAMES), (PathWant("Q", places, closed),)))
+        return checked_design(model, as_solution(model, rows, [circuit] * len(rows)))
+
+    over = answer(np.concatenate([passes[0][-6:-2:2], passes[1][2:6:2]]))
+    assert isinstance(over, Refusal)
+    assert over.fault == "dead centre"
+    along = passes[0][2:10:2]
+    assert isinstance(answer(along), TaskDesign)
+    # a closed path needs the way back, too
+    back = answer(along, closed=True)
+    assert isinstance(back, Refusal)
+    assert "between its last point and its first" in back.detail
+
+
 def test_a_missed_must_is_refused_by_its_name():
     places = CIRCUIT.point("Q").position[[1, 4, 9, 13]]
     for must, fault in (
@@ -277,3 +329,76 @@ def test_a_missed_must_is_refused_by_its_name():
         answer = checked_design(model, as_solution(model, [1, 4, 9, 13], [CIRCUIT] * 4))
         assert isinstance(answer, Refusal)
         assert answer.fault == fault
+
+
+WAVED = FunctionWant(
+    CIRCUIT.input[4:16], CIRCUIT.output[4:16] + math.radians(2) * np.sin(4 * CIRCUIT.input[4:16])
+)
+
+
+@pytest.mark.parametrize(
+    "must",
+    [Apart((1, 3), 892.0), InBox((-763.0,) * 3, (763.0,) * 3, ("ball_b", "Q"))],
+    ids=["distance", "box"],
+)
+def test_the_least_greatest_error_is_found_up_to_a_distance_or_the_wall_of_a_box(must):
+    bounds = free(START, ("L1", "M", "N"), 60.0)
+
+    def best(goal, musts):
+        return designed(DesignTask(START, bounds, (WAVED,), musts, goal=goal), count=1, starts=0).designs[0]
+
+    alone, held, squares = best("minimax", ()), best("minimax", (must,)), best("least squares", (must,))
+    # the must decides: nothing of its room is left
+    assert abs(held.room) < 1e-9
+    assert held.optimality < 1e-9
+    assert alone.met[0].greatest < held.met[0].greatest < squares.met[0].greatest
+
+
+@pytest.mark.parametrize("timing", [None, INPUTS[2:3]])
+def test_a_single_pose_is_reached_with_its_musts(timing):
+    want = PoseWant(3, poses_of(3, ROWS[2:3]), 100.0, timing)
+    task = DesignTask(START, free(START, NAMES), (want,), (InCone("ball_a", 3.0),))
+    (design,) = designed(task, count=1, starts=0).designs
+    assert design.met[0].greatest < 1e-9
+    assert design.room > 0
+
+
+@pytest.mark.parametrize("want", [FunctionWant(INPUTS[::-1], OUTPUTS[::-1]), PathWant("Q", PLACES[::-1])])
+def test_what_is_wanted_backwards_is_found_as_well(want):
+    (design,) = designed(DesignTask(START, free(START, NAMES), (want,)), count=1, starts=0).designs
+    assert design.met[0].greatest < 1e-9
+
+
+def test_a_closed_path_of_two_turns_of_the_input_is_followed_over_both():
+    known = Draft.of_linkage(sb.load("myard_5r")).with_point("P", 2, (10.0, 20.0, 30.0))
+    (circuit,) = known.linkage.motion(36).circuits
+    assert circuit.turns == 2
+    want = PathWant("P", circuit.point("P").position[::6], closed=True)
+    task = DesignTask(known, (FreeNumber("P.u", 5.0, 15.0),), (want,), (InRange("theta_2", -4.0, 4.0),))
+    (design,) = designed(task, count=1, starts=0).designs
+    along = DesignAlong(task, design)
+    assert np.ptp(along.ways[0].inputs) == pytest.approx(4 * math.pi, rel=0.01)
+    steps = np.linalg.norm(np.diff(along.places(0)[:, 0], axis=0), axis=1)
+    # to the place from which it began
+    assert np.linalg.norm(along.places(0)[-1, 0] - want.places[0]) < 2 * steps.max()
+
+
+def test_a_bound_of_1e_6_is_checked_to_its_digits():
+    model = TaskModel(DesignTask(START, free(START, NAMES), (FUNCTION,), (Most(0, 1e-6),)))
+    solution = solved(model, seeds(model, 0, 0, lambda: None)[0])
+    assert isinstance(checked_design(model, solution), TaskDesign)
+    off = 5e-5 * np.array([1, -1, 1, -1, 1, -1])
+    other = FunctionWant(FUNCTION.input, FUNCTION.output + off, (None, None))
+    model = TaskModel(DesignTask(START, free(START, NAMES), (other,), (Most(0, 1e-6),)))
+    refusal = checked_design(model, solution)
+    assert isinstance(refusal, Refusal)
+    assert refusal.detail == "the greatest error is 0.002865 deg, at most 5.73e-05 deg is asked"
+
+
+def test_what_shall_be_great_is_better_the_greater_it_is_below_zero_too():
+    want, steps = FigureWant("clearance", "great", 10.0), np.array([-50.0, -1.0, 0.0, 9.9, 10.0, 10.1, 80.0])
+    left, by = zip(*(figure_left(want, x, np.ones(1)) for x in steps), strict=True)
+    assert (np.diff(left) < 0).all()
+    assert np.concatenate(by).max() < 0
+    # without a step or a corner at the unit
+    assert left[4] == pytest.approx((left[3] + left[5]) / 2, abs=1e-4)

@@ -17,6 +17,7 @@ from sevenbar.design.task.file.reader import task_file
 from sevenbar.design.task.front import pareto
 from sevenbar.design.task.report import TaskDesigns, task_report
 from sevenbar.design.task.search import designed
+from sevenbar.design.task.words import want_words
 from sevenbar.errors import RequestError
 
 #: Readings of the planar four-bar of 40, 100, 80 and 90 mm, by the law of cosines.
@@ -59,6 +60,22 @@ def task_path(tmp_path):
     path = tmp_path / "task.toml"
     path.write_text(TASK.format(*np.degrees(readings.output[rows])))
     return path
+
+
+@pytest.mark.parametrize(
+    ("want", "words"),
+    [
+        (FigureWant("swing", 60.0), "swing 60 deg"),
+        (FigureWant("swing", "small"), "swing small"),
+        (FigureWant("time_ratio", 1.2), "time_ratio 1.2"),
+        (
+            FunctionWant(np.radians([0.0, 10.0, 20.0]), np.radians([5.0, 9.0, 5.0])),
+            "rocker over crank: 3 readings, 0 to 20 deg in, 5 deg out",
+        ),
+    ],
+)
+def test_a_want_in_words_has_its_unit(want, words):
+    assert want_words(want, sb.load("rssr")) == words
 
 
 def test_the_design_of_known_readings_is_found_and_reported(task_path, tmp_path):
@@ -104,12 +121,13 @@ def test_nothing_found_says_what_was_nearest_and_what_to_ease(task_path):
     text = task_path.read_text().replace('range = "-170:-60"', 'range = "-1:1"')
     task_path.write_text(text)
     read = task_file(task_path)
-    found = TaskDesigns(designed(read.task, count=1, starts=0), read.name, read.source, 0, 0)
+    found = designed(read.task, count=1, starts=0)
     with pytest.raises(RequestError, match="design: ") as caught:
-        found.required()
+        found.required(0)
     assert "a wider range of the joint" in str(caught.value) or "wider bounds" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_a_front_holds_no_point_that_another_beats():
     linkage = sb.load("planar_4r")
     rows = linkage.motion(18).circuits[0]

@@ -192,6 +192,19 @@ def test_a_linkage_may_stand_in_the_file_itself(tmp_path):
     assert read_task(written(tmp_path, body, linkage="")).draft.linkage.kind == "RRRR"
 
 
+def test_files_that_a_linkage_in_the_task_names_lie_beside_it_and_its_mistakes_have_their_place(tmp_path):
+    inner = gallery_text("planar_4r").replace("[[", "[[linkage.").replace("\n[drive", "\n[linkage.drive")
+    head, _, rest = inner.partition("\n[")
+    load = '[[linkage.load]]\nlink = 3\ntorque = [0, 0, 2]\ntable = "press.csv"\n'
+    (tmp_path / "press.csv").write_text("theta_1 [deg],factor\n0,1\n180,0.5\n360,1\n")
+    task = written(tmp_path, FREE + FUNCTION + f"[linkage]\n{head}\n[{rest}\n{load}", linkage="")
+    (row,) = read_task(task).draft.raw["load"]
+    assert row["table"][1] == [180.0, 0.5]
+    (tmp_path / "press.csv").unlink()
+    with pytest.raises(DescriptionError, match=r"task\.toml: linkage\.load\[1\]\.table: .*press\.csv"):
+        read_task(task)
+
+
 def test_a_closed_path_does_not_repeat_its_first_place(tmp_path):
     rows = "[[0, 100], [20, 110], [40, 100], [0, 100]]"
     body = FREE + f'[[want]]\nkind = "path"\npoint = "P"\nplaces = {rows}\n'
@@ -271,7 +284,12 @@ WRONG = {
     "dwell over a turn": ("planar.toml", FREE + "[[want]]\nkind = 'dwell'\nrange = '0:400'\n", "task.toml: want[1].range: goes over 400 deg of the input"),
     "unknown joint": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'range'\njoint = 'theta_9'\nrange = '0:9'\n", "task.toml: must[1].joint: no joint 'theta_9'"),
     "range of a ball": ("drawn.toml", '[free]\n"crank.z" = "-5:5"\n' + FUNCTION + "[[must]]\nkind = 'range'\njoint = 'A'\nrange = '0:9'\n", "task.toml: must[1].joint: joint 'A' is a ball"),
-    "cone of no ball": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'cone'\njoint = 'theta_1'\nangle = 15\n", "task.toml: must[1].joint: 'theta_1' is neither a ball nor a U joint, so it has no cone"),
+    "cone about a rod on the far side": ("swash_plate", "[free]\nknuckle.x = '50:60'\n[[want]]\nkind = 'dwell'\nrange = '0:20deg'\n[[must]]\nkind = 'cone'\njoint = 'knuckle'\nangle = 15\n", "task.toml: must[1].seat: left out, it goes along the rod, from which knuckle is 137.2 to 169.7 deg off at the start; give"),
+    "poses where measures are wanted": ("planar.toml", FREE + "[[want]]\nkind = 'figure'\nname = 'swing'\nvalue = 60\n[[must]]\nkind = 'range'\njoint = 'theta_3'\nrange = '0:90'\n", "task.toml: must[1]: is about poses, and measures alone are wanted; bound a measure"),
+    "bend of a hinge": ("drawn.toml", FREE.replace("length_1", "A.x") + "[[want]]\nkind = 'figure'\nname = 'ball_angle:crank'\nvalue = 'small'\n", "task.toml: want[1].name: 'crank' is not a joint S or U"),
+    "a box without the ground": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'box'\nlow = [-200, 10, -200]\nhigh = [200, 200, 80]\n", "task.toml: must[1].names: theta_4 stands still at ("),
+    "a box of a linkage anywhere": ("planar.toml", 'placement = "free"\n' + FREE + PATH + "[[must]]\nkind = 'box'\nlow = [-200, -20, -200]\nhigh = [200, 200, 80]\n", "task.toml: must[1]: a box stands in space, and with placement 'free' the linkage may stand"),
+    "cone of no ball": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'cone'\njoint = 'theta_1'\nangle = 15\n", "task.toml: must[1].joint: 'theta_1' is not a joint S or U, which a cone is of; this linkage has none"),
     "cone of no joint": ("drawn.toml", '[free]\n"crank.z" = "-5:5"\n' + FUNCTION + "[[must]]\nkind = 'cone'\njoint = 'C'\nangle = 15\n", "task.toml: must[1].joint: no joint 'C'; this linkage has crank, A, B, rocker"),
     "cone too wide": ("drawn.toml", '[free]\n"crank.z" = "-5:5"\n' + FUNCTION + "[[must]]\nkind = 'cone'\njoint = 'A'\nangle = 190\n", "task.toml: must[1].angle: 190 deg is no cone"),
     "empty box": ("planar.toml", FREE + PATH + "[[must]]\nkind = 'box'\nlow = [0, 0, 5]\nhigh = [9, 9, 5]\n", "task.toml: must[1].low: empty along z: 5 is not below 5"),

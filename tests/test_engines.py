@@ -118,6 +118,7 @@ def test_a_plate_on_the_ground_moves_and_drives_in_exudyn_as_sevenbar_says(input
     assert max(turns(run), slides(run), run.tilt, run.gap / run.course.circuit.size) < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_gallery_linkages_move_in_mujoco_as_sevenbar_says(name):
     run = simulate(sb.load(name), "mujoco", steps=3600)

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -35,13 +36,18 @@ def link_frames(linkage, circuit, row):
     return frames
 
 
-def posed(name, tmp_path, to):
-    """The file of a gallery linkage in a pose of row 5 of its first circuit; the motion, the circuit, the row."""
-    linkage = sb.load(name)
-    motion = linkage.motion(24)
-    circuit = motion.circuits[0]
-    export(motion, to, tmp_path / f"a.{to}", at=float(circuit.input[5]))
-    return motion, circuit, 5
+@pytest.fixture(scope="module")
+def posed(tmp_path_factory):
+    """The file of a gallery linkage in a pose of row 5 of its first circuit: the motion, the circuit, the row, the folder."""
+
+    @cache
+    def made(name, to):
+        motion = sb.load(name).motion(24)
+        folder = tmp_path_factory.mktemp(f"{name}_{to}")
+        export(motion, to, folder / f"a.{to}", at=float(motion.circuits[0].input[5]))
+        return motion, motion.circuits[0], 5, folder
+
+    return made
 
 
 def joint_values(linkage, circuit, row, scale):
@@ -69,11 +75,11 @@ def closing(joint, values):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", GALLERY)
-def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, tmp_path):
-    motion, circuit, row = posed(name, tmp_path, "urdf")
+def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, posed):
+    motion, circuit, row, folder = posed(name, "urdf")
     linkage = motion.linkage
     scale = LENGTHS[linkage.length_unit]
-    robot = yourdfpy.URDF.load(str(tmp_path / "a.urdf"), load_meshes=False)
+    robot = yourdfpy.URDF.load(str(folder / "a.urdf"), load_meshes=False)
     assert robot.base_link == "ground"
     values = joint_values(linkage, circuit, row, scale)
     robot.update_cfg({joint: values[joint] for joint in robot.actuated_joint_names})
@@ -83,7 +89,7 @@ def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, tmp
         found = robot.get_transform(f"link_{link}", "ground")
         np.testing.assert_allclose(found[:3, 3], scale * frame[:3, 3], rtol=0, atol=1e-9 * size)
         np.testing.assert_allclose(found[:3, :3], frame[:3, :3], rtol=0, atol=1e-9)
-    side = json.loads((tmp_path / "a.loop.json").read_text())
+    side = json.loads((folder / "a.loop.json").read_text())
     joint = side["loop_joint"]
     assert joint["kind"] == linkage.joints[-1].kind
     assert side["pose"]["q"] == pytest.approx(values, rel=1e-9, abs=1e-9)
@@ -97,11 +103,11 @@ def test_yourdfpy_puts_the_links_of_the_tree_where_the_motion_has_them(name, tmp
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["rssr", "seven_r", "rsur", "six_bar", "rccc"])
-def test_mujoco_imports_the_tree(name, tmp_path):
-    motion, circuit, row = posed(name, tmp_path, "urdf")
+def test_mujoco_imports_the_tree(name, posed):
+    motion, circuit, row, folder = posed(name, "urdf")
     linkage = motion.linkage
     scale = LENGTHS[linkage.length_unit]
-    model = mujoco.MjModel.from_xml_path(str(tmp_path / "a.urdf"))
+    model = mujoco.MjModel.from_xml_path(str(folder / "a.urdf"))
     data = mujoco.MjData(model)
     for joint, value in joint_values(linkage, circuit, row, scale).items():
         if joint not in linkage.joints[-1].columns:
@@ -148,10 +154,10 @@ KIND = {
 
 
 @pytest.mark.parametrize("name", GALLERY)
-def test_adams_markers_of_each_joint_meet_and_point_the_same_way(name, tmp_path):
-    motion, circuit, row = posed(name, tmp_path, "cmd")
+def test_adams_markers_of_each_joint_meet_and_point_the_same_way(name, posed):
+    motion, circuit, row, folder = posed(name, "cmd")
     linkage = motion.linkage
-    model = adams_reader.read((tmp_path / "a.cmd").read_text())
+    model = adams_reader.read((folder / "a.cmd").read_text())
     size = circuit.size
     assert model.units["length"] == {"mm": "mm", "in": "inch"}[linkage.length_unit]
     parts = {part.rpartition(".")[2]: frame for part, frame in model.parts.items()}
@@ -194,10 +200,10 @@ def test_adams_markers_of_each_joint_meet_and_point_the_same_way(name, tmp_path)
 
 
 @pytest.mark.parametrize("name", GALLERY)
-def test_adams_drives_the_input_from_the_pose_and_measures_input_and_output(name, tmp_path):
-    motion, circuit, row = posed(name, tmp_path, "cmd")
+def test_adams_drives_the_input_from_the_pose_and_measures_input_and_output(name, posed):
+    motion, circuit, row, folder = posed(name, "cmd")
     linkage = motion.linkage
-    model = adams_reader.read((tmp_path / "a.cmd").read_text())
+    model = adams_reader.read((folder / "a.cmd").read_text())
     (drive,) = model.motions
     start, speed = drive["function"].removesuffix("*time").split(" + ")
     assert float(start) == pytest.approx(circuit.input[row], rel=1e-12, abs=1e-12)

@@ -8,12 +8,13 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.curves.least_cone import least_axis
+from sevenbar.curves.lipschitz import lowest
 from sevenbar.errors import RequestError
 from sevenbar.forces.cones import Bounds, least_greatest_size
 from sevenbar.kinematics.allowed import distances
 from sevenbar.kinematics.ball_angle import ball_angle
 from sevenbar.kinematics.rods import nearest_shares, rod_distance
-from sevenbar.reporting.extents import extent_rows
+from sevenbar.reporting.extents import extent_rows, span_rows
 
 
 def degrees(found):
@@ -160,6 +161,26 @@ def test_the_nearest_points_of_two_rods_are_those_of_a_grid():
         assert ((share >= 0) & (share <= 1)).all()
 
 
+def test_a_search_that_ends_at_its_limit_says_what_it_may_have_missed():
+    edges, bounds = np.linspace(0, 10, 81), np.full(80, 10.0)
+    place, value, missed = lowest(lambda s: np.full(len(s), 1.0), edges, bounds, 1e-7, floor=0.0)
+    assert (place, value) == (0.0, 1.0)
+    assert 1e-7 < missed < 1e-2
+    # nothing lies below the floor
+    assert lowest(np.zeros_like, edges, bounds, 1e-7, floor=0.0) == (0.0, 0.0, 0.0)
+    place, value, missed = lowest(lambda s: (s - 3.3) ** 2, edges, bounds, 1e-7, floor=-math.inf)
+    assert place == pytest.approx(3.3, abs=1e-3)
+    assert value - missed <= 0 <= value <= 1e-7
+
+
+@pytest.mark.parametrize("angle", [1e-3, 1e-5, 1e-6, 9e-7, 1e-7, 1e-9, 1e-12, 1e-16, 0.0])
+def test_rods_that_cross_at_any_angle_meet(angle):
+    ends = np.array([[[-1.0, 0, 0]], [[1, 0, 0]], [[-1, -0.4 * angle, 0.1]], [[1, 1.6 * angle, 0.1]]])
+    assert rod_distance(*ends)[0] == pytest.approx(0.1, abs=1e-16)
+    ends[2:, :, 2] = 0.0
+    assert rod_distance(*ends)[0] < 1e-12
+
+
 STOPS = {
     "ranges": {"rocker": ("-20 deg", "25 deg")},
     "cones": {"ball_a": sb.Cone(math.radians(60), seat=(0, 0, -1)), "ball_b": "20 deg"},
@@ -191,6 +212,15 @@ def test_a_circuit_without_stops_is_whole_and_one_that_stops_forbid_has_no_span(
     assert none.spans == ()
     assert none.share == 0.0
     assert set(none.stopped_by.tolist()) == {"range of rocker"}
+
+
+def test_every_stop_that_forbids_a_circuit_is_named():
+    ranges, cones = {"rocker": ("100 deg", "120 deg")}, {"ball_a": sb.Cone(math.radians(1), seat=(0, 0, 1))}
+    motion = sb.load("rssr").stopped(ranges=ranges, cones=cones).motion(72)
+    allowed = motion.circuits[0].allowed
+    assert set(allowed.stopped_by.tolist()) == {"range of rocker, cone of ball_a"}
+    assert not allowed.within.any()
+    assert span_rows(motion)[1][0][-1] == "cone of ball_a; range of rocker"
 
 
 def test_a_range_that_ends_at_the_joint_s_own_extremes_stops_nothing():

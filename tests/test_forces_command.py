@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -221,14 +222,18 @@ FIGURES: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("style", ["screen", "paper"])
+@cache
+def forces_of(name: str) -> sb.Forces:
+    return loaded(name.split()[0]).motion(72, **FIGURES[name]).circuits[0].forces()
+
+
+@pytest.mark.parametrize("style", ["screen", pytest.param("paper", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", force_figures.KINDS)
 @pytest.mark.parametrize("name", FIGURES)
 def test_no_text_of_a_figure_of_forces_lies_on_another(
     name: str, kind: str, style: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    forces = loaded(name.split()[0]).motion(72, **FIGURES[name]).circuits[0].forces()
-    assert collisions(forces.plot(kind=kind, style=style), monkeypatch) == []
+    assert collisions(forces_of(name).plot(kind=kind, style=style), monkeypatch) == []
 
 
 def test_figures_show_peaks_and_leave_out_what_is_not_determined() -> None:

@@ -24,44 +24,32 @@ from sevenbar.description.forms import from_description
 from sevenbar.description.gallery import names
 from sevenbar.errors import RequestError
 
-#: Cases of each way: some seconds together; the others take minutes.
-SHORT = {
-    "rssr batch": 4096,
-    "loop batch": 64,
-    "rssr": 70,
-    "loop": 57,
-    "edge": 48,
-    "screw": 2,
-    "file": 3000,
-    "table": 400,
-}
-LONG = {
+#: Cases of each way: of loops five of each family, of their edges eight, of RSSRs twenty.
+CASES = {
     "rssr batch": 60_000,
     "loop batch": 320,
-    "rssr": 600,
-    "loop": 300,
-    "edge": 300,
-    "screw": 6,
-    "file": 20_000,
+    "rssr": 140,
+    "loop": 105,
+    "edge": 64,
+    "screw": 4,
+    "file": 8000,
     "table": 1000,
 }
 
 #: A seed of its own, so that CI meets other cases than `make fuzz`.
-SEED = 20
+SEED = 21
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("amount", [SHORT, pytest.param(LONG, marks=pytest.mark.slow)], ids=["short", "long"])
 @pytest.mark.parametrize("way", list(ways.WAYS))
-def test_nothing_is_found(way: str, amount: dict[str, int]) -> None:
-    size, seed = ways.WAYS[way].size, SEED + (amount is LONG)
+def test_nothing_is_found(way: str) -> None:
+    count, size = CASES[way], ways.WAYS[way].size
     tally = Tally()
-    for first in range(0, amount[way], size):
-        job = ways.Job(way, seed, first, min(first + size, amount[way]))
+    for first in range(0, count, size):
+        job = ways.Job(way, SEED, first, min(first + size, count))
         tally.merge(ways.run(job, lambda _: None).plain())
-    assert tally.cases == amount[way]
+    assert tally.cases == count
     assert [finding.what for finding in tally.findings] == []
-    assert tally.slowest[0] < ways.WAYS[way].limit
     # the cases are not all of one kind
     assert len(tally.seen) > 3
 

@@ -6,6 +6,7 @@ import re
 import string
 import tomllib
 import warnings
+from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -33,6 +34,7 @@ LEFT = {"K", "max", "min", "mm", "rpm", "rad", "deg", "s", "l", "p", "q", "e", "
 LEFT |= {"N", "m", "kg", "W", "J", "sevenbar", "forces"}
 
 
+@cache
 def sentences():
     """Each sentence that a `say` of the package has, with its file."""
     found = {}
@@ -93,12 +95,12 @@ def test_a_sentence_is_given_in_one_part_only():
     assert len(every) == len(set(every))
 
 
-@pytest.mark.parametrize("text", sorted(catalogue("zh")))
-def test_a_translation_fills_no_place_that_the_sentence_has_not(text):
-    # the angle between the limit positions is told in Chinese only
-    allowed = places(text) | ({("between", "")} if text == "{ratio}" else set())
-    assert places(catalogue("zh")[text]) <= allowed
-    assert catalogue("zh")[text].strip()
+def test_a_translation_fills_no_place_that_the_sentence_has_not():
+    for text, translation in catalogue("zh").items():
+        # the angle between the limit positions is told in Chinese only
+        allowed = places(text) | ({("between", "")} if text == "{ratio}" else set())
+        assert places(translation) <= allowed, text
+        assert translation.strip(), text
 
 
 def report_of(name):
@@ -221,7 +223,9 @@ COMMANDS = {
 }
 
 
-@pytest.mark.parametrize("call", COMMANDS)
+@pytest.mark.parametrize(
+    "call", [pytest.param(c, marks=pytest.mark.slow if c.startswith("design ") else ()) for c in COMMANDS]
+)
 def test_the_reports_of_all_commands_are_in_chinese(call, tmp_path):
     linkage = sb.four_bar(crank=40, coupler=100, rocker=80, ground=90)
     drop = tmp_path / "drop.toml"

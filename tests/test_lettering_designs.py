@@ -56,7 +56,7 @@ def path_of(name):
     draft = Draft.of_linkage(sb.load(name)).with_point("Q", 2, (30.0, 12.0, -8.0))
     wanted = draft.linkage.motion(24)[0].point("Q").position[:9]
     task = path_task(draft, wanted, "Q", vary=["Q.*"])
-    return task, generated(task, count=1, starts=2, seed=0).candidates[0]
+    return task, generated(task, count=1, starts=2, seed=0).designs[0]
 
 
 @cache

@@ -42,8 +42,8 @@ from evidence.fuzz.random_loops import (
 REFERENCES = Path(__file__).parent / "references"
 
 #: Loops of each family, and starts of the search for each loop.
-GENERAL_LOOPS = {"few": 40, "many": 600, "all": 10_000}
-SPECIAL_LOOPS = {"few": 4, "many": 60, "all": 1_000}
+GENERAL_LOOPS = {"few": 40, "many": 200, "all": 10_000}
+SPECIAL_LOOPS = {"few": 4, "many": 24, "all": 1_000}
 STARTS = 300
 #: Slides are unbounded, and joints of several freedoms make more unknowns: both take more starts.
 SPECIAL_STARTS = 500

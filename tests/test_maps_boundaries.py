@@ -7,7 +7,6 @@ axes; extreme distances of two circles by brute force.
 
 from __future__ import annotations
 
-import doctest
 import math
 from dataclasses import dataclass
 
@@ -16,7 +15,6 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
-from sevenbar.design.maps import atlas
 from sevenbar.design.maps.atlas import Map, motion_map
 from sevenbar.design.maps.critical import NEARLY_REAL, critical_gaps
 from sevenbar.design.maps.plane import Kind, LoopPlane
@@ -351,7 +349,3 @@ def test_a_planar_four_bar_of_the_general_way_follows_grashof():
     assert told["length_1", "up"] == pytest.approx(70, abs=1e-3)
     assert told["length_3", "down"] == pytest.approx(50, abs=1e-3)
     assert told["length_3", "up"] == pytest.approx(150, abs=1e-3)
-
-
-def test_the_examples_in_the_docstrings_give_what_they_show():
-    assert doctest.testmod(atlas).failed == 0

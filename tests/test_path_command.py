@@ -1,8 +1,6 @@
 """`sevenbar design path` as a person calls it: files, messages, and the page that shows it."""
 
 import contextlib
-import doctest
-import importlib
 import io
 import json
 import re
@@ -144,11 +142,6 @@ def test_the_example_of_the_page_prints_what_its_comment_says():
     with contextlib.redirect_stdout(printed):
         exec(code, {})
     assert printed.getvalue().splitlines() == re.findall(r"print\(.*\)  # (.*)", code)
-
-
-@pytest.mark.slow
-def test_the_example_of_the_docstring_gives_what_it_shows():
-    assert doctest.testmod(importlib.import_module("sevenbar.design.synthesis.path.generation")).failed == 0
 
 
 @pytest.mark.slow

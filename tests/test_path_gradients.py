@@ -5,11 +5,8 @@ import pytest
 
 import sevenbar as sb
 from sevenbar.description.draft import Draft
-from sevenbar.design.limits import Limits
-from sevenbar.design.synthesis.path.point import PointLoop
-from sevenbar.design.synthesis.path.refine import PathProblem
-from sevenbar.design.synthesis.path.search import Seed
 from sevenbar.design.synthesis.path.task import path_task
+from sevenbar.design.task.loop import TaskLoop
 from sevenbar.errors import RequestError
 
 #: Every form and every kind of joint: dimensions, rows, drawings; S S with its spin held, U, H, C, P.
@@ -32,13 +29,11 @@ STEP, GOOD = 1e-4, 2e-6
 
 
 def drawn(name, link, at):
-    """A linkage of the gallery with a point, its closure, and one closed pose away from the drawn one."""
+    """A linkage of the gallery with a point, its loop with all numbers free, and its first circuit."""
     draft = Draft.of_linkage(sb.load(name)).with_point("Q", link, at)
-    point = draft.linkage.points[-1]
-    whole = PointLoop(draft, point)
-    closure = PointLoop(draft, point, range(len(whole.dimensions)))
+    loop = TaskLoop(draft, [d.name for d in draft.dimensions if d.kind != "speed"])
     circuit = draft.linkage.motion(12).circuits[0]
-    return draft, closure, circuit
+    return draft, loop, circuit
 
 
 @pytest.mark.parametrize("name", LINKAGES)
@@ -46,22 +41,24 @@ def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
     for link in range(1, len(sb.load(name).links) + 1):
         size = sb.load(name).motion(12).circuits[0].size
         at = (0.3 * size, -0.2 * size, 0.15 * size)
-        _, closure, circuit = drawn(name, link, at)
+        _, loop, circuit = drawn(name, link, at)
         rows = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
         q = circuit.q[rows]
         # some way off, and closed again
-        off = (
-            closure.poses(closure.start, q)
-            + 1e-3 * np.cos(np.arange(q.size)).reshape(q.shape) * closure.units
-        )
-        closed = closure.closed(closure.start, q[:, closure.input], off)
-        reached = closure.reached(closure.start, closed[np.isfinite(closed).all(axis=1)])
+        off = loop.poses(loop.start, q) + 1e-3 * np.cos(np.arange(q.size)).reshape(q.shape) * loop.units
+        closed = loop.closed(loop.start, q[:, loop.input], off)
+        here = loop.here(loop.start, closed[np.isfinite(closed).all(axis=1)])
+        place = loop.named("Q")
         trace = circuit.point(link, at)
-        assert len(reached.position) == len(rows)
-        assert reached.position == pytest.approx(trace.position[rows], abs=1e-9 * size)
-        speed = circuit.dq[rows, closure.input, None]
+        assert len(here.points) == len(rows)
+        assert here.points[:, place] == pytest.approx(trace.position[rows], abs=1e-9 * size)
+        assert loop.here(loop.start, here.q, slopes=False).points == pytest.approx(
+            here.points, abs=1e-12 * size
+        )
+        speed = circuit.dq[rows, loop.input, None]
         velocity = trace.velocity[rows]
-        assert reached.by_input * speed == pytest.approx(velocity, abs=1e-8 * np.abs(velocity).max())
+        by_input = here.points_by[:, place, :, -1]
+        assert by_input * speed == pytest.approx(velocity, abs=1e-8 * np.abs(velocity).max())
 
 
 @pytest.mark.slow
@@ -72,16 +69,17 @@ def test_a_point_and_its_velocity_are_those_of_the_ordinary_analysis(name):
 )
 def test_derivatives_by_dimensions_are_those_of_linkages_written_with_other_dimensions(name, link):
     size = sb.load(name).motion(12).circuits[0].size
-    draft, closure, circuit = drawn(name, link, (0.3 * size, -0.2 * size, 0.15 * size))
+    draft, loop, circuit = drawn(name, link, (0.3 * size, -0.2 * size, 0.15 * size))
     row = int(np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))[2])
-    pose = closure.poses(closure.start, circuit.q[row : row + 1])
-    x = pose[:, closure.input]
+    pose = loop.poses(loop.start, circuit.q[row : row + 1])
+    x = pose[:, loop.input]
     here = circuit.point(link, draft.linkage.points[-1].at).position[row]
-    assert closure.position(closure.start, pose)[0] == pytest.approx(here, abs=1e-9 * size)
-    exact = closure.reached(closure.start, pose).by_dimension[0]
-    opening = closure.openings(closure.start, pose)
+    place = loop.named("Q")
+    assert loop.here(loop.start, pose).points[0, place] == pytest.approx(here, abs=1e-9 * size)
+    exact = loop.here(loop.start, pose).points_by[0, place]
+    opening = loop.openings(loop.start, pose)
     compared = 0
-    for number, dimension in enumerate(closure.dimensions):
+    for number, dimension in enumerate(loop.numbers.dimensions):
         if number in opening or dimension.follows:
             continue
         step = (
@@ -112,10 +110,11 @@ def test_a_rod_that_follows_is_part_of_the_derivatives():
     task = path_task(draft, [(0, 0, 1), (0, 1, 0), (1, 0, 0)], "Q", follow=["L2"], place=True)
     assert "L2" not in [dimension.name for dimension in task.dimensions]
     assert task.held.text == "L2 follows (997.497 mm in the design)"
-    closure = task.closure
+    loop = task.loop
     circuit = draft.linkage.motion(12).circuits[0]
     x = circuit.input[3:4]
-    exact = closure.reached(closure.start, closure.poses(closure.start, circuit.q[3:4])).by_dimension[0]
+    here = loop.here(loop.start, loop.poses(loop.start, circuit.q[3:4]))
+    exact = here.points_by[0, loop.named("Q")]
     for k, name in enumerate(d.name for d in task.dimensions):
         if name.startswith("Q."):
             continue
@@ -133,54 +132,18 @@ def test_a_path_holds_the_rod_unless_it_varies_or_follows():
     points = [(0, 0, 1), (0, 1, 0), (1, 0, 0)]
     held = path_task(draft, points, "Q", vary=["L1", "L3"])
     assert held.held.text == "M, N, D, L2 (997.497 mm in the design)"
-    longer = held.drawn(np.array([260.0, 500.0])).linkage
+    longer = held.loop.drawn(np.array([260.0, 500.0])).linkage
     assert longer.dimensions["L2"] == draft.linkage.dimensions["L2"]
     follows = path_task(draft, points, "Q", vary=["L1", "L3"], follow=["L2"])
     rod = np.sqrt((260.0 - 700.0) ** 2 + 500.0**2 + 700.0**2)
-    assert follows.drawn(np.array([260.0, 500.0])).linkage.dimensions["L2"] == pytest.approx(rod, rel=1e-15)
+    assert follows.loop.drawn(np.array([260.0, 500.0])).linkage.dimensions["L2"] == pytest.approx(
+        rod, rel=1e-15
+    )
     with pytest.raises(RequestError, match="vary: L2 is to follow from the others; leave one of the two out"):
         path_task(draft, points, "Q", vary=["L1", "L2"], follow=["L2"])
 
 
-def rough(task, circuit, rows):
-    return PathProblem(
-        task, Seed(task.closure.start[list(task.varied)], circuit.input[rows], circuit.q[rows], 0.0), 1.0
-    )
-
-
-@pytest.mark.parametrize(
-    "more",
-    [
-        {},
-        {"place": True},
-        {"timing": True},
-        {"timing": True, "phase": True, "place": True},
-        {"limits": Limits(np.radians(30.0), None, "crank-rocker")},
-        {"limits": Limits(np.radians(30.0)), "timing": True, "phase": True},
-    ],
-)
-def test_the_gradient_of_the_sum_of_squares_is_that_of_differences(more):
-    draft = Draft.of_linkage(sb.load("rssr")).with_point("Q", 2, (300.0, 120.0, -80.0))
-    circuit = draft.linkage.motion(36).circuits[0]
-    rows = np.arange(3, 30, 3)
-    wanted = circuit.point(2, (280.0, 100.0, -40.0)).position[rows] + 7 * np.cos(np.arange(27)).reshape(9, 3)
-    more = dict(more)
-    if "timing" in more:
-        more["timing"] = circuit.input[rows]
-    task = path_task(draft, wanted, "Q", **more)
-    problem = rough(task, circuit, rows)
-    z = problem.start
-    gradient = problem.jacobian(z).T @ problem.residuals(z)
-    for k, scale in enumerate(problem.scales):
-        step = np.zeros(len(z))
-        step[k] = 1e-5 * scale
-        up, down = (float((problem.residuals(z + way * step) ** 2).sum() / 2) for way in (1, -1))
-        difference = (up - down) / (2e-5 * scale)
-        most = np.abs(gradient * problem.scales).max() / scale
-        assert gradient[k] == pytest.approx(difference, abs=1e-6 * most)
-
-
 def test_a_twist_of_a_planar_loop_opens_it_and_a_length_does_not():
-    _, closure, circuit = drawn("planar_4r", 2, (0.0, 1.0, 1.0))
-    names = {closure.dimensions[number].name for number in closure.openings(closure.start, circuit.q)}
+    _, loop, circuit = drawn("planar_4r", 2, (0.0, 1.0, 1.0))
+    names = {loop.numbers.dimensions[number].name for number in loop.openings(loop.start, circuit.q)}
     assert names == {f"{key}_{link}" for key in ("offset", "twist") for link in (1, 2, 3, 4)}

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import sevenbar as sb
-from browser import PATIENCE, Pages, differs, keep, settled, tinted
+from browser import PATIENCE, Pages, differs, keep, person, settled, tinted
 from controls import (
     box,
     choose,
@@ -449,8 +449,7 @@ def test_the_exported_page_plays_without_a_server(desk, chromium, tmp_path):
     open_tab(page, "Files")
     choose(page, "export", "page that plays (HTML)")
     saved = download(page, "Export", tmp_path)
-    context = chromium.new_context(viewport={"width": 1000, "height": 600})
-    context.set_default_timeout(PATIENCE * 1e3)
+    context = person(chromium, viewport={"width": 1000, "height": 600})
     wrong = []
     alone = context.new_page()
     alone.on("pageerror", lambda error: wrong.append(str(error)))

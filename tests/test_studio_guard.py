@@ -12,6 +12,7 @@ import viser
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from browser import person
 from sevenbar.description.files import toml_text
 from sevenbar.studio.guard import Guard
 from sevenbar.studio.server import StudioServer
@@ -216,7 +217,7 @@ def test_a_page_of_another_origin_gets_no_socket_and_no_answer(chromium, studio)
     one = studio("rssr")
     other = ThreadingHTTPServer(("127.0.0.1", 0), _Another)
     threading.Thread(target=partial(other.serve_forever, 0.05), daemon=True).start()
-    context = chromium.new_context()
+    context = person(chromium)
     page = context.new_page()
     try:
         page.goto(f"http://127.0.0.1:{other.server_port}/")

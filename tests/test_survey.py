@@ -15,9 +15,10 @@ import pytest
 
 import sevenbar as sb
 from commands import mistake, sevenbar
+from sevenbar.curves.least_cone import half_angle
 from sevenbar.design.survey import SurveyTally, SurveyTask, SwingWish, Travel, survey
 from sevenbar.design.survey.journal import JOURNAL
-from sevenbar.design.survey.polish import ball_angle, draft_of
+from sevenbar.design.survey.polish import draft_of
 from sevenbar.design.survey.skew_closure import L2, poses, reach
 from sevenbar.design.survey.task import drawn_numbers
 from sevenbar.design.wish import wish_of_function, wish_of_pairs
@@ -137,7 +138,7 @@ def test_what_is_kept_does_what_is_said_of_it(want):
         assert abs(error / 2 - one.error) < 1e-10
         assert abs(math.asin(math.sqrt(now.square.min())) - one.transmission) < 1e-9
         if not math.isnan(one.balls[0]):
-            angles = [ball_angle(directions) for directions in (now.crank, now.rocker)]
+            angles = [half_angle(directions) for directions in (now.crank, now.rocker)]
             assert np.allclose(angles, one.balls, atol=1e-7)
 
 
@@ -170,10 +171,12 @@ def test_the_smallest_cone_is_that_of_a_search_over_seats():
         seats = rng.normal([0, 0, 2], 0.5, (20000, 3))
         seats /= np.linalg.norm(seats, axis=1)[:, None]
         searched = np.arccos((seats @ directions.T).min(axis=1)).min()
-        found = ball_angle(directions)
+        found = half_angle(directions)
         assert found <= searched + 1e-12
         assert searched - found < 0.05
-    assert ball_angle(np.vstack([np.eye(3), -np.eye(3)])) == math.pi
+    # six along the axes leave eight gaps, in whose middle no cone need be
+    widest = half_angle(np.vstack([np.eye(3), -np.eye(3)]))
+    assert widest == pytest.approx(math.pi - math.acos(1 / math.sqrt(3)), abs=1e-15)
 
 
 @pytest.mark.parametrize("want", [FLAP, parabola(), SwingWish(math.radians(60), 1.2)])
@@ -244,10 +247,8 @@ def test_a_survey_that_was_killed_goes_on(tmp_path):
         env=dict(os.environ),
     )
     journal = tmp_path / "a" / JOURNAL
-    begin = time.monotonic()
     while not (journal.exists() and journal.read_bytes().count(b"\n") >= 1):
         assert run.poll() is None
-        assert time.monotonic() - begin < 120
         time.sleep(0.05)
     run.send_signal(signal.SIGKILL)
     run.wait()

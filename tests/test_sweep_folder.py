@@ -239,11 +239,13 @@ def test_a_full_disk_leaves_whole_parts_and_says_how_to_go_on(tmp_path: Path) ->
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kills", [6, pytest.param(20, marks=pytest.mark.proof)])
-def test_a_sweep_killed_at_random_moments_loses_no_finished_part(kills: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("kills", "count"), [(3, 200), pytest.param(20, 400, marks=pytest.mark.proof)])
+def test_a_sweep_killed_at_random_moments_loses_no_finished_part(
+    kills: int, count: int, tmp_path: Path
+) -> None:
     sweep = [
         sys.executable, "-m", "sevenbar.commands.cli", "sweep", "seven_r", "--over", "twist_1=30..90", "--over",
-        "length_2=80..120", "--count", "400", "--seed", "3", "--measure", "motion_type,circuits,swing",
+        "length_2=80..120", "--count", str(count), "--seed", "3", "--measure", "motion_type,circuits,swing",
         "--samples", "24", "--part-size", "2",
     ]  # fmt: skip
     chance = random.Random(20)
@@ -267,14 +269,14 @@ def test_a_sweep_killed_at_random_moments_loses_no_finished_part(kills: int, tmp
         }
         assert kept.items() <= now.items()
         kept = now
-    assert 0 < len(kept) < 200
+    assert 0 < len(kept) < count / 2
     subprocess.run([*sweep, "--out", folder, "--resume"], check=True, capture_output=True)
     subprocess.run([*sweep, "--out", tmp_path / "whole", "--threads", "1"], check=True, capture_output=True)
     assert bits(folder) == bits(tmp_path / "whole")
 
 
 @pytest.mark.slow
-def test_memory_stays_flat_through_ten_million_linkages(tmp_path: Path) -> None:
+def test_memory_stays_flat_through_four_million_linkages(tmp_path: Path) -> None:
     code = (
         "import re, sys, sevenbar as sb\n"
         "from pathlib import Path\n"
@@ -286,7 +288,7 @@ def test_memory_stays_flat_through_ten_million_linkages(tmp_path: Path) -> None:
         "print(re.search(r'VmHWM:\\s+(\\d+) kB', Path('/proc/self/status').read_text())[1])"
     )
     peaks = []
-    for count in (1_000_000, 10_000_000):
+    for count in (400_000, 4_000_000):
         command = [sys.executable, "-c", code, str(count), str(tmp_path / str(count))]
         peaks.append(int(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
     # kilobytes: below 1 GiB, and ten times the linkages cost what the allocator keeps, not ten times

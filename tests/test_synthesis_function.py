@@ -1,8 +1,6 @@
 """Function generation: exact gradients, error figures of x^2 and log, and files that do what they tell."""
 
 import contextlib
-import doctest
-import importlib
 import io
 import math
 import re
@@ -263,25 +261,6 @@ def test_the_design_of_unknowns_is_the_one_they_were_taken_from():
     z = fit.packed(point)
     turned = z * np.array([1, 1, -1, 1, 1, 1, 1]) + np.array([0, 0, 0, 0, 0, math.pi, 0])
     np.testing.assert_allclose(fit.errors(turned, 1)[0], fit.errors(z, 1)[0], atol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("name", "count"),
-    [
-        ("design.wish", 2),
-        ("design.course", 3),
-    ],
-)
-def test_examples_in_docstrings_give_what_they_show(name, count):
-    module = importlib.import_module(f"sevenbar.{name}")
-    assert doctest.testmod(module) == (0, count)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["generation", "swing"])
-def test_examples_of_long_searches_give_what_they_show(name):
-    module = importlib.import_module(f"sevenbar.design.synthesis.function.{name}")
-    assert doctest.testmod(module) == (0, 2)
 
 
 @pytest.mark.slow

@@ -298,6 +298,13 @@ def test_all_of_a_cycle_can_be_too_near_to_a_dead_centre():
         linear_estimate(found, {"M": 90.0, "L2": 90.0})
 
 
+def test_a_wanted_error_is_met_where_ever_more_rows_are_too_near_to_dead_centres():
+    found = sensitivities(sb.load("planar_4r"), samples=3600, input="theta_4")
+    linear = tolerances_for(found, 0.05, sum="statistical")
+    assert np.linalg.norm(linear.slopes * linear.tolerances.widths, axis=1).max() == pytest.approx(0.05)
+    assert len(linear.rows) < len(found.rows)
+
+
 @pytest.mark.parametrize(("sum", "total"), [("worst", 1.0), ("statistical", 2.0)])
 def test_tolerances_for_a_wanted_error_have_equal_effects_and_meet_it(sum, total):
     linear = tolerances_for(sb.load("rssr"), 0.01, sum=sum)

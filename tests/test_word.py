@@ -162,8 +162,8 @@ def test_the_words_of_random_descriptions_are_what_their_form_means(form):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("form", list(CHECKS))
-def test_the_words_of_a_thousand_random_descriptions_are_what_their_form_means(form):
-    assert checked(form, 1000) > 900
+def test_the_words_of_hundreds_of_random_descriptions_are_what_their_form_means(form):
+    assert checked(form, 250) > 225
 
 
 def test_numbers_stand_in_the_order_of_the_file_without_the_speed():

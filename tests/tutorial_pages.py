@@ -16,6 +16,8 @@ from pathlib import Path
 
 from PIL import Image
 
+from commands import sevenbar
+
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGES = (DOCS / "tutorial.md", DOCS / "zh" / "tutorial.md")
 QUICK = (DOCS / "quick-start.md", DOCS / "zh" / "quick-start.md")
@@ -55,13 +57,7 @@ def printed(command, folder):
     """What a command prints in a folder: lines without spaces at their ends; of a refusal the complaint."""
     program, *words = shlex.split(command)
     assert program == "sevenbar", command
-    run = subprocess.run(
-        [sys.executable, "-m", "sevenbar.commands.cli", *words],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    run = sevenbar(*words, cwd=folder)
     assert run.returncode in (0, 2), run.stderr
     text = run.stdout if run.returncode == 0 else run.stderr
     return [line.rstrip() for line in text.strip("\n").splitlines()]

@@ -6,6 +6,7 @@ python evidence/benches/engines.py
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib.metadata import version
 
 import sevenbar as sb
 from sevenbar.description.gallery import names
@@ -28,22 +29,29 @@ def shown(values: Sequence[float]) -> str:
     return " | ".join("< 1e-10" if value < 1e-10 else f"{value:.1e}" for value in values)
 
 
+def by_steps(engine: str, steps: int) -> str:
+    """A row of the first table."""
+    run = simulate(sb.load("rssr"), engine, steps=steps)
+    return f"| {run.record.engine} | {steps} | {shown([*numbers(run)[:3], run.gap, run.tilt])} |"
+
+
+def by_linkage(engine: str, name: str) -> str:
+    """A row of an engine's table of the gallery."""
+    linkage = sb.load(name)
+    run = simulate(linkage, engine)
+    way = "one pass" if not run.course.closes else "cycle"
+    kind = " ".join(joint.kind for joint in linkage.joints)
+    return f"| {name} | {kind} | {len(run.model.redundant)} | {way} | {shown(numbers(run))} |"
+
+
 def main() -> None:
-    """Prints both tables."""
-    versions = {}
+    """Prints the tables."""
     for engine in ENGINES:
-        for steps in STEPS:
-            run = simulate(sb.load("rssr"), engine, steps=steps)
-            versions[engine] = f"{run.record.engine} {run.record.version}"
-            print(f"| {run.record.engine} | {steps} | {shown([*numbers(run)[:3], run.gap, run.tilt])} |")
+        print(*(by_steps(engine, steps) for steps in STEPS), sep="\n")
     for engine in ENGINES:
-        print(f"\n{versions[engine]}")
+        print(f"\n{engine} {version(engine)}")
         for name in names():
-            linkage = sb.load(name)
-            run = simulate(linkage, engine)
-            way = "one pass" if not run.course.closes else "cycle"
-            kind = " ".join(joint.kind for joint in linkage.joints)
-            print(f"| {name} | {kind} | {len(run.model.redundant)} | {way} | {shown(numbers(run))} |")
+            print(by_linkage(engine, name))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 //! Sevenbar's core: closing spatial loops, following them, differentiating them.
 //!
-//! No input or output, no printing, no clock, no global state. Angles are radians; lengths are in whatever unit the caller
-//! uses, the same in and out.
+//! No input or output, no printing, no clock; the only state is a cache of start systems. Angles are radians; lengths are in
+//! whatever unit the caller uses, the same in and out.
 
 pub mod driven;
 pub mod error;

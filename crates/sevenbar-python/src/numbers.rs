@@ -228,6 +228,19 @@ impl Numbers {
         ])
     }
 
+    /// The points (n, points, 3) at poses (n, columns).
+    fn places<'py>(&self, py: Python<'py>, values: PyReadonlyArray2<'py, f64>) -> PyResult<Array<'py>> {
+        let rows = values.shape()[0];
+        if values.shape()[1] != self.0.columns() {
+            return Err(CoreError::new_err("places: give rows of all columns"));
+        }
+        let values = values
+            .as_slice()
+            .map_err(|_| CoreError::new_err("values: the array is not contiguous"))?;
+        let found = py.detach(|| self.0.places(values));
+        shaped(py, found, &[rows, self.0.points(), 3])
+    }
+
     /// By each number that moves it, counted as its derivatives are, the twist (6,) of a link's frame behind the joints before it.
     fn twists(&self, frame: &Product) -> PyResult<Vec<(usize, [f64; 6])>> {
         self.0.twists(&frame.0).ok_or_else(wrong)

@@ -74,6 +74,7 @@ EXAMPLES = {
     "survey": (
         "sevenbar design survey --output-range 0:23.75deg --ball-angle 15deg --count 1e6 -o flap",
         "sevenbar design survey --swing 60deg --time-ratio 1.1 --bound angle=60:120deg --rank transmission",
+        "sevenbar design survey my_task.toml --count 1e4 --journal kept",
     ),
     "swing": ("sevenbar design swing --swing 60deg --time-ratio 1.2 -o swing",),
     "path": (

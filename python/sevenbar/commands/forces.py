@@ -102,7 +102,7 @@ def forces(
     loaded = sb.load(linkage)
     if loaded.loading.is_empty:
         raise RequestError(f"{linkage}: {NOTHING_ACTS}")
-    names = words(joint or [])
+    names = words(joint, "--joint")
     for name in names:
         if name not in [one.name for one in loaded.joints]:
             raise RequestError(f"--joint: {no_joint(name, [one.name for one in loaded.joints])}")
@@ -112,7 +112,7 @@ def forces(
         raise RequestError(
             "--unevenness: a flywheel is found for a constant speed; give --speed in place of --law"
         )
-    links = [_link(name) for name in words(counterweights or [])]
+    links = [_link(name) for name in words(counterweights, "--counterweights")]
     if radius is not None and not links:
         raise RequestError("--radius: it is that of counterweights; give --counterweights, as in 1,3")
     if links and (at_rest or law is not None):

@@ -71,7 +71,7 @@ def map_(
     formats = figure_formats(figures, out)
     sheet(size or "A4")
     ranges, at, which = split_ranges(over or []), _levels(levels), _take(take)
-    names = words(measure or [])
+    names = words(measure, "--measure")
     if levels is not None and not names:
         raise RequestError("--levels: of no measure; give --measure too, as in '--measure swing'")
     chosen = with_contours(names) if names else ()
@@ -80,7 +80,7 @@ def map_(
     check_out(report, out, force=force)
     with progress_bar(f"mapping {loaded.heading}") as progress:
         found = motion_map(
-            loaded, ranges, grid=grid, input=input_joint, follow=words(follow or []), progress=progress
+            loaded, ranges, grid=grid, input=input_joint, follow=words(follow, "--follow"), progress=progress
         )
         heights = measure_heights(found, chosen, take=which, levels=at) if chosen else ()
     deliver(MapFindings(found, heights), report, out, json=json, force=force)

@@ -106,10 +106,16 @@ Speed = Annotated[
 ]
 
 
-def words(given: list[str]) -> list[str]:
-    """The words of an option that is repeated, or has several parted by commas; each once."""
-    parts = [part.strip() for word in given for part in word.split(",")]
-    return list(dict.fromkeys(part for part in parts if part))
+def words(given: list[str] | None, option: str = "") -> list[str]:
+    """The words of an option that is repeated, or has several parted by commas; each once.
+
+    Raises `RequestError` for an `option` that is given without any.
+    """
+    parts = [part.strip() for word in given or () for part in word.split(",")]
+    found = list(dict.fromkeys(part for part in parts if part))
+    if given and option and not found:
+        raise RequestError(f"{option}: is empty; give what it lists, or leave it out")
+    return found
 
 
 def figure_formats(given: list[str] | None, out: Path | None) -> tuple[str, ...]:

@@ -105,7 +105,7 @@ def path(
     with progress_bar(f"searching paths of {draft.linkage.name}") as progress:
         found = generated(task, count=designs, starts=starts, seed=seed, progress=progress)
     deliver(
-        PathDesigns(task, found.candidates, str(wanted), seed, found.unfinished),
+        PathDesigns(task, found, str(wanted), seed),
         report,
         out,
         json=json,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -26,7 +26,19 @@ if TYPE_CHECKING:
 EXAMPLE = "as in L1=0.2:1, D=0 or angle=60:120deg"
 
 
+#: Options that ask for an RSSR; a task file says the same of any loop.
+OF_RSSRS = (
+    "y", "x", "table", "input_range", "output_range", "swing", "time_ratio", "bounds", "tolerance",
+    "transmission", "ball_angle", "motion_type", "ratio", "rank",
+)  # fmt: skip
+
+
 def survey(
+    ctx: typer.Context,
+    file: Annotated[
+        Path | None,
+        typer.Argument(metavar="[TASK]", help="A design task (TOML) for any loop, in place of an RSSR."),
+    ] = None,
     y: Annotated[str | None, typer.Option(help="The function of x, as in 'x^2'; sind takes degrees.")] = None,
     x: Annotated[str, typer.Option(help="Range of x: 0:1, 0:pi/2 or 0:90deg (radians then).")] = "0:1",
     table: Annotated[
@@ -57,11 +69,13 @@ def survey(
         ),
     ] = None,
     count: Annotated[
-        int,
+        int | None,
         typer.Option(
-            parser=count_of("--count"), metavar="COUNT", help="How many RSSRs are drawn, as in 1e6 or 1e8."
+            parser=count_of("--count"),
+            metavar="COUNT",
+            help="How many linkages are drawn, as in 1e8: 1e6 by default, 1e5 of a task.",
         ),
-    ] = 10**6,
+    ] = None,
     tolerance: Annotated[str, typer.Option(help="Greatest error of one that does what is wanted.")] = "1deg",
     transmission: Annotated[str, typer.Option(help="Least transmission angle; 0 for none.")] = "30deg",
     ball_angle: Annotated[
@@ -97,15 +111,37 @@ def survey(
     force: Force = False,
     json: Json = False,
 ) -> None:
-    """Judge millions of RSSRs with axes at any angle; the best are polished and checked (extra 'design')."""
-    from sevenbar.design.survey import SurveyTask, SwingWish, Travel
+    """Judge millions of RSSRs, or linkages of a task; the best are polished and checked (extra 'design')."""
+    from sevenbar.design.survey import LoopSurvey, SurveyTask, SwingWish, Travel
     from sevenbar.design.survey import survey as carried_out
-    from sevenbar.design.survey.report import survey_report
+    from sevenbar.design.survey.report import of_task, survey_report
+    from sevenbar.design.task.file.reader import task_file
+    from sevenbar.design.task.report import task_report
 
     if not 1 <= designs <= 100:
         raise RequestError(f"--designs: {designs} designs are not offered; give 1 to 100")
     if resume and journal is None:
         raise RequestError("--resume: of no folder; give --journal too, as in '--journal survey'")
+    kept = "nothing is written"
+    if journal is not None:
+        kept = f"the finished parts are kept in {journal}, --resume goes on with them"
+    options: dict[str, Any] = {
+        "out": journal, "resume": resume, "mixed": mixed, "threads": threads, "scheduler": scheduler,
+    }  # fmt: skip
+    if file is not None:
+        for name in OF_RSSRS:
+            if getattr(ctx.get_parameter_source(name), "name", "") == "COMMANDLINE":
+                option = "bound" if name == "bounds" else name.replace("_", "-")
+                raise RequestError(f"--{option}: asks for an RSSR, and {file} for a task; leave one out")
+        read = task_file(file)
+        loops = LoopSurvey(read.task, 10**5 if count is None else count, seed_of(seed))
+        of_loops = task_report(read.task, designs, command_line(), ())
+        check_out(of_loops, out, force=force)
+        with progress_bar(f"surveying linkages of {read.name}", rate=True, kept=kept) as progress:
+            found = carried_out(loops, designs_wanted=designs, **options, progress=progress)
+        deliver(of_task(found, read.name, read.source), of_loops, out, json=json, force=force)
+        end_of_work(found.unfinished)
+        return
     if [y is not None, table is not None, swing is not None].count(True) > 1:
         raise RequestError("--y: a function, a --table or a --swing; give one of the three")
     want: Wish | Travel | SwingWish
@@ -119,7 +155,7 @@ def survey(
     task = SurveyTask(
         want,
         _bounds(bounds or []),
-        count,
+        10**6 if count is None else count,
         seed_of(seed),
         tolerance=angle("--tolerance", tolerance),
         transmission_lowest=angle("--transmission", transmission),
@@ -130,14 +166,8 @@ def survey(
     )
     report = survey_report(designs, command_line())
     check_out(report, out, force=force)
-    kept = "nothing is written"
-    if journal is not None:
-        kept = f"the finished parts are kept in {journal}, --resume goes on with them"
     with progress_bar(f"surveying RSSRs for {want.title}", rate=True, kept=kept) as progress:
-        found = carried_out(
-            task, out=journal, resume=resume, mixed=mixed, threads=threads, scheduler=scheduler,
-            progress=progress,
-        )  # fmt: skip
+        found = carried_out(task, **options, progress=progress)
     deliver(found, report, out, json=json, force=force)
     end_of_work(found.unfinished)
 

@@ -90,8 +90,9 @@ def sweep(
             raise RequestError(f"{option}: of no folder; give --out too, as in '--out sweep'")
     draft = drafted(linkage, agree)
     plan = SweepPlan.of(
-        draft, axes, words(measure or list(USUAL)), method=method, count=count, seed=seed,
-        samples=samples, input=input_joint, output=output, part_size=part_size, follow=words(follow or []),
+        draft, axes, words(measure or list(USUAL), "--measure"), method=method, count=count, seed=seed,
+        samples=samples, input=input_joint, output=output, part_size=part_size,
+        follow=words(follow, "--follow"),
     )  # fmt: skip
     total = plan.space.count
     if out is None and total > MOST_WITHOUT_FOLDER:

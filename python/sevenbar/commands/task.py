@@ -67,15 +67,16 @@ def task(
         check_out(report, out, force=force)
         with progress_bar(f"searching a front of {read.name}") as progress:
             front = front_of(read.task, *pair, points=points, starts=starts, seed=seed, progress=progress)
-        deliver(FrontFound(front, read.name, read.source, starts, seed), report, out, json=json, force=force)
+        whole = FrontFound(front.found, read.name, read.source, starts, seed, front)
+        deliver(whole, report, out, json=json, force=force)
         end_of_work(front.unfinished)
         return
     single = task_report(read.task, designs, command_line(), formats)
     check_out(single, out, force=force)
     with progress_bar(f"searching designs of {read.name}") as progress:
         search = designed(read.task, count=designs, starts=starts, seed=seed, progress=progress)
-        found = TaskDesigns(search, read.name, read.source, starts, seed)
         # a search that found nothing says why
-        found.required()
+        search.required(starts)
+    found = TaskDesigns(search, read.name, read.source, starts, seed)
     deliver(found, single, out, json=json, force=force)
     end_of_work(found.unfinished)

@@ -96,7 +96,7 @@ def tolerance(
         input=input_joint,
         output=output,
         speed=speed,
-        follow=words(follow or []),
+        follow=words(follow, "--follow"),
     )
     if wanted is not None:
         error = _wanted(wanted, found.outputs[found.place(of, quantity)].unit)

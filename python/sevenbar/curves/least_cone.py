@@ -13,6 +13,7 @@ Source: docs/theory_measures.md, (13).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -21,8 +22,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 
-#: Places of the curve from which the exchange starts, where the cone is wider than half a space.
-WIDE_STARTS = 40
+#: Places from which the exchange starts, and where the cone is wider than half a space.
+STARTS, WIDE_STARTS = 6, 40
 
 #: Most exchanges; four to six are usual.
 EXCHANGES = 30
@@ -70,32 +71,56 @@ def least_axis(directions: Floats) -> Floats:
     return np.asarray(tried[int((tried @ directions.T).min(axis=1).argmax())])
 
 
-def least_cone(curve: Along) -> LeastCone:
-    """The smallest cone about a curve of unit vectors (3,).
+def exchanged(some: Callable[[int], Floats], farthest: Callable[[Floats], Floats]) -> Floats:
+    """The axis (3,) of the smallest cone about all of which `some` gives so many directions (k, 3).
 
-    A cone wider than half a space is the smallest about some forty places and those found on the way.
+    `farthest` gives directions (j, 3) among which are those farthest from an axis. A cone wider than half a
+    space is the smallest about `WIDE_STARTS` and those found on the way.
     """
-    few = _even(curve, 6)
-    axis = least_axis(curve.at(few))
-    if (curve.at(few) @ axis).min() <= 0:
-        few = _even(curve, WIDE_STARTS)
-        axis = least_axis(curve.at(few))
+    few = some(STARTS)
+    axis = least_axis(few)
+    if (few @ axis).min() <= 0:
+        few = some(WIDE_STARTS)
+        axis = least_axis(few)
     for _ in range(EXCHANGES):
-        own = curve.at(few) @ axis
-        height = dotted(curve, axis)
-        places = np.concatenate([[curve.edges[0]], height.stationary(0), [curve.edges[-1]]])
-        heights = height.at(places)[:, 0]
-        outside = places[heights < own.min() - ALIKE]
+        own, found = few @ axis, farthest(axis)
+        outside = found[found @ axis < own.min() - ALIKE]
         if not outside.size:
             break
         if own.min() > 0:
             # what does not touch a cone within half a space may go
             few = few[own < own.min() + TOUCHES]
-        few = np.union1d(few, outside)
-        axis = least_axis(curve.at(few))
+        few = np.concatenate([few, outside])
+        axis = least_axis(few)
+    return axis
+
+
+def half_angle(directions: Floats) -> float:
+    """Half the opening [rad] of the smallest cone about unit vectors (k, 3)."""
+
+    def some(count: int) -> Floats:
+        return np.asarray(directions[np.linspace(0, len(directions) - 1, count).astype(int)])
+
+    def farthest(axis: Floats) -> Floats:
+        return np.asarray(directions[[int((directions @ axis).argmin())]])
+
+    return float(angles(directions, exchanged(some, farthest)).max())
+
+
+def least_cone(curve: Along) -> LeastCone:
+    """The smallest cone about a curve of unit vectors (3,), as `exchanged` finds it."""
+    ends = curve.edges[[0, -1]]
+
+    def some(count: int) -> Floats:
+        return curve.at(np.linspace(ends[0], ends[1], count, endpoint=False))
+
+    def farthest(axis: Floats) -> Floats:
+        return curve.at(np.concatenate([ends, dotted(curve, axis).stationary(0)]))
+
+    axis = exchanged(some, farthest)
     # where the curve itself is farthest, not where the last exchange found it
     height = dotted(curve, axis)
-    places = np.concatenate([few, height.stationary(0)])
+    places = np.concatenate([ends, height.stationary(0)])
     heights = height.at(places)[:, 0]
     touching = np.unique(places[heights < heights.min() + TOUCHES])
     still = touching[np.isin(touching, height.stationary(0))]
@@ -106,7 +131,3 @@ def least_cone(curve: Along) -> LeastCone:
 def dotted(curve: Along, axis: Floats) -> Along:
     """The scalar product of a curve's vectors with one, a single quantity."""
     return Along(curve.edges, (curve.series @ axis)[:, :, None])
-
-
-def _even(curve: Along, count: int) -> Floats:
-    return np.asarray(np.linspace(curve.edges[0], curve.edges[-1], count + 1)[:-1])

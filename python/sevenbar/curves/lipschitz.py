@@ -4,14 +4,16 @@ Between two places a and b, with |f'| <= B there,
 
     f >= (f(a) + f(b) - B (b - a)) / 2                                                                    (15)
 
-so a stretch on which this is above the lowest value found is done, and any other is halved. Nothing is missed
-but of a quantity that rests near the value that is wanted on more stretches than `MOST`.
+so a stretch on which this is above the lowest value found is done, and any other is halved. A quantity that
+rests near the value that is wanted is left on many stretches; the search ends where these are more than
+`MOST`, and says by how much it may be lower.
 
 Source: docs/theory_measures.md, (15).
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -19,7 +21,7 @@ import numpy as np
 from sevenbar.arrays import Floats
 
 #: Most stretches at a time; with more the quantity rests near the value that is wanted.
-MOST = 4096
+MOST = 2**14
 
 #: Most halvings of a stretch.
 HALVINGS = 40
@@ -30,18 +32,23 @@ TO_ROUNDING = 60
 Function = Callable[[Floats], Floats]
 
 
-def lowest(function: Function, edges: Floats, bounds: Floats, small: float) -> tuple[float, float]:
-    """Where a quantity is lowest between `edges` (m + 1,), and its value, up to `small`.
+def lowest(
+    function: Function, edges: Floats, bounds: Floats, small: float, *, floor: float
+) -> tuple[float, float, float]:
+    """Where a quantity is lowest between `edges` (m + 1,), its value, and by how much it may be lower.
 
-    Slopes are within `bounds` (m,). Of equal values the first place counts. Of a quantity that stays within
-    `small` of its lowest value on more stretches than `MOST` it is the lowest of the places tried.
+    That is `small` at most, but where the search ended at `MOST`. Slopes are within `bounds` (m,); nowhere it
+    is below `floor`. Of equal values the first place counts.
     """
     a, b, slope = edges[:-1], edges[1:], bounds
     values = function(edges)
     low, high = values[:-1], values[1:]
     place, best = edges[int(values.argmin())], float(values.min())
+    missed = 0.0
     for _ in range(HALVINGS):
-        left = (low + high - slope * (b - a)) / 2 < best - small
+        reach = np.maximum((low + high - slope * (b - a)) / 2, floor)
+        left = reach < best - small
+        missed = max(0.0, best - float(reach.min(initial=math.inf)))
         if not left.any() or left.sum() > MOST:
             break
         a, b, slope, low, high = a[left], b[left], slope[left], low[left], high[left]
@@ -52,7 +59,7 @@ def lowest(function: Function, edges: Floats, bounds: Floats, small: float) -> t
         a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
         low, high = np.concatenate([low, between]), np.concatenate([between, high])
         slope = np.concatenate([slope, slope])
-    return float(place), best
+    return float(place), best, missed
 
 
 def crossings(function: Function, edges: Floats, bounds: Floats, small: float) -> Floats:

@@ -47,4 +47,4 @@ def warn_of_angles(description: Mapping[str, Any], source: str = "") -> None:
         if source
         else f"{doubt} (numbers are in radians; '80 deg' is a text with its unit)"
     )
-    warnings.warn(text, AngleUnitWarning, stacklevel=3)
+    warnings.warn(text, AngleUnitWarning, stacklevel=4)

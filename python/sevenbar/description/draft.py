@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from sevenbar.description.files import loads
+from sevenbar.description.files import checked, toml_tables
 from sevenbar.description.forms import from_description
 from sevenbar.description.load_tables import with_rows
 from sevenbar.description.toml_text import is_tables
@@ -43,8 +43,16 @@ class Draft:
     @staticmethod
     def of(text: str, source: str, *, agree: float | None = None) -> Draft:
         """The draft of a TOML text; `source` is its name in messages. Raises `DescriptionError`."""
-        loads(text, source)  # with all that is wrong in it
-        return Draft(text, _opened(text, source), source, agree=agree)
+        return replace(Draft.of_tables(toml_tables(text, source), source, agree=agree), text=text)
+
+    @staticmethod
+    def of_tables(raw: Mapping[str, Any], source: str, *, agree: float | None = None) -> Draft:
+        """The draft of a file's tables; files that they name lie in the folder of `source`.
+
+        Raises `DescriptionError`.
+        """
+        checked(raw, source)  # with all that is wrong in it
+        return Draft("", _opened(raw, source), source, agree=agree)
 
     @staticmethod
     def of_linkage(linkage: Loop) -> Draft:
@@ -53,7 +61,7 @@ class Draft:
 
     def as_opened(self) -> Draft:
         """The draft as its text has it."""
-        return replace(self, raw=_opened(self.text, self.source))
+        return replace(self, raw=_opened(tomllib.loads(self.text), self.source))
 
     @cached_property
     def linkage(self) -> Linkage:
@@ -62,13 +70,18 @@ class Draft:
 
     def with_value(self, place: Place, value: object) -> Draft:
         """The draft with a value at a place, whose tables are made where the file has none."""
+        return self.with_places({place: value})
+
+    def with_places(self, values: Mapping[Place, object]) -> Draft:
+        """The draft with values at places, whose tables are made where the file has none."""
         raw = copy.deepcopy(dict(self.raw))
-        table: Any = raw
-        for part in place[:-1]:
-            if isinstance(part, str) and part not in table:
-                table[part] = {}
-            table = table[part]
-        table[place[-1]] = value
+        for place, value in values.items():
+            table: Any = raw
+            for part in place[:-1]:
+                if isinstance(part, str) and part not in table:
+                    table[part] = {}
+                table = table[part]
+            table[place[-1]] = value
         return replace(self, raw=raw)
 
     def dimension(self, name: str) -> Dimension:
@@ -87,11 +100,8 @@ class Draft:
 
     def with_values(self, values: Mapping[str, float]) -> Draft:
         """The draft with other values of dimensions, by name, each in the file's unit."""
-        draft = self
-        for name, value in values.items():
-            dimension = self.dimension(name)
-            draft = draft.with_value(dimension.place, self.written(dimension, float(value)))
-        return draft
+        own = [(self.dimension(name), float(value)) for name, value in values.items()]
+        return self.with_places({d.place: self.written(d, value) for d, value in own})
 
     def holding(self, follow: Collection[str] = ()) -> Draft:
         """The draft whose dimensions stay as they are while others change, except those that `follow`.
@@ -169,12 +179,11 @@ class Draft:
         return written if _says(written, self.raw) else _with_short_lines(tomlkit.dumps(self.raw))
 
 
-def _opened(text: str, source: str) -> Mapping[str, Any]:
-    """The tables of a TOML text, with the rows of a load's table: they may be written to another folder."""
+def _opened(raw: Mapping[str, Any], source: str) -> Mapping[str, Any]:
+    """The tables of a file, with the rows of a load's table: they may be written to another folder."""
     # most programs that import drafts open none
     from sevenbar.description.schema import context_of
 
-    raw = tomllib.loads(text)
     return with_rows(raw, context_of(raw, source))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -88,7 +89,11 @@ def loads(content: str, source: str = "text") -> Linkage:
     >>> sb.loads(gallery.text("bennett")).name
     'Bennett linkage'
     """
-    raw = toml_tables(content, source)
+    return checked(toml_tables(content, source), source)
+
+
+def checked(raw: Mapping[str, Any], source: str) -> Linkage:
+    """The linkage that the tables of a file describe, with a warning where its angles are in doubt."""
     linkage = from_description(raw, source)
     warn_of_angles(raw, source)
     return linkage

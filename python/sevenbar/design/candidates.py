@@ -155,7 +155,10 @@ def checked(
     if not motion.circuits:
         return Refusal("assembly", "cannot be assembled at any input")
     ways = located(motion, claim.inputs, claim.outputs, poses)
-    fault = _one_way(ways)
+    lost = np.flatnonzero(ways.circuit < 0)
+    if lost.size:
+        return Refusal("assembly", f"point {lost[0] + 1} of {len(ways.circuit)} is reached by no circuit")
+    fault = one_way(ways.circuit, ways.branch)
     if fault is not None:
         return fault
     circuit = motion.circuits[ways.circuit[0]]
@@ -236,24 +239,21 @@ def joint_differences(difference: Floats, turning: Booleans, size: float) -> Flo
     return np.where(turning, short_way(difference), difference / size)
 
 
-def _one_way(ways: Ways) -> Refusal | None:
-    """Why poses are not on one pass of one circuit."""
-    lost = np.flatnonzero(ways.circuit < 0)
-    if lost.size:
-        return Refusal("assembly", f"point {lost[0] + 1} of {len(ways.circuit)} is reached by no circuit")
-    other = np.flatnonzero(ways.circuit != ways.circuit[0])
+def one_way(circuit: Integers, branch: Integers) -> Refusal | None:
+    """Why poses (n,) on these circuits and branches are not on one pass of one circuit."""
+    other = np.flatnonzero(circuit != circuit[0])
     if other.size:
         return Refusal(
             "circuit",
-            f"point 1 lies on circuit {ways.circuit[0]}, point {other[0] + 1} on circuit "
-            f"{ways.circuit[other[0]]}: it must be taken apart between them",
+            f"point 1 lies on circuit {circuit[0]}, point {other[0] + 1} on circuit {circuit[other[0]]}: it "
+            "must be taken apart between them",
         )
-    other = np.flatnonzero(ways.branch != ways.branch[0])
+    other = np.flatnonzero(branch != branch[0])
     if other.size:
         return Refusal(
             "dead centre",
-            f"point 1 lies on branch {ways.branch[0]}, point {other[0] + 1} on branch "
-            f"{ways.branch[other[0]]} of circuit {ways.circuit[0]}: a dead centre of the input lies between",
+            f"point 1 lies on branch {branch[0]}, point {other[0] + 1} on branch {branch[other[0]]} of "
+            f"circuit {circuit[0]}: a dead centre of the input lies between",
         )
     return None
 
@@ -327,19 +327,28 @@ def _within(found: Candidate, limits: Limits) -> Refusal | None:
         return Refusal(
             "transmission", f"transmission angle down to {angle:.4g} deg, {wanted:g} deg are required"
         )
-    if limits.size is not None:
-        low, high = limits.size
-        links = [d.value for d in found.draft.dimensions if d.kind == "length" and d.positive]
-        shortest = min(links, default=math.inf)
-        if shortest < low * (1 - LIMIT_ROUNDING) or found.size > high * (1 + LIMIT_ROUNDING):
-            return Refusal(
-                "size",
-                f"shortest link {shortest:.4g}, longest dimension {found.size:.4g}; "
-                f"{low:g} to {high:g} are allowed",
-            )
+    fault = size_fault(found.draft, limits)
+    if fault is not None:
+        return fault
     if limits.motion_type is not None and found.motion_type != limits.motion_type:
         return Refusal("motion type", f"is a {found.motion_type}, required is a {limits.motion_type}")
     return None
+
+
+def size_fault(draft: Draft, limits: Limits) -> Refusal | None:
+    """Which length a description has that is shorter or longer than the limits let it be, if any."""
+    if limits.size is None:
+        return None
+    low, high = limits.size
+    lengths = [d for d in draft.dimensions if d.kind == "length"]
+    shortest = min((d.value for d in lengths if d.positive), default=math.inf)
+    longest = max(abs(d.value) for d in lengths)
+    if shortest >= low * (1 - LIMIT_ROUNDING) and longest <= high * (1 + LIMIT_ROUNDING):
+        return None
+    return Refusal(
+        "size",
+        f"shortest link {shortest:.4g}, longest dimension {longest:.4g}; {low:g} to {high:g} are allowed",
+    )
 
 
 def least_error(kept: Sequence[Candidate]) -> str:

@@ -7,6 +7,7 @@ slides in a plane a disc, as wide as it slides, and a slipper on it.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -38,6 +39,8 @@ PAST_THE_OTHER, ELBOW = -0.35, 1.6
 DISC, SLIPPER, GAP = 0.4, 0.6, 0.04
 #: Above this cosine between an arm and the axis, the arm leaves through the hub's end, which then has a lid.
 THROUGH_THE_END = 0.5
+#: Below this distance [heights of a hub] two places of a link are one: copies, but for rounding.
+SAME = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,11 +200,9 @@ class _Build:
         self.add += [Rod(a, b, ARM * unit) for a, b in steps]
         self.add += [Ball(a, 1.04 * ARM * unit) for a, _ in steps[1:]]
         for middle, outward, may_close, side in self._hubs:
-            leaves = [
-                (b - a if np.allclose(a, middle) else a - b)
-                for a, b in steps
-                if np.allclose(a, middle) or np.allclose(b, middle)
-            ]
+            near = SAME * unit
+            leaves = [b - a for a, b in steps if math.dist(a, middle) < near]
+            leaves += [a - b for a, b in steps if math.dist(b, middle) < near]
             closed = may_close and any(
                 way @ outward > THROUGH_THE_END * np.linalg.norm(way) for way in leaves
             )
@@ -224,7 +225,7 @@ class _Build:
                 here, ahead = (places[-1], places[-2]) if at_end else (places[0], places[1])
                 way = ahead - here
                 aslant = way @ outward < PAST_THE_OTHER * np.linalg.norm(way)
-                if not np.allclose(here, middle) or not aslant:
+                if not aslant or math.dist(here, middle) > SAME * unit:
                     continue
                 off = way - (way @ outward) * outward
                 length = float(np.linalg.norm(off))

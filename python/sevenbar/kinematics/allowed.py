@@ -11,6 +11,7 @@ import numpy as np
 from sevenbar.arrays import Floats, Integers
 from sevenbar.curves.least_cone import angles, dotted, least_cone
 from sevenbar.kinematics.circuit_extents import chosen, rod_pairs
+from sevenbar.kinematics.circuit_path import CircuitPath
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.extents import Allowed, AllowedSpan, Flags
 from sevenbar.kinematics.joint_course import JointCourse, joint_course
@@ -24,6 +25,9 @@ TOUCH = 1e-11
 
 #: Places nearer to each other than this part of the circuit are one.
 SAME = 1e-12
+
+#: The same of zeros that are found from two pieces of a path, each up to its end and a little beyond.
+SEAM = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,11 +49,14 @@ def allowed(linkage: Solvable, circuit: Circuit) -> Allowed:
         return Allowed(whole, known, np.full(len(known), "", dtype="<U1"))
     course = joint_course(linkage, circuit)
     stops = [*_ranges(linkage, course), *_cones(linkage, course), *_rods(linkage, circuit, course)]
-    by_row = [stop.rows(circuit.q) for stop in stops]
-    stopped = np.full(len(known), "", dtype=f"<U{max((len(s.name) for s in stops), default=1)}")
-    for stop, inside in zip(reversed(stops), reversed(by_row), strict=True):
-        stopped[known & ~inside] = stop.name
-    return Allowed(_spans(course, circuit, stops), known & (stopped == ""), stopped)
+    inside = np.array([stop.rows(circuit.q) | ~known for stop in stops]).reshape(len(stops), len(known))
+    stopped = np.array([_passed(stops, row) for row in inside.T], dtype=np.str_)
+    return Allowed(_spans(course, circuit, stops), known & inside.all(axis=0), stopped)
+
+
+def _passed(stops: list[_Stop], inside: Flags) -> str:
+    """The names of the stops that a place or row is not within."""
+    return ", ".join(stop.name for stop, own in zip(stops, inside, strict=True) if not own)
 
 
 def _ends(circuit: Circuit) -> tuple[float, float]:
@@ -77,9 +84,6 @@ def _spans(course: JointCourse, circuit: Circuit, stops: list[_Stop]) -> tuple[A
     if free.all():
         return (AllowedSpan(*_ends(circuit), "", "", 1.0, _back(circuit)),)
 
-    def ends(stretch: int) -> str:
-        return ", ".join(stop.name for stop, own in zip(stops, inside[:, stretch], strict=True) if not own)
-
     count = len(middles)
     back = course.path.poses.stationary(course.path.input) if circuit.turns_back else np.empty(0)
     # of a closed circuit the stretches go on over its end
@@ -92,26 +96,26 @@ def _spans(course: JointCourse, circuit: Circuit, stops: list[_Stop]) -> tuple[A
             continue
         if run:
             before, after = run[0] - 1, run[-1] + 1
-            share = sum(marks[k + 1] - marks[k] for k in run) / length
+            way = float(sum(marks[k + 1] - marks[k] for k in run))
             found.append(
                 AllowedSpan(
                     course.input_at(float(marks[run[0]])),
                     course.input_at(float(marks[run[-1] + 1])),
-                    ends(before % count) if closed or before >= 0 else "",
-                    ends(after % count) if closed or after < count else "",
-                    float(share),
-                    _passed(back, float(marks[run[0]]), float(share) * length, length),
+                    _passed(stops, inside[:, before % count]) if closed or before >= 0 else "",
+                    _passed(stops, inside[:, after % count]) if closed or after < count else "",
+                    way / length,
+                    _between(back, float(marks[run[0]]), way, course.path),
                 )
             )
         run = []
     return tuple(found)
 
 
-def _passed(places: Floats, start: float, way: float, length: float) -> int:
-    """How many places a way from a start passes, over the end as well; what is at both ends is one."""
-    ahead = np.sort((places - start) % length)
-    apart = np.diff(ahead, prepend=-length) > SAME * length
-    return int(np.count_nonzero(apart & (ahead > 0.0) & (ahead < way)))
+def _between(places: Floats, begin: float, way: float, path: CircuitPath) -> int:
+    """How many of some places lie on the way from one place of a path; one at the seam counts once."""
+    ahead = np.sort((places - begin) % path.length if path.closed else places - begin)
+    one = SEAM * path.length
+    return int(((ahead > one) & (ahead < way - one) & (np.diff(ahead, prepend=-np.inf) > one)).sum())
 
 
 def _ranges(linkage: Solvable, course: JointCourse) -> Iterator[_Stop]:

@@ -3,29 +3,26 @@
 With u the seat, a direction of the link before, v the stud, one of the link after, and R the rotation of the
 joint, both seen from the frame before it,
 
-    cos(angle) = u . R v,        d cos(angle) / dq_c = a_c . (R v x u)                                   (12)
-
-where a_c is the axis of the turn q_c as the turns before have left it.
+    cos(angle) = u . R v                                                                                 (12)
 
 Source: docs/theory_measures.md, (12).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from sevenbar.arrays import Floats, finite_array
+from sevenbar.curves.least_cone import angles
 from sevenbar.errors import RequestError, no_joint, shown
-from sevenbar.kinematics.geometry import Joint, Loop
+from sevenbar.kinematics.geometry import Loop
 from sevenbar.kinematics.rigid import about, inverse, unit
-from sevenbar.kinematics.sensitivity import Numbers
 
-#: Sine of a bend below which it has a kink: there its slopes are those of a cone's tip, zero.
-TIP = 1e-12
+#: Sine of the angle of two lines below which it has a kink: its slopes are known to half the digits there.
+KINK = 1e-9
 
 #: A rod shorter than this part of the size has no direction.
 NO_LENGTH = 1e-9
@@ -44,60 +41,21 @@ class BallAngle:
     seat: Floats
     stud: Floats
     turns: tuple[tuple[Floats, int], ...]
-    end: Floats
 
     def rotation(self, q: Floats) -> Floats:
         """The rotations (n, 3, 3) of the link after against the link before at poses (n, columns)."""
-        return self._turned(q)[0]
+        now: Floats = np.broadcast_to(np.eye(3), (len(q), 3, 3))
+        for k, (fixed, axis) in enumerate(self.turns):
+            now = now @ fixed @ about(axis, q[:, self.own.start + k])
+        return now
 
     def studs(self, q: Floats) -> Floats:
         """The stud's directions (n, 3) in the frame before the joint at poses (n, columns)."""
         return np.asarray(self.rotation(q) @ self.stud)
 
-    def cosine(self, q: Floats) -> Floats:
-        """The cosine (n,) of the angle at poses (n, columns): smooth everywhere."""
-        return np.asarray(self.studs(q) @ self.seat)
-
     def at(self, q: Floats) -> Floats:
         """The angle (n,) [rad, 0 to pi] at poses (n, columns)."""
-        studs = self.studs(q)
-        sines = np.linalg.norm(np.cross(studs, self.seat), axis=1)
-        return np.asarray(np.arctan2(sines, studs @ self.seat))
-
-    def cosine_slopes(self, q: Floats) -> Floats:
-        """The derivatives (n, columns) of the cosine by all columns of the poses; by other joints zero."""
-        rotation, axes = self._turned(q)
-        square = np.cross(rotation @ self.stud, self.seat)
-        found = np.zeros(q.shape)
-        found[:, self.own.start : self.own.start + len(self.turns)] = np.einsum("cnj,nj->nc", axes, square)
-        return found
-
-    def slopes(self, q: Floats) -> Floats:
-        """The derivatives (n, columns) of the angle by all columns; 0 where seat and stud agree."""
-        return self._by_angle(self.cosine_slopes(q), q)
-
-    def rotation_slopes(self, q: Floats) -> Floats:
-        """The derivatives (n, 3) of the angle by the joint's rotation about x, y, z of the frame before it.
-
-        So `Slopes.by_number` of `kinematics.sensitivity` has a ball that is no pair of turns.
-        """
-        return self._by_angle(np.cross(self.studs(q), self.seat), q)
-
-    def _by_angle(self, by: Floats, q: Floats) -> Floats:
-        sines = np.sin(self.at(q))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.where((np.abs(sines) < TIP)[:, None], 0.0, -by / sines[:, None])
-        return np.asarray(found)
-
-    def _turned(self, q: Floats) -> tuple[Floats, Floats]:
-        """The rotations (n, 3, 3), and the turns' axes (turns, n, 3), in the frame before the joint."""
-        now = np.broadcast_to(np.eye(3), (len(q), 3, 3))
-        axes = []
-        for k, (fixed, axis) in enumerate(self.turns):
-            now = now @ fixed
-            axes.append(now[:, :, axis])
-            now = now @ about(axis, q[:, self.own.start + k])
-        return now @ self.end, np.stack(axes)
+        return angles(self.studs(q), self.seat)
 
 
 def ball_angle(
@@ -105,23 +63,20 @@ def ball_angle(
     joint: str,
     seat: npt.ArrayLike | None = None,
     stud: npt.ArrayLike | None = None,
-    *,
-    numbers: Numbers | None = None,
 ) -> BallAngle:
     """The angle of a joint S or U between a `seat` on the link before it and a `stud` on the link after.
 
     Directions (3,) are written as points of the link are, of any length but 0; left out, that of the rod to
-    the link's other joint. Poses are rows of an analysis; with `numbers` those of its word, in which
-    a ball before an idle link has two turns (`Numbers.poses`). Raises `RequestError` for a joint of another
-    kind, and for a rod without length.
+    the link's other joint. Poses are rows of an analysis. Raises `RequestError` for a joint of another kind,
+    and for a rod without length.
 
         >>> import numpy as np
         >>> import sevenbar as sb
         >>> linkage = sb.load("rssr")
         >>> bend = ball_angle(linkage, "ball_a", seat=(0, 0, -1))  # between the crank's axis and the coupler
         >>> q = linkage.motion(8).circuits[0].q
-        >>> bend.at(q).shape, bend.slopes(q).shape
-        ((8,), (8, 8))
+        >>> bend.at(q).shape
+        (8,)
 
     Source: docs/theory_measures.md, (12).
     """
@@ -130,9 +85,25 @@ def ball_angle(
     count = len(linkage.joints)
     u = rod(linkage, place or count, place) if seat is None else _direction("seat", seat)
     v = rod(linkage, place + 1, place) if stud is None else _direction("stud", stud)
-    turns, end = _turns(own) if numbers is None or place not in numbers.spun else _spun(numbers, place)
+    turns = tuple((own.before(step)[:3, :3], step.axis) for step in own.row.steps)
     before, after = sides(linkage, place)
-    return BallAngle(own.name, linkage.places[place], unit(before @ u), unit(after @ v), turns, end)
+    return BallAngle(own.name, linkage.places[place], unit(before @ u), unit(after @ v), turns)
+
+
+def line_angles(ends: Floats, by: Floats) -> tuple[Floats, Floats]:
+    """The angles (n,) between the line from place 0 to 1 and that from 2 to 3, and their slopes (n, k).
+
+    `ends` (n, 4, 3) are the places, `by` (n, 4, 3, k) their slopes. At a kink slopes are NaN.
+    """
+    lines, by_lines = ends[:, 1::2] - ends[:, ::2], by[:, 1::2] - by[:, ::2]
+    sizes = np.linalg.norm(lines, axis=2, keepdims=True)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u, v = np.moveaxis(lines / sizes, 1, 0)
+        cross = np.cross(u, v)
+        sine = np.linalg.norm(cross, axis=1)
+        axis = cross / np.where(sine > KINK, sine, np.nan)[:, None]
+        across = np.stack([np.cross(u, axis), np.cross(axis, v)], axis=1) / sizes
+    return np.arctan2(sine, (u * v).sum(axis=1)), np.einsum("nli,nlik->nk", across, by_lines)
 
 
 def joint_at(linkage: Loop, name: str) -> int:
@@ -170,6 +141,13 @@ def rod_ends(linkage: Loop, link: int) -> tuple[Floats, Floats]:
     return back[:3, 3], (back @ linkage.links[link - 1])[:3, 3]
 
 
+def has_length(linkage: Loop, link: int) -> bool:
+    """Whether the joints before and after a link are at two places."""
+    start, end = rod_ends(linkage, link)
+    size = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
+    return bool(np.linalg.norm(end - start) > NO_LENGTH * size)
+
+
 def rod(linkage: Loop, link: int, joint: int) -> Floats:
     """The direction (3,) of a link from a joint of it to its other one, as its points are written.
 
@@ -178,10 +156,8 @@ def rod(linkage: Loop, link: int, joint: int) -> Floats:
     start, end = rod_ends(linkage, link)
     count = len(linkage.joints)
     ahead = joint == link - 1
-    way = end - start if ahead else start - end
-    size = float(np.linalg.norm(linkage.transforms[:, :3, 3], axis=1).sum())
-    if np.linalg.norm(way) > NO_LENGTH * size:
-        return unit(way)
+    if has_length(linkage, link):
+        return unit(end - start if ahead else start - end)
     other = linkage.joints[link % count if ahead else link - 1]
     if other.row.is_ball:
         side = "stud" if ahead else "seat"
@@ -202,15 +178,3 @@ def _direction(key: str, value: npt.ArrayLike) -> Floats:
     if direction.size != 3 or not direction.any():
         raise RequestError(f"{key}: {shown(value)} is not a direction; give three numbers, not all 0")
     return direction
-
-
-def _turns(joint: Joint) -> tuple[tuple[tuple[Floats, int], ...], Floats]:
-    turns = [(joint.before(step)[:3, :3], step.axis) for step in joint.row.steps]
-    return tuple(turns), np.eye(3)
-
-
-def _spun(numbers: Numbers, place: int) -> tuple[tuple[tuple[Floats, int], ...], Floats]:
-    """A ball as the word has it: two turns about z of their frames, and a third that is held."""
-    values = numbers.values(numbers.nominal)
-    fixed: Sequence[Floats] = [one.pose(values)[:3, :3] for one in numbers.word.inner[place]]
-    return tuple((one, 2) for one in fixed[:-1]), fixed[-1]

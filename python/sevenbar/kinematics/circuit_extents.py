@@ -135,12 +135,13 @@ def clearances(linkage: Solvable, circuit: Circuit) -> tuple[Clearance, ...]:
 def clearance_of(linkage: Solvable, circuit: Circuit, first: int, second: int) -> Clearance:
     """The least distance of two links."""
     course = joint_course(linkage, circuit)
-    place, value = course.rods(first, second).least()
+    place, value, missed = course.rods(first, second).least()
     radii = linkage.stops.radii
     return Clearance(
         (first, second),
         Peak(value, course.input_at(place)),
         radii.get(first, 0.0) + radii.get(second, 0.0),
+        missed,
     )
 
 

@@ -191,8 +191,3 @@ class EnergyBuilder:
         if self.solver.linkage.column_kinds[self.path.input] == "slide":
             out[:, 3] *= LENGTHS[self.solver.linkage.length_unit]
         return out, potential
-
-
-def energy_course(solver: ForceSolver, path: CircuitPath) -> EnergyCourse:
-    """The course of a path with what acts on it; see `EnergyCourse`."""
-    return EnergyBuilder(solver, path).built()

@@ -21,18 +21,15 @@ from sevenbar.arrays import Floats
 from sevenbar.curves.along import Along
 from sevenbar.curves.least_cone import angles, least_cone
 from sevenbar.errors import RequestError
-from sevenbar.kinematics.ball_angle import joint_at, sides
+from sevenbar.kinematics.ball_angle import KINK, joint_at, line_angles, sides
 from sevenbar.kinematics.circuit_extents import chosen, rod_pairs
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.gradients import MeasureSlopes
 from sevenbar.kinematics.joint_course import JointCourse, joint_course
-from sevenbar.kinematics.rods import nearest_shares
+from sevenbar.kinematics.rods import distance_slopes
 from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.kinematics.stops import Cone
 from sevenbar.kinematics.word import Carried
-
-#: Sine of a bend below which it has a kink.
-TIP = 1e-9
 
 #: Places at which a curve that runs on a cone is [rad] on it.
 EVEN, ON_CONE = 17, 1e-9
@@ -121,7 +118,8 @@ def _of_bend(course: JointCourse, numbers: Numbers, name: str, joint: str) -> Me
         if share:
             q, driver = course.pose(float(place))
             here = numbers.loop(driver, extra=points).slopes(q, 0)
-            total = total + share * _angle_slopes(here.points[0, -4:, 0], here.points_by_number[0, -4:, 0])
+            _, slopes = line_angles(here.points[:, -4:, 0], here.points_by_number[:, -4:, 0].swapaxes(2, 3))
+            total = total + share * slopes[0]
     scale = math.degrees(1.0)
     return MeasureSlopes(name, "deg", value * scale, total * scale, 1 / scale)
 
@@ -138,7 +136,7 @@ def _multipliers(directions: Floats, axis: Floats) -> Floats | None:
 
     cosines = directions @ axis
     sines = np.sqrt(np.maximum(1 - cosines**2, 0.0))
-    if (sines < TIP).any():
+    if (sines < KINK).any():
         return None
     ways = (directions - cosines[:, None] * axis) / sines[:, None]
     found, rest = nnls(np.vstack([ways.T, np.ones(len(ways))]), np.array([0.0, 0.0, 0.0, 1.0]))
@@ -160,24 +158,6 @@ def _arms(numbers: Numbers, place: int, given: Mapping[str, tuple[float, ...] | 
     return points
 
 
-def _angle_slopes(places: Floats, by: Floats) -> Floats:
-    """The derivatives (k,) of the angle between lines of four places (4, 3), by those of them (4, k, 3)."""
-    found = np.zeros(by.shape[1])
-    lines = [places[1] - places[0], places[3] - places[2]]
-    if not (lines[0].any() and lines[1].any()):
-        # a rod without length, whose direction is that of an axis
-        return np.full(by.shape[1], np.nan)
-    units = [line / np.linalg.norm(line) for line in lines]
-    cosine = float(units[0] @ units[1])
-    sine = float(np.linalg.norm(np.cross(*units)))
-    if sine < TIP:
-        return np.full(by.shape[1], np.nan)
-    for k in (0, 1):
-        across = (units[1 - k] - cosine * units[k]) / np.linalg.norm(lines[k])
-        found -= (by[2 * k + 1] - by[2 * k]) @ across / sine
-    return found
-
-
 def _of_clearance(course: JointCourse, numbers: Numbers, name: str) -> MeasureSlopes | None:
     """The least gap of all pairs of links, of those with a radius where there are any."""
     linkage, radii = course.linkage, course.linkage.stops.radii
@@ -188,14 +168,12 @@ def _of_clearance(course: JointCourse, numbers: Numbers, name: str) -> MeasureSl
         return None
     least = {pair: course.rods(*pair).least() for pair in pairs}
     pair = min(pairs, key=lambda one: least[one][1] - thick[one])
-    place, distance = least[pair]
+    place, distance, _ = least[pair]
     slopes = np.full(len(numbers.names), np.nan)
     if distance > CROSSED * course.size:
         q, driver = course.pose(place)
         points = [point for link in pair for point in numbers.word.rod(link)]
         here = numbers.loop(driver, extra=points).slopes(q, 0)
-        ends, by = here.points[0, -4:, 0], here.points_by_number[0, -4:, 0]
-        t, r = (float(share[0]) for share in nearest_shares(*ends[:, None]))
-        weights = np.array([1 - t, t, r - 1, -r])
-        slopes = np.einsum("e,ekj,j->k", weights, by, weights @ ends) / distance
+        by = here.points_by_number[:, -4:, 0].swapaxes(2, 3)
+        slopes = distance_slopes(here.points[:, -4:, 0], by)[1][0]
     return MeasureSlopes(name, linkage.length_unit, distance - thick[pair], slopes)

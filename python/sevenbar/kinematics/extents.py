@@ -64,11 +64,15 @@ class BallCone:
 
 @dataclass(frozen=True)
 class Clearance:
-    """The least distance [length] of two links as rods, and what is left of it between their `radii`."""
+    """The least distance [length] of two links as rods, and what is left of it between their `radii`.
+
+    It may be less by `missed`: more than 0 where the distance rests near its least over much of the circuit.
+    """
 
     links: tuple[int, int]
     distance: Peak
     radii: float = 0.0
+    missed: float = 0.0
 
     @property
     def gap(self) -> float:
@@ -97,7 +101,7 @@ class AllowedSpan:
 class Allowed:
     """The parts of a circuit within its stops, in order; all of it, one span without stops, has share 1.
 
-    `within` (n,) says it of each row of the circuit, `stopped_by` (n,) which stop forbids a row, else "".
+    `within` (n,) says it of each row of the circuit, `stopped_by` (n,) which stops forbid a row, else "".
     """
 
     spans: tuple[AllowedSpan, ...]

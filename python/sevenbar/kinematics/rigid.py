@@ -15,6 +15,9 @@ import numpy.typing as npt
 
 from sevenbar.arrays import Floats
 
+#: How far the product of a rotation and its transpose may be from 1: figures written with four decimals pass.
+ROUNDED = 1e-3
+
 #: What is rounding of a cosine or sine at most, however large the angle.
 MOST_ROUNDING = 1e-9
 
@@ -25,6 +28,17 @@ def pose(rotation: npt.ArrayLike, origin: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Fl
     matrix = np.zeros((*np.broadcast_shapes(turn.shape[:-2], place.shape[:-1]), 4, 4))
     matrix[..., :3, :3], matrix[..., :3, 3], matrix[..., 3, 3] = turn, place, 1.0
     return matrix
+
+
+def flaw_of_rotation(matrix: Floats) -> str:
+    """Why a matrix (3, 3) is no rotation; empty for one that is, to the digits of `ROUNDED`."""
+    off = float(np.abs(matrix @ matrix.T - np.eye(3)).max())
+    if off > ROUNDED:
+        return (
+            f"is no rotation: its rows are not of length 1 and at right angles (off by {off:.2g}); "
+            "give a rotation, or axis and angle"
+        )
+    return "is no rotation: it mirrors; change the sign of one row" if np.linalg.det(matrix) < 0 else ""
 
 
 def inverse(motion: Floats) -> Floats:
@@ -54,10 +68,15 @@ def about(axis: int, angle: npt.ArrayLike) -> Floats:
     return matrix
 
 
+def cross_matrix(vector: npt.ArrayLike) -> Floats:
+    """The matrix (3, 3) that takes a vector to its product with one on its left: `W v = w x v`."""
+    x, y, z = np.asarray(vector, dtype=np.float64).tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
 def turns_about(axis: Floats, angles: Floats) -> Floats:
     """The rotations (n, 3, 3) about a direction (3,) of length 1 by angles (n,) [rad] (Rodrigues)."""
-    x, y, z = axis
-    tilde = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    tilde = cross_matrix(axis)
     sines, versed = np.sin(angles)[:, None, None], (1 - np.cos(angles))[:, None, None]
     return np.asarray(np.eye(3) + sines * tilde + versed * (tilde @ tilde))
 

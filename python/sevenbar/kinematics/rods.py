@@ -53,10 +53,14 @@ class RodPair:
         rate = _on(rates[:, 0], rates[:, 1], t) - _on(rates[:, 2], rates[:, 3], r)
         return np.asarray(((_on(a, b, t) - _on(c, d, r)) * rate).sum(axis=1))
 
-    def least(self) -> tuple[float, float]:
-        """Where the distance is least, and how much it is; 0 where the rods cross."""
+    def least(self) -> tuple[float, float, float]:
+        """Where the distance is least, how much it is (0 where the rods cross), by how much it may be less.
+
+        That is 0 unless the distance rests near its least, so that the search ends at its limit.
+        """
         edges, bounds = self._stretches()
-        place, value = lowest(self.distance, edges, bounds, SMALL * self.size)
+        place, value, missed = lowest(self.distance, edges, bounds, SMALL * self.size, floor=0.0)
+        missed = missed if missed > SMALL * self.size else 0.0
         near = np.array([math.sqrt(SMALL) * self.ends.length])
         for _ in range(8):
             low = np.maximum(place - near, self.ends.edges[0])
@@ -64,9 +68,11 @@ class RodPair:
             if self.slope(low)[0] < 0 < self.slope(high)[0]:
                 at = zeros_between(self._rising, low, high, np.array([False]))
                 better = float(self.distance(at)[0])
-                return (float(at[0]), better) if better <= value else (place, value)
+                if better <= value:
+                    place, value = float(at[0]), better
+                break
             near = near / 4
-        return place, value
+        return place, value, missed
 
     def _rising(self, s: Floats) -> tuple[Floats, Floats]:
         # without a derivative of its own it is found by halves
@@ -107,9 +113,12 @@ def nearest_shares(a: Floats, b: Floats, c: Floats, d: Floats) -> tuple[Floats, 
     one, two = np.where(points[0], 1.0, one), np.where(points[1], 1.0, two)
     both = (first * second).sum(axis=1)
     on_one, on_two = (first * apart).sum(axis=1), (second * apart).sum(axis=1)
-    area = one * two - both * both
-    skew = area > POINT * one * two
-    t = np.where(skew, np.clip((both * on_two - on_one * two) / np.where(skew, area, 1.0), 0, 1), 0.0)
+    # by the normal, since the difference of products of nearly parallel rods is rounding
+    normal = np.cross(first, second)
+    area = (normal * normal).sum(axis=1)
+    skew = area > POINT**2 * one * two
+    ahead = (np.cross(second, apart) * normal).sum(axis=1)
+    t = np.where(skew, np.clip(ahead / np.where(skew, area, 1.0), 0, 1), 0.0)
     t = np.where(points[0], 0.0, t)
     r = np.where(points[1], 0.0, (both * t + on_two) / two)
     inside = np.clip(r, 0.0, 1.0)
@@ -123,6 +132,19 @@ def rod_distance(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
     """The least distance (n,) of lines from a to b and from c to d, (n, 3) each."""
     t, r = nearest_shares(a, b, c, d)
     return np.asarray(np.linalg.norm(_on(a, b, t) - _on(c, d, r), axis=1))
+
+
+def distance_slopes(ends: Floats, by: Floats) -> tuple[Floats, Floats]:
+    """The least distance (n,) of two rods by their ends (n, 4, 3), with slopes (n, k) by theirs (n, 4, 3, k).
+
+    The nearest points follow the ends alone, as (14) has it. Where the rods cross the slopes are 0.
+    """
+    t, r = nearest_shares(*np.moveaxis(ends, 1, 0))
+    weights = np.stack([1 - t, t, r - 1, -r], axis=1)
+    way = np.einsum("ne,nej->nj", weights, ends)
+    size = np.linalg.norm(way, axis=1)
+    slopes = np.einsum("ne,nj,nejk->nk", weights, way, by)
+    return size, slopes / np.maximum(size, np.finfo(float).tiny)[:, None]
 
 
 def _on(start: Floats, end: Floats, share: Floats) -> Floats:

@@ -261,6 +261,10 @@ class NumberedLoop:
             left = left[~np.isfinite(at).all(axis=1)]
         return found
 
+    def places(self, q: Floats) -> Floats:
+        """The points (n, points, 3) at poses q (n, columns)."""
+        return self.core.places(np.ascontiguousarray(q / self.numbers.scales)) * self.numbers.size
+
     def slopes(self, q: Floats, order: int = 2) -> Slopes:
         """Rates and derivatives up to an order (0 to 3) at closed poses q (n, columns)."""
         numbers, own = self.numbers, self.numbers.scales[self.input]

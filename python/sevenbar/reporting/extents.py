@@ -79,6 +79,8 @@ def _of_circuit(linkage: Loop, circuit: Circuit) -> Iterator[Row]:
         if one.radii:
             pair = say("links {first} and {second}", first=one.links[0], second=one.links[1])
             left = say("{gap} left", gap=length(one.gap))
+            if one.missed:
+                left = say("{gap} left, or {missed} less", gap=length(one.gap), missed=length(one.missed))
             yield (number, pair, at(one.distance, length), "-", left, length(one.radii))
 
 
@@ -103,7 +105,9 @@ def span_rows(motion: Motion) -> tuple[Row, list[Row]]:
 def _reasons(found: Allowed | None) -> str:
     if found is None:
         return "-"
-    return "; ".join(sorted({str(name) for name in found.stopped_by if name})) or "-"
+    return (
+        "; ".join(sorted({name for row in set(found.stopped_by) for name in row.split(", ") if name})) or "-"
+    )
 
 
 def _percent(share: float) -> str:
@@ -146,7 +150,8 @@ def extents_dict(circuit: Circuit, linkage: Loop) -> dict[str, Any]:
         "clearances": None
         if gaps is None
         else [
-            {"links": one.links, "gap": one.gap, "radii": one.radii} | _ends("distance", one.distance)
+            {"links": one.links, "gap": one.gap, "radii": one.radii, "missed": one.missed}
+            | _ends("distance", one.distance)
             for one in gaps
             if one.radii
         ],

@@ -159,7 +159,7 @@ def text(found: CircuitForces) -> RenderableType:
         for label, said in balance_facts(found.balance):
             facts.add(label, said)
     if found.sizing is not None:
-        planar = getattr(found.motion.linkage, "plane", None) is not None
+        planar = found.motion.linkage.is_planar
         head, rows = bearing_rows(forces, found.sizing, planar=planar)
         without = ""
         if head[1] == say(IN_PLANE):

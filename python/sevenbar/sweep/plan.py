@@ -110,10 +110,8 @@ class SweepPlan:
 
     def draft_of(self, values: Floats) -> Draft:
         """The description with the values (axes,) of one linkage."""
-        draft = self.draft
-        for axis, value in zip(self.space.axes, values, strict=True):
-            draft = draft.with_value(axis.dimension.place, draft.written(axis.dimension, float(value)))
-        return draft
+        own = [(axis.dimension, float(x)) for axis, x in zip(self.space.axes, values, strict=True)]
+        return self.draft.with_places({d.place: self.draft.written(d, x) for d, x in own})
 
     def request(self) -> dict[str, Any]:
         """What the sweep is, as plain values: two sweeps with one request have the same parts."""

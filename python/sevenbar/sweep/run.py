@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import os
+import signal
+import threading
 from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from functools import partial
 from itertools import islice
+from multiprocessing import get_context, parent_process
 from pathlib import Path
 
 from sevenbar.description.draft import Draft
-from sevenbar.errors import RequestError
+from sevenbar.errors import EngineError, RequestError
 from sevenbar.kinematics.linkage import Linkage
 from sevenbar.kinematics.measures import Measure
 from sevenbar.kinematics.motion import Motion
@@ -185,19 +196,55 @@ def made_on_threads(
     make: Callable[[int], bytes], at_once: int, parts: Iterable[int]
 ) -> Generator[Made, None, None]:
     """What `make` makes of each part as it is finished, on so many threads of this process."""
+    with ThreadPoolExecutor(at_once, thread_name_prefix="sweep") as pool:
+        yield from _made(pool, make, at_once, parts)
+
+
+def made_by_processes(
+    make: Callable[[int], bytes], at_once: int, parts: Iterable[int]
+) -> Generator[Made, None, None]:
+    """The same by so many processes of this machine, for parts that Python makes; they end with this one.
+
+    Raises `EngineError` where one ends before its part is made.
+    """
+    with ProcessPoolExecutor(at_once, get_context("spawn"), initializer=_begin_process) as pool:
+        try:
+            yield from _made(pool, make, at_once, parts)
+        except BrokenProcessPool:
+            raise EngineError(
+                "threads: a process ended before its part was made; check the memory; a script of your own "
+                "begins its work below `if __name__ == '__main__':`; or give 1 thread"
+            ) from None
+
+
+def _begin_process() -> None:
+    """Leaves Ctrl+C to the process that asked, and ends when that one was killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    asker = parent_process()
+    assert asker is not None
+
+    def wait_for_end() -> None:
+        asker.join()
+        os._exit(1)
+
+    threading.Thread(target=wait_for_end, daemon=True).start()
+
+
+def _made(
+    pool: Executor, make: Callable[[int], bytes], at_once: int, parts: Iterable[int]
+) -> Generator[Made, None, None]:
     here = maker()
     rest = iter(parts)
     flying: dict[Future[bytes], int] = {}
-    with ThreadPoolExecutor(at_once, thread_name_prefix="sweep") as pool:
-        try:
-            while True:
-                for part in islice(rest, IN_FLIGHT * at_once - len(flying)):
-                    flying[pool.submit(make, part)] = part
-                if not flying:
-                    return
-                finished, _ = wait(flying, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    yield flying.pop(future), future.result(), here
-        finally:
-            for future in flying:
-                future.cancel()
+    try:
+        while True:
+            for part in islice(rest, IN_FLIGHT * at_once - len(flying)):
+                flying[pool.submit(make, part)] = part
+            if not flying:
+                return
+            finished, _ = wait(flying, return_when=FIRST_COMPLETED)
+            for future in finished:
+                yield flying.pop(future), future.result(), here
+    finally:
+        for future in flying:
+            future.cancel()

@@ -1,11 +1,12 @@
-"""Searches by number: millions of RSSRs drawn, each judged, the best polished; or what comes nearest."""
+"""Searches by number: linkages drawn, each judged, the best polished; or what comes nearest."""
 
+from sevenbar.design.survey.loops import LoopSurvey
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.run import survey
 from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.survey.task import SurveyTask, SwingWish, Travel
 
-__all__ = ["Kept", "SurveyResult", "SurveyTally", "SurveyTask", "SwingWish", "Travel", "survey"]
+__all__ = ["Kept", "LoopSurvey", "SurveyResult", "SurveyTally", "SurveyTask", "SwingWish", "Travel", "survey"]
 
 
 def __dir__() -> list[str]:

@@ -13,8 +13,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.tally import SurveyTally
-from sevenbar.design.survey.task import SurveyTask
 from sevenbar.errors import OutputError, shown
 from sevenbar.sweep.parts import differences, hold_folder, other_maker
 
@@ -28,7 +28,7 @@ class Journal:
     def __init__(
         self,
         folder: Path,
-        task: SurveyTask,
+        task: Drawn,
         makers: Sequence[Mapping[str, str]],
         *,
         resume: bool,

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.curves.least_cone import half_angle
 from sevenbar.description.draft import Draft
 from sevenbar.design.candidates import Candidate, Claim, Refusal, checked, distinct, renamed
 from sevenbar.design.limits import Limits
@@ -167,6 +168,8 @@ class Polish:
             # what is at a bound stays there
             slopes[:, own][:, (z[own] <= self.low) | (z[own] >= self.high)] = 0.0
             z = z - np.linalg.lstsq(slopes, off, rcond=None)[0]
+        # what has not arrived may have left its bounds
+        z[own] = np.clip(z[own], self.low, self.high)
         return z
 
     def polished(self) -> Floats:
@@ -268,7 +271,7 @@ def judged(task: SurveyTask, numbers: Floats, kept: Kept) -> Candidate | Refusal
         return Refusal(
             "transmission", f"transmission angle down to {math.degrees(lowest):.4g} deg, {wish:g} required"
         )
-    balls = [ball_angle(directions) for directions in (found.crank, found.rocker)]
+    balls = [half_angle(directions) for directions in (found.crank, found.rocker)]
     if max(balls) > task.ball_angle + ROUNDING:
         wish = math.degrees(task.ball_angle)
         return Refusal("cone", f"a ball turns {math.degrees(max(balls)):.4g} deg, {wish:g} allowed")
@@ -315,22 +318,6 @@ def _errors(task: SurveyTask, dense: Floats, angles: Floats) -> tuple[Floats, di
         off = angles - np.asarray(want.function(want.input[0] + dense))
     zero = float(off.max() + off.min()) / 2
     return off - zero, {"output_zero_deg": math.degrees(zero)}
-
-
-def ball_angle(directions: Floats) -> float:
-    """The half angle [rad] of the smallest cone that holds unit vectors (k, 3); pi where no half space does.
-
-    Its axis is that of the shortest z with d . z >= 1 for all d, a problem of least distance.
-    """
-    from scipy.optimize import nnls
-
-    sides = np.vstack([directions.T, np.ones(len(directions))])
-    target = np.array([0.0, 0.0, 0.0, 1.0])
-    rest = sides @ nnls(sides, target)[0] - target
-    if np.linalg.norm(rest) < ROUNDING:
-        return math.pi
-    seat = rest[:3] / np.linalg.norm(rest[:3])
-    return math.acos(min(max(float((directions @ seat).min()), -1.0), 1.0))
 
 
 def designs(

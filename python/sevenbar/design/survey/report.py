@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -12,6 +13,8 @@ from rich.text import Text
 from sevenbar.design.candidates import tally
 from sevenbar.design.files import design_files
 from sevenbar.design.survey.result import SurveyResult
+from sevenbar.design.survey.task import SurveyTask
+from sevenbar.design.task.report import TaskDesigns
 from sevenbar.kinematics.surveys import NUMBERS
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
@@ -37,6 +40,7 @@ def survey_report(count: int, command: str) -> Report[SurveyResult]:
 
 def text(count: int, found: SurveyResult) -> RenderableType:
     """The answer for people, with the first `count` designs."""
+    assert isinstance(found.task, SurveyTask)
     facts = Facts()
     facts.add("wanted", found.task.want.title, "bold")
     facts.add("must hold", found.task.text())
@@ -49,16 +53,11 @@ def text(count: int, found: SurveyResult) -> RenderableType:
             if name != "angle"
         ),
     )
-    facts.add("axes", _axes(found))
-    facts.add("answer", found.answer, "bold")
+    facts.add("axes", _axes(found.task))
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
-    total = max(found.tally.count, 1)
-    refused = sorted(found.tally.refused.items(), key=lambda pair: -pair[1])
-    for place, (verdict, number) in enumerate((v, n) for v, n in refused if n):
-        facts.add("" if place else "refused", f"{verdict}: {number} ({100 * number / total:.3g} %)")
-    for place, (verdict, words) in enumerate(found.nearest.items()):
-        facts.add("" if place else "nearest", f"{verdict}: {words}")
+    for label, words in tally_facts(found):
+        facts.add(label, words, "bold" if label == "answer" else "")
     facts.add("polished", f"{found.polished} of the best")
     if found.refusals:
         facts.add("of the best", f"{tally(found.refusals)} refused after polishing")
@@ -76,8 +75,20 @@ def text(count: int, found: SurveyResult) -> RenderableType:
     return Group(*parts)
 
 
-def as_dict(found: SurveyResult) -> dict[str, Any]:
-    """The answer as plain values: angles in radians but in columns whose names say deg."""
+def tally_facts(found: SurveyResult) -> list[tuple[str, str]]:
+    """How many do it, why the others do not, and what came nearest, by labels."""
+    facts = [("answer", found.answer)]
+    total = max(found.tally.count, 1)
+    refused = sorted(found.tally.refused.items(), key=lambda pair: -pair[1])
+    for place, (verdict, number) in enumerate((v, n) for v, n in refused if n):
+        facts.append(("" if place else "refused", f"{verdict}: {number} ({100 * number / total:.3g} %)"))
+    for place, (verdict, words) in enumerate(found.nearest.items()):
+        facts.append(("" if place else "nearest", f"{verdict}: {words}"))
+    return facts
+
+
+def tally_dict(found: SurveyResult) -> dict[str, Any]:
+    """The survey and its tally as plain values."""
     return {
         **found.task.request(),
         "judged": found.tally.count,
@@ -85,14 +96,29 @@ def as_dict(found: SurveyResult) -> dict[str, Any]:
         "answer": found.answer,
         "tally": found.tally.as_dict(),
         "nearest": found.nearest,
+    }
+
+
+def of_task(found: SurveyResult, name: str, source: str) -> TaskDesigns:
+    """The designs of a survey of a design task, as that task reports them, with what the survey says."""
+    assert found.found is not None
+    facts, survey = tally_facts(found), {"survey": tally_dict(found)}
+    designs = replace(found.found, unfinished=found.unfinished)
+    return TaskDesigns(designs, name, source, found.task.count, found.task.seed, facts, survey)
+
+
+def as_dict(found: SurveyResult) -> dict[str, Any]:
+    """The answer as plain values: angles in radians but in columns whose names say deg."""
+    return {
+        **tally_dict(found),
         "polished": found.polished,
         "refused": [{"fault": r.fault, "detail": r.detail} for r in found.refusals],
         "designs": [{"design": i, "name": c.name, **c.columns} for i, c in enumerate(found.candidates, 1)],
     }
 
 
-def _axes(found: SurveyResult) -> str:
-    low, high = map(math.degrees, found.task.table["angle"])
+def _axes(task: SurveyTask) -> str:
+    low, high = map(math.degrees, task.table["angle"])
     return f"at {low:g} deg" if low == high else f"at {low:g}..{high:g} deg"
 
 
@@ -101,6 +127,7 @@ def _cell(value: object) -> str:
 
 
 def _head(command: str, found: SurveyResult) -> list[str]:
+    assert isinstance(found.task, SurveyTask)
     return [
         f"wanted: {found.task.want.title}",
         f"must hold: {found.task.text()}",

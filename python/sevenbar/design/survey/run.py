@@ -11,7 +11,9 @@ from functools import partial, reduce
 from operator import add
 from pathlib import Path
 
+from sevenbar.design.survey.drawn import Drawn
 from sevenbar.design.survey.journal import Journal
+from sevenbar.design.survey.loops import LoopSurvey
 from sevenbar.design.survey.polish import designs
 from sevenbar.design.survey.result import SurveyResult
 from sevenbar.design.survey.tally import BEST, SurveyTally
@@ -20,7 +22,7 @@ from sevenbar.design.synthesis.function.generation import need_scipy
 from sevenbar.errors import RequestError
 from sevenbar.sweep.parts import other_maker
 from sevenbar.sweep.plan import maker
-from sevenbar.sweep.run import Made, made_on_threads, thread_count
+from sevenbar.sweep.run import Made, made_by_processes, made_on_threads, thread_count
 from sevenbar.text.progress import Progress, silent
 
 #: The remark about a survey that Ctrl+C ended.
@@ -30,14 +32,13 @@ UNFINISHED = "stopped after {done} of {total} linkages; these are the best so fa
 Making = Callable[[Iterable[int]], Generator[Made, None, None]]
 
 
-def part_line(task: SurveyTask, part: int) -> bytes:
+def part_line(task: Drawn, part: int) -> bytes:
     """The tally of a part as JSON: the same bits wherever it is made by the same `maker`."""
-    linkages = task.linkages(part)
-    return SurveyTally.of(task.core().tally(linkages.start, len(linkages))).line().encode()
+    return task.tally(part).line().encode()
 
 
 def survey(
-    task: SurveyTask,
+    task: SurveyTask | LoopSurvey,
     *,
     designs_wanted: int = BEST,
     out: str | os.PathLike[str] | None = None,
@@ -47,13 +48,13 @@ def survey(
     scheduler: str | None = None,
     progress: Progress = silent,
 ) -> SurveyResult:
-    """Judges `task.count` RSSRs drawn from a sequence, and polishes and checks the best of those that fit.
+    """Judges `task.count` linkages drawn from a sequence, and polishes and checks the best of them.
 
     Nothing is stored but tallies and the best hundred, each of another part of the space. With a folder `out`
     every finished part is kept in its journal, and `resume` goes on after a stop, `mixed` also on another
-    vector unit. It runs on `threads` (all processors by default) or the workers of a Dask `scheduler`; the
-    answer is the same. `progress` is called with the linkages done, of all, and the best so far; Ctrl+C ends
-    the survey with what it has.
+    vector unit. It runs on `threads` (all processors by default; loops other than RSSRs are judged by as many
+    processes) or the workers of a Dask `scheduler`; the answer is the same. `progress` is called with the
+    linkages done, of all, and the best so far; Ctrl+C ends the survey with what it has.
 
     Raises `RequestError` for an argument that does not fit, `OutputError` for a folder that cannot be used.
 
@@ -71,8 +72,9 @@ def survey(
     folder = None if out is None else Path(out)
     if scheduler is None:
         at_once = min(thread_count(threads), task.parts)
-        on_threads = partial(made_on_threads, partial(part_line, task), at_once)
-        tally = _judged(task, [maker()], on_threads, folder, resume, mixed, progress)
+        make = made_by_processes if isinstance(task, LoopSurvey) and at_once > 1 else made_on_threads
+        here = partial(make, partial(part_line, task), at_once)
+        tally = _judged(task, [maker()], here, folder, resume, mixed, progress)
     else:
         from sevenbar.sweep.cluster import Cluster
 
@@ -81,12 +83,17 @@ def survey(
     unfinished = ""
     if tally.count < task.count:
         unfinished = UNFINISHED.format(done=tally.count, total=task.count)
+    if isinstance(task, LoopSurvey):
+        found = task.designs(tally, designs_wanted, progress)
+        candidates = tuple(one.candidate for one in found.designs)
+        unfinished = unfinished or found.unfinished
+        return SurveyResult(task, tally, candidates, found.refusals, len(candidates), unfinished, found)
     candidates, refusals, polished = designs(task, tally, designs_wanted, progress)
     return SurveyResult(task, tally, tuple(candidates), tuple(refusals), polished, unfinished)
 
 
 def _judged(
-    task: SurveyTask,
+    task: SurveyTask | LoopSurvey,
     makers: Sequence[Mapping[str, str]],
     made: Making,
     folder: Path | None,
@@ -121,10 +128,12 @@ def _judged(
     return total
 
 
-def _best(task: SurveyTask, tally: SurveyTally | None) -> str:
+def _best(task: SurveyTask | LoopSurvey, tally: SurveyTally | None) -> str:
     """The best so far in words."""
     if tally is None or not tally.best:
         return ""
+    if isinstance(task, LoopSurvey):
+        return f"{tally.found} fit, nearest: {tally.best[0].figure:.3g}"
     figure = math.degrees(abs(tally.best[0].figure))
     name = "error" if task.rank == "error" else "transmission angle"
     name = "ball angle" if task.rank == "ball angle" else name

@@ -57,9 +57,9 @@ class SurveyTally:
     `spreads` have for each measure the width of a cell [rad] and the counts (36,), the last of all beyond.
     """
 
-    verdicts: tuple[int, ...]
-    types: tuple[int, ...]
-    limits: tuple[int, ...]
+    verdicts: Mapping[str, int]
+    types: Mapping[str, int]
+    limits: Mapping[str, int]
     spreads: Mapping[str, tuple[float, tuple[int, ...]]]
     best: tuple[Kept, ...]
     nearest: Mapping[int, Kept]
@@ -67,17 +67,17 @@ class SurveyTally:
     @property
     def count(self) -> int:
         """The linkages that were judged."""
-        return sum(self.verdicts)
+        return sum(self.verdicts.values())
 
     @property
     def found(self) -> int:
         """Those that do what is wanted."""
-        return self.verdicts[0]
+        return self.verdicts["found"]
 
     @property
     def refused(self) -> dict[str, int]:
         """Those refused, by verdict."""
-        return dict(zip(VERDICTS[1:], self.verdicts[1:], strict=True))
+        return {verdict: count for verdict, count in self.verdicts.items() if verdict != "found"}
 
     @staticmethod
     def of(raw: RawTally) -> SurveyTally:
@@ -85,7 +85,12 @@ class SurveyTally:
         spreads = {name: (step, tuple(counts)) for name, (step, counts) in sorted(raw.spreads.items())}
         nearest = {kept.place: kept for kept in _kept(raw.nearest)}
         return SurveyTally(
-            tuple(raw.verdicts), tuple(raw.types), tuple(raw.limits), spreads, tuple(_kept(raw.best)), nearest
+            dict(zip(VERDICTS, raw.verdicts, strict=True)),
+            dict(zip(TYPES, raw.types, strict=True)),
+            dict(zip(("0", "2", "4"), raw.limits, strict=True)),
+            spreads,
+            tuple(_kept(raw.best)),
+            nearest,
         )
 
     def __add__(self, other: SurveyTally) -> SurveyTally:
@@ -104,9 +109,9 @@ class SurveyTally:
             for name, (step, counts) in self.spreads.items()
         }
         return SurveyTally(
-            _summed(self.verdicts, other.verdicts),
-            _summed(self.types, other.types),
-            _summed(self.limits, other.limits),
+            _together(self.verdicts, other.verdicts),
+            _together(self.types, other.types),
+            _together(self.limits, other.limits),
             spreads,
             tuple(sorted(best.values(), key=lambda kept: kept.order)[:BEST]),
             dict(sorted(nearest.items())),
@@ -115,9 +120,9 @@ class SurveyTally:
     def as_dict(self) -> dict[str, Any]:
         """As plain values."""
         return {
-            "verdicts": dict(zip(VERDICTS, self.verdicts, strict=True)),
-            "motion_types": dict(zip(TYPES, self.types, strict=True)),
-            "limits": dict(zip(("0", "2", "4"), self.limits, strict=True)),
+            "verdicts": dict(self.verdicts),
+            "motion_types": dict(self.types),
+            "limits": dict(self.limits),
             "spreads": {
                 name: {"step": step, "counts": list(counts)} for name, (step, counts) in self.spreads.items()
             },
@@ -133,9 +138,9 @@ class SurveyTally:
     def of_dict(plain: Mapping[str, Any]) -> SurveyTally:
         """The tally of plain values; raises `KeyError`, `TypeError` or `ValueError` where they are none."""
         return SurveyTally(
-            tuple(plain["verdicts"].values()),
-            tuple(plain["motion_types"].values()),
-            tuple(plain["limits"].values()),
+            plain["verdicts"],
+            plain["motion_types"],
+            plain["limits"],
             {name: (s["step"], tuple(s["counts"])) for name, s in plain["spreads"].items()},
             tuple(_of_row(row) for row in plain["best"]),
             {kept.place: kept for kept in map(_of_row, plain["nearest"])},
@@ -152,16 +157,18 @@ def _kept(entries: tuple[Any, Any, Any]) -> list[Kept]:
 
 def _row(kept: Kept) -> list[Any]:
     """A linkage as plain values; what was not measured is null."""
-    balls = [None if math.isnan(angle) else angle for angle in kept.balls]
-    return [
-        kept.index, kept.place, kept.figure, kept.error, kept.transmission, *balls,
-        kept.start, kept.branch, kept.sense,
-    ]  # fmt: skip
+    measured = [None if math.isnan(x) else x for x in (kept.error, kept.transmission, *kept.balls)]
+    return [kept.index, kept.place, kept.figure, *measured, kept.start, kept.branch, kept.sense]
 
 
 def _of_row(row: Sequence[Any]) -> Kept:
-    balls = tuple(math.nan if angle is None else float(angle) for angle in row[5:7])
-    return Kept(row[0], row[1], row[2], row[3], row[4], (balls[0], balls[1]), row[7], row[8], row[9])
+    error, transmission, *balls = (math.nan if x is None else float(x) for x in row[3:7])
+    return Kept(row[0], row[1], row[2], error, transmission, (balls[0], balls[1]), row[7], row[8], row[9])
+
+
+def _together(a: Mapping[str, int], b: Mapping[str, int]) -> dict[str, int]:
+    words = a if a.keys() == b.keys() else sorted(a.keys() | b.keys())
+    return {word: a.get(word, 0) + b.get(word, 0) for word in words}
 
 
 def _summed(a: Sequence[int], b: Sequence[int]) -> tuple[int, ...]:

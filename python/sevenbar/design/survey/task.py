@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,19 +11,18 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.limits import MOST_RATIO, MOTION_TYPES, USUAL_SIZE
+from sevenbar.design.survey.drawn import Drawn
+from sevenbar.design.survey.tally import Kept, SurveyTally
 from sevenbar.design.wish import Wish
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.batches import CODES
-from sevenbar.kinematics.surveys import NUMBERS, CoreSurvey, core_survey
+from sevenbar.kinematics.surveys import NUMBERS, VERDICTS, CoreSurvey, core_survey
 
 #: The format of a survey's description.
 FORMAT = 1
 
 #: Linkages of a part: what a processor judges in some tenths of a second.
 PART = 2**18
-
-#: Most linkages: indices beyond are no whole numbers in every program's JSON.
-MOST = 2**50
 
 #: Readings at which linkages are compared: about so far apart [rad], and how many.
 READING_STEP, FEWEST_READINGS, MOST_READINGS = math.radians(7.5), 7, 16
@@ -39,6 +36,13 @@ USUAL_BOUNDS: Mapping[str, tuple[float, float]] = {
     "L3": (1.0, 1.0),
     "D": (-3.0, 3.0),
     "angle": (0.0, math.pi),
+}
+
+#: How the linkage that came nearest to pass a verdict is described.
+NEAREST = {
+    "transmission": "near enough, least transmission angle {transmission:.4g} deg",
+    "error": "error {error:.4g} deg",
+    "ball angle": "near enough, ball angles {crank:.4g} and {rocker:.4g} deg",
 }
 
 #: By what linkages that do what is wanted are ranked.
@@ -77,7 +81,7 @@ class SwingWish:
 
 
 @dataclass(frozen=True, eq=False)
-class SurveyTask:
+class SurveyTask(Drawn):
     """What is wanted of RSSRs within bounds.
 
     `bounds` of `NUMBERS`: lengths relative to one another, the angle between the axes in radians; those not
@@ -116,10 +120,7 @@ class SurveyTask:
         shortest = min(self.table[name][1] for name in ("L1", "L2", "L3"))
         if longest > 1e6 * shortest:
             raise RequestError(f"bounds: lengths from {shortest:g} to {longest:g} are no linkage to build")
-        if not 1 <= self.count <= MOST:
-            raise RequestError(f"count: {self.count} is no number of linkages; give 1 to {MOST}")
-        if self.seed < 0:
-            raise RequestError(f"seed: {self.seed} is no seed; give a number >= 0")
+        self.check_counts()
         if not 0 < self.tolerance <= math.pi:
             degrees = math.degrees(self.tolerance)
             raise RequestError(f"tolerance: {degrees:g} deg is none; give an angle > 0")
@@ -128,9 +129,12 @@ class SurveyTask:
             raise RequestError(
                 f"transmission: {degrees:g} deg is no limit; give an angle from 0 to below 90 deg"
             )
-        if not 0 < self.ball_angle <= math.pi:
+        # the core's smallest cones are those within half a space
+        if not (0 < self.ball_angle <= math.pi / 2 or self.ball_angle == math.pi):
             degrees = math.degrees(self.ball_angle)
-            raise RequestError(f"ball angle: {degrees:g} deg is no limit; give an angle up to 180 deg")
+            raise RequestError(
+                f"ball angle: {degrees:g} deg is no limit; give an angle up to 90 deg, or 180 deg for none"
+            )
         if not self.ratio > 1:
             raise RequestError(f"ratio: {self.ratio:g} is no ratio of lengths; give a number > 1")
         for name, word, words in (
@@ -150,13 +154,19 @@ class SurveyTask:
         return {name: self.bounds.get(name, USUAL_BOUNDS[name]) for name in NUMBERS}
 
     @property
-    def parts(self) -> int:
-        """The number of parts."""
-        return -(-self.count // PART)
+    def part_size(self) -> int:
+        """Linkages of a part."""
+        return PART
 
-    def linkages(self, part: int) -> range:
-        """The linkages of a part."""
-        return range(part * PART, min((part + 1) * PART, self.count))
+    @property
+    def verdicts(self) -> tuple[str, ...]:
+        """What may be said of a linkage; the first is that it does what is wanted."""
+        return VERDICTS
+
+    def tally(self, part: int) -> SurveyTally:
+        """The tally of a part."""
+        linkages = self.linkages(part)
+        return SurveyTally.of(self.core().tally(linkages.start, len(linkages)))
 
     @property
     def readings(self) -> tuple[Floats, Floats]:
@@ -213,9 +223,25 @@ class SurveyTask:
             "part_size": PART,
         }
 
-    def digest(self) -> str:
-        """The mark of the survey, which its journal carries."""
-        return hashlib.sha256(json.dumps(self.request(), sort_keys=True).encode()).hexdigest()
+    @property
+    def heading(self) -> str:
+        """What it is."""
+        return f"Survey of RSSRs for {self.want.title}"
+
+    def words_of(self, verdict: str, kept: Kept) -> str:
+        """A linkage that came nearest to pass a verdict: its figures and its numbers."""
+        figures = NEAREST[verdict].format(
+            transmission=math.degrees(kept.transmission),
+            error=math.degrees(kept.error),
+            crank=math.degrees(kept.balls[0]),
+            rocker=math.degrees(kept.balls[1]),
+        )
+        (row,) = drawn_numbers(self, [kept.index])
+        numbers = [
+            f"{name} {math.degrees(value) if name == 'angle' else value:.4g}"
+            for name, value in zip(NUMBERS, row, strict=True)
+        ]
+        return f"{figures}: linkage {kept.index}, {', '.join(numbers)} deg"
 
     def text(self) -> str:
         """What must hold, in words."""

@@ -10,19 +10,11 @@ import numpy as np
 
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.check import TaskDesign
-from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.musts import pose_rooms, room_unit
 from sevenbar.design.task.problem import TaskModel
-from sevenbar.design.task.task import (
-    Apart,
-    DesignTask,
-    DwellWant,
-    FigureWant,
-    FunctionWant,
-    InBox,
-    Must,
-    Want,
-)
+from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, Want
 from sevenbar.design.task.wants.places import PlacesWanted
+from sevenbar.design.task.wants.straight import LineWanted
 from sevenbar.design.task.wants.wanted import Wanted
 
 #: Poses along a want, at least, and the longest step of an input from one to the next [rad].
@@ -49,8 +41,7 @@ class DesignAlong:
     @property
     def wants(self) -> list[tuple[int, Want, Wanted]]:
         """The wants with poses along a way, each with its place among all."""
-        own = [(i, want) for i, want in enumerate(self.task.wants) if not isinstance(want, FigureWant)]
-        return [(i, want, one) for (i, want), one in zip(own, self.model.wanted, strict=True)]
+        return [(i, want, one) for (i, want), one in zip(self.task.sampled, self.model.wanted, strict=True)]
 
     @cached_property
     def ways(self) -> list[UsedWay]:
@@ -69,8 +60,7 @@ class DesignAlong:
         first, last = inputs[:-1], inputs[1:]
         begin = poses[:-1]
         if round:
-            turn = math.copysign(math.tau, inputs[-1] - inputs[0])
-            gain = turn * math.ceil(abs(inputs[-1] - inputs[0]) / math.tau)
+            gain = math.copysign(self.design.solution.seed.period, inputs[-1] - inputs[0])
             first, last, begin = inputs, np.append(last, inputs[0] + gain), poses
         if not len(first):
             return UsedWay(inputs, poses)
@@ -124,8 +114,8 @@ class DesignAlong:
         return self._put(self.model.wanted[place], self.design.solution.seed.poses[first : first + count])
 
     def _put(self, one: Wanted, q: Floats) -> Floats:
-        numbers = one.numbers if isinstance(one, PlacesWanted) else [one._number]  # type: ignore[attr-defined]
-        found = self.loop.here(self.values, q).points[:, numbers]
+        assert isinstance(one, PlacesWanted | LineWanted)
+        found = self.loop.here(self.values, q).points[:, one.numbers]
         flat = found.reshape(-1, 3)
         if isinstance(one, PlacesWanted):
             flat = self.design.placing.put(flat)
@@ -134,23 +124,19 @@ class DesignAlong:
     def rooms(self) -> list[tuple[int, int, Floats, Floats]]:
         """The least room of each must about poses along each want: must, want, inputs (n,), rooms (n,).
 
-        Rooms [rad, or length].
+        Rooms in the `room_unit` of the must.
         """
         found = []
         for number, way in enumerate(self.ways):
             here = self.loop.here(self.values, way.q)
             for place, room in pose_rooms(self.loop, self.task.musts):
-                values = room(here)[0].min(axis=1)
-                found.append((place, number, way.inputs, values * self._unit(self.task.musts[place])))
+                scale = math.degrees(1) if self.room_unit(place) == "deg" else self.loop.size
+                found.append((place, number, way.inputs, scale * room(here)[0].min(axis=1)))
         return found
 
-    def room_unit(self, must: Must) -> str:
-        """The unit of a must's room: "deg", or the length unit."""
-        turns = getattr(must, "column", None) is None or self.loop.linkage.turns(str(must.column))  # type: ignore[union-attr]
-        return self.loop.linkage.length_unit if isinstance(must, (InBox, Apart)) or not turns else "deg"
-
-    def _unit(self, must: Must) -> float:
-        return self.loop.size if self.room_unit(must) != "deg" else 1.0
+    def room_unit(self, place: int) -> str:
+        """The unit of the room of a must about poses: "deg", or the length unit."""
+        return room_unit(self.task.musts[place], self.loop.linkage)  # type: ignore[arg-type]
 
 
 def _level(want: Want) -> float | None:

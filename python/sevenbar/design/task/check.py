@@ -14,21 +14,22 @@ from sevenbar.design.candidates import (
     CHECK_SAMPLES,
     Candidate,
     Claim,
-    Fault,
     Refusal,
     checked,
     joint_differences,
+    one_way,
     within_limits,
 )
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.match import Placing
-from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.musts import FAULTS, pose_rooms, room_unit
 from sevenbar.design.task.problem import TaskModel
 from sevenbar.design.task.solve import Solved
 from sevenbar.design.task.standing import moved, standing
-from sevenbar.design.task.task import Apart, FigureMust, InBox, InCone, InRange, Most
+from sevenbar.design.task.task import FigureMust, Most
 from sevenbar.design.task.wants.places import PlacesWanted
 from sevenbar.design.task.wants.wanted import Wanted
+from sevenbar.design.task.words import must_words
 from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.law import Law
@@ -45,8 +46,6 @@ DENSE, MISSED = 361, 1e-4
 
 #: By how much a measure may miss its limit through rounding, relative to it.
 ROUNDING = 1e-6
-
-FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +120,7 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
         Met(
             float(np.abs(w[0].errors).max()),
             float(np.sqrt((w[0].errors ** 2).mean())),
-            _unit(model.loop, one),
+            "rad" if one.turns else linkage.length_unit,
         )
         for one, w in zip(model.wanted, ways, strict=True)
     )
@@ -136,11 +135,6 @@ def checked_design(model: TaskModel, solution: Solved) -> TaskDesign | Refusal:
         solution.seed.values,
         solution,
     )
-
-
-def _unit(loop: TaskLoop, one: Wanted) -> str:
-    turns = bool(loop.numbers.turns[loop.output])
-    return "rad" if turns and hasattr(one, "readings") else loop.linkage.length_unit
 
 
 def _ways(one: Wanted, linkage: Linkage, inputs: Floats, u: Floats, placing: Placing) -> list[_Way]:
@@ -177,7 +171,7 @@ def _candidate(
         figures = standing(solution.seed.placing, linkage.length_unit) if places and model.placed else {}
         if places and model.placed and linkage.form == "drawn":
             draft, figures = moved(draft, solution.seed.placing), {}
-        unit = linkage.length_unit if _unit(model.loop, one) != "rad" else "deg"
+        unit = "deg" if one.turns else linkage.length_unit
         claim = Claim(solution.inputs[number], own[0].outputs, own[0].errors, unit, figures)
         candidate = checked(draft, claim, limits, poses=own[0].poses)
         if isinstance(candidate, Refusal):
@@ -200,23 +194,23 @@ def _candidate(
 
 
 def _torn(model: TaskModel, number: int, solution: Solved, own: list[_Way]) -> Refusal | None:
-    """Why no pass holds all poses that were solved for: each is compared with those of the best pass."""
+    """Why no pass holds all poses that were solved for, each of which some pass comes near."""
     loop, q = model.loop, solution.seed.poses
     begin = sum(len(inputs) for inputs in solution.inputs[:number])
     poses = q[begin : begin + len(solution.inputs[number])]
     one = model.wanted[number]
     here = loop.here(solution.seed.values, poses)
     left, _ = one.left(here.along(one.stations.by), solution.seed.own[number])
+    off = one.unit * left
     if isinstance(one, PlacesWanted):
-        off = (solution.seed.placing.put(left) - one.places.reshape(-1, 3)).ravel()
-        expected, unit = float(np.sqrt(3 * (off**2).mean())), one.unit
-    else:
-        unit = float(getattr(one, "unit", 1.0))
-        expected = float(np.sqrt((left**2).mean())) * unit
-    best = float(np.sqrt((own[0].errors ** 2).mean()))
-    if best <= 2 * expected * (1 + TORN) + TORN * unit:
+        off = solution.seed.placing.put(left) - one.places.reshape(-1, 3)
+    count = len(own[0].errors)
+    best, expected = (float(np.linalg.norm(each)) / math.sqrt(count) for each in (own[0].errors, off))
+    if best <= 2 * expected * (1 + TORN) + TORN * one.unit:
         return None
-    return Refusal(
+    nearest = np.argmin([np.abs(way.errors).reshape(len(poses), -1).max(axis=1) for way in own], axis=0)
+    circuits, branches = (np.array([[way.circuit, way.branch] for way in own])[nearest, k] for k in (0, 1))
+    return one_way(circuits, branches) or Refusal(
         "circuit", "no pass goes through all the poses that were solved for: it must be taken apart"
     )
 
@@ -267,31 +261,35 @@ def _figures(model: TaskModel, motion: Motion, circuit: Circuit) -> Mapping[str,
 
 def _room(model: TaskModel, solution: Solved, ways: list[list[_Way]], linkage: Linkage) -> float | Refusal:
     """The least room of the musts over all that is used, or which is missed."""
-    rooms = pose_rooms(model.loop, model.task.musts)
+    loop, musts, values = model.loop, model.task.musts, solution.seed.values
+    rooms = pose_rooms(loop, musts)
     least = math.inf
     for one, own, inputs in zip(model.wanted, ways, solution.inputs, strict=True):
         if not rooms:
             break
         low, high = float(inputs.min()), float(inputs.max())
-        dense = np.linspace(low, low + math.tau if one.stations.round else high, DENSE)
-        poses = _dense(model.loop, linkage, own[0], dense)
-        here = model.loop.here(solution.seed.values, model.loop.poses(solution.seed.values, poses))
+        dense = np.linspace(low, low + solution.seed.period if one.stations.round else high, DENSE)
+        here = loop.here(values, loop.poses(values, _dense(loop, linkage, own[0], dense)))
         for place, room in rooms:
             worst = float(room(here)[0].min())
             if not worst >= -MISSED:
-                must = model.task.musts[place]
-                return Refusal(FAULTS[type(must)], f"{must} is missed by {-worst:.3g}")
+                must = musts[place]
+                unit = room_unit(must, loop.linkage)  # type: ignore[arg-type]
+                missed = f"{-worst * (math.degrees(1) if unit == 'deg' else loop.size):.3g} {unit}"
+                return Refusal(FAULTS[type(must)], f"{must_words(must, loop.linkage)}: missed by {missed}")
             least = min(least, worst)
-    for must in model.task.musts:
+    for must in musts:
         if isinstance(must, Most):
             number = model.sampled.index(must.want)
-            unit = float(getattr(model.wanted[number], "unit", 1.0))
-            worst = must.most - float(np.abs(ways[number][0].errors).max()) / unit
-            if worst < -MISSED:
-                return Refusal(
-                    "error", f"a residual is {must.most - worst:.4g}, at most {must.most:g} is asked"
+            one = model.wanted[number]
+            worst = float(np.abs(ways[number][0].errors).max())
+            if worst > (must.most + TORN) * one.unit:
+                found, asked = (
+                    f"{math.degrees(x):.4g} deg" if one.turns else f"{x:.4g} {linkage.length_unit}"
+                    for x in (worst, must.most * one.unit)
                 )
-            least = min(least, worst)
+                return Refusal("error", f"the greatest error is {found}, at most {asked} is asked")
+            least = min(least, must.most - worst / one.unit)
     return least
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -11,21 +12,28 @@ from sevenbar.arrays import Floats
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.must_contradictions import Flaws, figure_flaw, of_must
+from sevenbar.design.task.musts import places_in
 from sevenbar.design.task.task import (
     DesignTask,
     DwellWant,
     FigureWant,
     FunctionWant,
     InBox,
+    InCone,
     Most,
     PathWant,
+    PoseMust,
     PoseWant,
     StraightWant,
     Want,
 )
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import NotCoveredError, Problem, RequestError, shown, suggestion
+from sevenbar.kinematics.ball_angle import ball_angle
+from sevenbar.kinematics.circuit_path import NotFollowedError
+from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.rigid import flaw_of_rotation
 
 #: The most that residuals are where points are to be met exactly.
 EXACT = 1e-6
@@ -33,8 +41,11 @@ EXACT = 1e-6
 #: Inputs of a turn at which numbers that open the loop show.
 OPENINGS = 12
 
-#: By how much a rotation's matrix may miss being one.
-ROTATION = 1e-3
+#: A place whose slopes are all below this part of the size stands still.
+STILL = 1e-12
+
+#: Fewest samples of a dwell or a straight way.
+FEWEST_SAMPLES = 3
 
 
 def refuse_contradictions(task: DesignTask) -> None:
@@ -54,10 +65,24 @@ def contradictions(task: DesignTask) -> Iterator[Problem]:
     for i, must in enumerate(task.musts):
         for key, message in of_must(task, must):
             yield Problem(f"must[{i + 1}]{key and '.' + key}", message)
+    about_poses = [i for i, must in enumerate(task.musts) if isinstance(must, PoseMust)]
+    if task.wants and about_poses and not task.sampled:
+        yield Problem(
+            f"must[{about_poses[0] + 1}]",
+            "is about poses, and measures alone are wanted; bound a measure of the whole circuit, as "
+            "range:JOINT, ball_angle:JOINT or clearance, by a must with kind = 'figure'",
+        )
     places = [want for want in task.wants if isinstance(want, (PathWant, PoseWant))]
     if task.placement != "fixed" and task.wants and not places:
         yield Problem(
             "placement", f"{task.placement!r} changes nothing: no path and no poses are wanted; leave it out"
+        )
+    boxes = [i for i, must in enumerate(task.musts) if isinstance(must, InBox)]
+    if task.placement != "fixed" and boxes:
+        yield Problem(
+            f"must[{boxes[0] + 1}]",
+            f"a box stands in space, and with placement {task.placement!r} the linkage may stand anywhere; "
+            "leave one of the two out",
         )
     if task.limits.transmission_lowest and task.draft.linkage.form != "rssr":
         yield Problem(
@@ -72,21 +97,74 @@ def start_flaws(task: DesignTask) -> Iterator[Problem]:
     For a task without other contradictions, since its linkage is moved.
     """
     loop = TaskLoop(task.draft.holding(task.follow), task.names)
-    for circuit in loop.linkage.motion(OPENINGS).circuits:
+    circuits = loop.linkage.motion(OPENINGS).circuits
+    for i, must in enumerate(task.musts):
+        if isinstance(must, InCone):
+            yield from _far_side(f"must[{i + 1}]", must, loop.linkage, circuits)
+    q = closed_poses(loop, circuits)
+    if q is None:
+        yield Problem(
+            "linkage",
+            "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
+        )
+        return
+    for number in loop.openings(loop.start, q):
+        yield Problem(
+            f"free.{task.free[number].name}", "cannot change alone without opening the loop; leave it out"
+        )
+    yield from _outside(task, loop, q)
+
+
+def closed_poses(loop: TaskLoop, circuits: Sequence[Circuit]) -> Floats | None:
+    """Poses (n, columns) of the first circuit that has some; `None` where the loop moves nowhere."""
+    for circuit in circuits:
         good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
         if good.size:
             q = loop.closed(loop.start, circuit.input[good], loop.poses(loop.start, circuit.q[good]))
             q = q[np.isfinite(q).all(axis=1)]
             if len(q):
-                for number in loop.openings(loop.start, q):
-                    yield Problem(
-                        f"free.{task.free[number].name}",
-                        "cannot change alone without opening the loop; leave it out",
-                    )
-                return
+                return q
+    return None
+
+
+def _outside(task: DesignTask, loop: TaskLoop, q: Floats) -> Iterator[Problem]:
+    """Points and joints that nothing moves, outside of the box in which they are to stay."""
+    for i, must in enumerate(task.musts):
+        if not isinstance(must, InBox):
+            continue
+        numbers = places_in(loop, must)
+        here = loop.here(loop.start, q)
+        for name, number in zip(must.names, numbers, strict=True):
+            place, by = (
+                here.points[0, number],
+                here.points_by[:, number] * [*loop.scales, loop.units[loop.input]],
+            )
+            out = (place < must.low) | (place > must.high)
+            if out.any() and np.abs(by).max() < STILL * loop.size:
+                at = ", ".join(f"{x + 0.0:.6g}" for x in place)
+                yield Problem(
+                    f"must[{i + 1}].names",
+                    f"{name} stands still at ({at}), outside the box; leave it out, or give a wider box",
+                )
+
+
+def _far_side(place: str, must: InCone, linkage: Linkage, circuits: Sequence[Circuit]) -> Iterator[Problem]:
+    """That a direction was left out of a cone and its rod is on the far side of the joint all along."""
+    bend = ball_angle(linkage, must.joint, must.seat, must.stud)
+    bends = [bend.at(circuit.q)[np.isfinite(circuit.q[:, bend.own]).all(axis=1)] for circuit in circuits]
+    found = np.concatenate([np.empty(0), *bends])
+    if None not in (must.seat, must.stud) or not found.size or not found.min() > math.pi / 2 > must.angle:
+        return
+    key = "seat" if must.seat is None else "stud"
+    least, most = np.degrees([found.min(), found.max()])
+    hint = "the direction in which it is mounted"
+    with suppress(NotFollowedError):
+        cone = circuits[0].ball_cone(must.joint, seat=must.seat, stud=must.stud)
+        hint = f"{cone.middle_of} = {[round(x, 4) for x in cone.middle]}, the middle of its bends, or another"
     yield Problem(
-        "linkage",
-        "moves nowhere as it is described, so it cannot be a start; give dimensions with which it moves",
+        f"{place}.{key}",
+        f"left out, it goes along the rod, from which {must.joint} is {least:.4g} to {most:.4g} deg off "
+        f"at the start; give {hint}",
     )
 
 
@@ -155,10 +233,12 @@ def _of_want(task: DesignTask, want: Want, *, exact: bool) -> Flaws:
         case FigureWant():
             yield from _figure(task, want)
         case DwellWant():
-            yield from _range(task.draft.linkage, want.inputs)
+            yield from _range(task.draft.linkage, want)
         case StraightWant():
             yield from _point(task.draft.linkage, want.point)
-            yield from _range(task.draft.linkage, want.inputs)
+            yield from _range(task.draft.linkage, want)
+            if want.length is not None and not (math.isfinite(want.length) and want.length > 0):
+                yield "length", f"{want.length:g} is no length; give a number > 0"
 
 
 def _function(task: DesignTask, want: FunctionWant, *, exact: bool) -> Flaws:
@@ -204,11 +284,8 @@ def _poses(task: DesignTask, want: PoseWant, *, exact: bool) -> Flaws:
         yield "poses", f"an array of shape {poses.shape} holds no poses; give finite ones (n, 4, 4)"
         return
     for i, pose in enumerate(poses):
-        turn = pose[:3, :3]
-        off = float(np.abs(turn @ turn.T - np.eye(3)).max())
-        if off > ROTATION or np.linalg.det(turn) < 0:
-            what = "mirrors" if off <= ROTATION else f"misses one by {off:.2g}"
-            yield f"poses[{i + 1}]", f"is no rotation: it {what}; give a rotation, or axis and angle"
+        if flaw := flaw_of_rotation(pose[:3, :3]):
+            yield f"poses[{i + 1}]", flaw
     if want.timing is not None:
         if want.timing.size != len(poses):
             yield "timing", f"{want.timing.size} inputs for {len(poses)} poses; give one for each"
@@ -246,8 +323,10 @@ def _figure(task: DesignTask, want: FigureWant) -> Flaws:
         yield "value", f"{want.value:g} cannot be: {want.name} is never below 0; give another value"
 
 
-def _range(linkage: Linkage, ends: tuple[float, float]) -> Flaws:
-    low, high = ends
+def _range(linkage: Linkage, want: DwellWant | StraightWant) -> Flaws:
+    low, high = want.inputs
+    if want.samples < FEWEST_SAMPLES:
+        yield "samples", f"{want.samples} are too few; give {FEWEST_SAMPLES} or more"
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         yield "range", "its first end is not below its second one; give the lower end first"
     elif linkage.turns(linkage.drive.joint) and high - low > math.tau * (1 + 1e-12):

@@ -122,21 +122,19 @@ def musts_figure(along: DesignAlong) -> Figure | None:
     if not rooms:
         return None
     linkage, task = along.task.draft.linkage, along.task
-    units = list(dict.fromkeys(along.room_unit(task.musts[place]) for place, *_ in rooms))
+    units = list(dict.fromkeys(along.room_unit(place) for place, *_ in rooms))
     across = _scale(linkage.turns(linkage.drive.joint))
     with styled():
         figure = page_figure(6.4, 2.6 + 2.4 * len(units), pads=(0.05, 0.06))
         every = figure.subplots(len(units), 1, sharex=True, squeeze=False)[:, 0]
         seen: set[int] = set()
         for place, _, inputs, values in rooms:
-            unit = along.room_unit(task.musts[place])
-            axes = every[units.index(unit)]
+            axes = every[units.index(along.room_unit(place))]
             label = None if place in seen else short(must_words(task.musts[place], linkage), 60)
             seen.add(place)
             order = np.argsort(inputs)
-            scale = math.degrees(1.0) if unit == "deg" else 1.0
             colour = COLOURS[place % len(COLOURS)]
-            axes.plot(across * inputs[order], scale * values[order], color=colour, lw=1.6, label=label)
+            axes.plot(across * inputs[order], values[order], color=colour, lw=1.6, label=label)
         for axes, unit in zip(every, units, strict=True):
             axes.axhline(0.0, color="#505050", lw=0.8, zorder=1)
             axes.set_ylabel(say("room [{unit}]", unit=unit))

@@ -26,18 +26,14 @@ from sevenbar.design.task.contradictions import refuse_contradictions
 from sevenbar.design.task.search import STARTS, DesignsFound, designed
 from sevenbar.design.task.task import (
     DesignTask,
-    DwellWant,
     FigureMust,
     FigureWant,
-    FunctionWant,
     Most,
     Must,
-    PathWant,
-    PoseWant,
-    StraightWant,
+    Want,
+    residual_unit,
 )
 from sevenbar.errors import RequestError, shown
-from sevenbar.kinematics.sensitivity import Numbers
 from sevenbar.text.progress import Progress, silent
 
 #: Points of a front, by default and at most.
@@ -183,10 +179,10 @@ def _must(task: DesignTask, place: int, bound: float) -> Must:
     """That a want's value is at most so great."""
     want = task.wants[place]
     if not isinstance(want, FigureWant):
-        return Most(place, bound / _unit(task, place))
+        return Most(place, bound / residual_unit(want, task.draft.linkage))
     if want.value == "small":
         return FigureMust(want.name, most=bound)
-    if want.value == "great":
+    if _is_great(want):
         return FigureMust(want.name, least=-bound)
     return FigureMust(want.name, float(want.value) - bound, float(want.value) + bound)
 
@@ -195,34 +191,15 @@ def _value(task: DesignTask, place: int, design: TaskDesign) -> float:
     """What a design makes of a want, the less the better: its greatest error, or its measure."""
     want = task.wants[place]
     if not isinstance(want, FigureWant):
-        return design.met[_sampled(task).index(place)].greatest
+        return design.met[[i for i, _ in task.sampled].index(place)].greatest
     value = float(design.figures[want.name])
     if want.value == "small":
         return value
-    return -value if want.value == "great" else abs(value - float(want.value))
+    return -value if _is_great(want) else abs(value - float(want.value))
 
 
-def _sampled(task: DesignTask) -> list[int]:
-    return [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
-
-
-def _unit(task: DesignTask, place: int) -> float:
-    """What a want's residuals are relative to [rad, or length]."""
-    want = task.wants[place]
-    linkage = task.draft.linkage
-    match want:
-        case FigureWant():
-            return want.unit
-        case PathWant():
-            return float(np.ptp(want.places, axis=0).max())
-        case PoseWant():
-            return want.arm
-        case StraightWant(length=length) if length is not None:
-            return length
-        case FunctionWant() | DwellWant() if linkage.turns(linkage.drive.output):
-            return 1.0
-        case _:
-            return float(Numbers(linkage).size)
+def _is_great(want: Want) -> bool:
+    return isinstance(want, FigureWant) and want.value == "great"
 
 
 def _bounds(low: float, high: float, points: int) -> Floats:
@@ -248,7 +225,7 @@ def _front(task: DesignTask, pair: tuple[int, int], kept: Sequence[ParetoPoint])
                 front.pop()
             front.append(point)
             best = point.values[1]
-    signs = [-1.0 if getattr(task.wants[place], "value", None) == "great" else 1.0 for place in pair]
+    signs = [-1.0 if _is_great(task.wants[place]) else 1.0 for place in pair]
     return tuple(
         replace(point, values=(signs[0] * point.values[0], signs[1] * point.values[1])) for point in front
     )

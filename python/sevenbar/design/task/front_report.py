@@ -5,16 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from sevenbar.arrays import Floats
 from sevenbar.design.task.front import ParetoFront
 from sevenbar.design.task.report import TaskDesigns, as_dict, task_report
-from sevenbar.design.task.task import DesignTask, FigureWant
+from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
 from sevenbar.design.task.words import task_facts, want_words
 from sevenbar.drawing.figure import page_figure
 from sevenbar.drawing.names import short
@@ -27,78 +28,59 @@ from sevenbar.text.words import say
 
 
 @dataclass(frozen=True, eq=False)
-class FrontFound:
-    """A front, with the name and source of its task and what the search was given."""
+class FrontFound(TaskDesigns):
+    """A front, with its designs as those of a search."""
 
     front: ParetoFront
-    name: str
-    source: str
-    starts: int
-    seed: int
-
-    @cached_property
-    def designs(self) -> TaskDesigns:
-        """Its designs as those of a search."""
-        return TaskDesigns(self.front.found, self.name, self.source, self.starts, self.seed)
 
     @property
-    def axes(self) -> list[tuple[str, str, float]]:
-        """Of both wants: a name for tables, the unit, and what a value is multiplied by for it."""
-        task = self.front.task
-        return [_axis(task, place) for place in self.front.wants]
+    def axes(self) -> list[tuple[str, str]]:
+        """Of both wants: a name for tables, and the unit."""
+        return [_axis(self.task, place) for place in self.front.wants]
+
+    @property
+    def values(self) -> Floats:
+        """The two values of each point (n, 2) in the units of the axes."""
+        radians = [not isinstance(self.task.wants[place], FigureWant) for place in self.front.wants]
+        degrees = [own and unit == "deg" for own, (_, unit) in zip(radians, self.axes, strict=True)]
+        return self.front.values * np.where(degrees, math.degrees(1.0), 1.0)
+
+    @property
+    def columns(self) -> dict[str, list[float]]:
+        """The values of the points by the names that they have in tables."""
+        names = (f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit in self.axes)
+        return {name: own.tolist() for name, own in zip(names, self.values.T, strict=True)}
 
 
-def _axis(task: DesignTask, place: int) -> tuple[str, str, float]:
+def _axis(task: DesignTask, place: int) -> tuple[str, str]:
     want, linkage = task.wants[place], task.draft.linkage
     if isinstance(want, FigureWant):
         (measure,) = measures_named([want.name])
         off = "" if isinstance(want.value, str) else "off_"
-        return f"{off}{want.name}", measure.unit(linkage, linkage.drive.output).replace("_", " "), 1.0
-    places = hasattr(want, "point") or hasattr(want, "arm")
-    if places or not linkage.turns(linkage.drive.output):
-        return f"want_{place + 1}_greatest", linkage.length_unit, 1.0
-    return f"want_{place + 1}_greatest", "deg", math.degrees(1.0)
+        return f"{off}{want.name}", measure.unit(linkage, linkage.drive.output).replace("_", " ")
+    turns = isinstance(want, FunctionWant | DwellWant) and linkage.turns(linkage.drive.output)
+    return f"want_{place + 1}_greatest", "deg" if turns else linkage.length_unit
 
 
 def front_report(
     task: DesignTask, count: int, command: str, formats: Sequence[str] = ("png",)
 ) -> Report[FrontFound]:
     """How a front of at most `count` points is reported; the heads of its files name the `command`."""
-    inner = task_report(task, count, command, formats)
     files: dict[str, Any] = {"front.csv": _write_table}
     files |= figure_files("front", formats, front_figure)
-    for name, write in inner.files.items():
-        files[name] = _through(write)
-    return Report(_text, _as_dict, files)
-
-
-def _through(write: Any) -> Any:
-    def written(found: FrontFound, path: Path) -> None:
-        write(found.designs, path)
-
-    return written
+    return Report(_text, _as_dict, files | dict(task_report(task, count, command, formats).files))
 
 
 def _write_table(found: FrontFound, path: Path) -> None:
-    names = [f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit, _ in found.axes]
-    scales = [scale for *_, scale in found.axes]
-    free = list(found.front.task.names)
-    rows = [
-        [
-            i,
-            *(v * s for v, s in zip(point.values, scales, strict=True)),
-            point.design.optimality,
-            *point.design.values,
-        ]
-        for i, point in enumerate(found.front.points, 1)
-    ]
-    write_csv(path, ["design", *names, "kkt_residual", *free], rows)
+    own = zip(found.values.tolist(), found.front.points, strict=True)
+    rows = [[i, *pair, p.design.optimality, *p.design.values] for i, (pair, p) in enumerate(own, 1)]
+    write_csv(path, ["design", *found.columns, "kkt_residual", *found.task.names], rows)
 
 
 def _text(found: FrontFound) -> RenderableType:
-    front, task = found.front, found.front.task
+    front = found.front
     facts = Facts()
-    for label, words in task_facts(task):
+    for label, words in task_facts(found.task):
         facts.add(label, words, "bold" if label == "wanted" else "")
     both = " and ".join(str(place + 1) for place in front.wants)
     facts.add(
@@ -108,19 +90,18 @@ def _text(found: FrontFound) -> RenderableType:
         facts.add("", f"{front.missing} bounds had no design")
     if front.unfinished:
         facts.add("unfinished", front.unfinished, "bold yellow")
-    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit, _ in found.axes]
-    scales = [scale for *_, scale in found.axes]
+    heads = [f"{name.replace('_', ' ')}\n[{unit}]" if unit else name for name, unit in found.axes]
     rows = [
         [
             str(i),
-            *(f"{v * s:.5g}" for v, s in zip(point.values, scales, strict=True)),
+            *(f"{value:.5g}" for value in pair),
             f"{point.design.optimality:.1e}",
             f"{point.design.candidate.size:.5g}",
             point.design.candidate.motion_type,
         ]
-        for i, point in enumerate(front.points, 1)
+        for i, (pair, point) in enumerate(zip(found.values, front.points, strict=True), 1)
     ]
-    unit = task.draft.linkage.length_unit
+    unit = found.task.draft.linkage.length_unit
     table = number_table(
         ["design", *heads, "KKT\nresidual", f"size\n[{unit}]", "motion type"], rows, words=[5]
     )
@@ -128,31 +109,20 @@ def _text(found: FrontFound) -> RenderableType:
 
 
 def _as_dict(found: FrontFound) -> dict[str, Any]:
-    scales = [scale for *_, scale in found.axes]
-    names = [f"{name}_{unit.replace(' ', '_')}" if unit else name for name, unit, _ in found.axes]
-    points = [
-        {"design": i, **{n: v * s for n, v, s in zip(names, point.values, scales, strict=True)}}
-        for i, point in enumerate(found.front.points, 1)
-    ]
-    wants = [place + 1 for place in found.front.wants]
-    return {
-        **as_dict(found.designs),
-        "front": {
-            "wants": wants,
-            "searches": found.front.solved,
-            "missing": found.front.missing,
-            "points": points,
-        },
-    }
+    columns = found.columns
+    rows = zip(*columns.values(), strict=True)
+    points = [{"design": i, **dict(zip(columns, row, strict=True))} for i, row in enumerate(rows, 1)]
+    front = found.front
+    wants = [place + 1 for place in front.wants]
+    own = {"wants": wants, "searches": front.solved, "missing": front.missing, "points": points}
+    return {**as_dict(found), "front": own}
 
 
 def front_figure(found: FrontFound) -> Any:
     """The points of a front, numbered as their files."""
     from matplotlib.ticker import MaxNLocator
 
-    front = found.front
-    scales = [scale for *_, scale in found.axes]
-    values = front.values * scales
+    front, values = found.front, found.values
     with styled():
         figure = page_figure(6.4, 5.2, pads=(0.05, 0.06))
         axes = figure.subplots()
@@ -162,7 +132,7 @@ def front_figure(found: FrontFound) -> Any:
         linkage = front.task.draft.linkage
         labels = [
             f"{short(want_words(front.task.wants[place], linkage), 70)}" + (f"\n[{unit}]" if unit else "")
-            for place, (_, unit, _) in zip(front.wants, found.axes, strict=True)
+            for place, (_, unit) in zip(front.wants, found.axes, strict=True)
         ]
         axes.set_xlabel(labels[0])
         axes.set_ylabel(labels[1])

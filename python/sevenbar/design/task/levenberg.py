@@ -1,7 +1,8 @@
 """Least squares within bounds by Levenberg and Marquardt's method, the unknowns at their bounds held there.
 
 A step s from z solves  `min |r + J s|^2 + l |D s|^2`  over the unknowns that no bound stops, D the greatest
-lengths that the columns of J have had; l falls and rises with what the step before kept of its promise.
+lengths that the columns of J have had; l falls and rises with what the step before kept of its promise. A
+step is tried by its residuals alone; slopes are asked for where one was taken.
 
 Source: K. Madsen, H. B. Nielsen, O. Tingleff, Methods for non-linear least squares problems, IMM 2004, (3.14)
 to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transtrum, J. Sethna, arXiv
@@ -11,14 +12,14 @@ to (3.16); J. J. More, Lecture Notes in Mathematics 630 (1978), for D; M. Transt
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from sevenbar.arrays import Floats
+from sevenbar.arrays import Booleans, Floats
 
-#: The most of l, and the most that one step may change an unknown [units].
-MOST, FARTHEST = 1e16, 0.5
+#: The least and the most of l, and the most that one step may change an unknown [units].
+SLIGHTEST, MOST, FARTHEST = 1e-22, 1e16, 0.5
 
 #: The part of its promise that a step must keep.
 KEPT = 1e-4
@@ -36,86 +37,107 @@ LEAST = 1e-8
 NOTHING = 1e-31
 
 
+class Nearest(NamedTuple):
+    """The unknowns (k,) of the least sum of squares; `stuck`: no step led on, though slopes promised it."""
+
+    z: Floats
+    stuck: bool
+
+
+class _Damped:
+    """Slopes (r, k) with damping, over the unknowns that are free (k,), in units of a scale (free,)."""
+
+    def __init__(self, by: Floats, free: Booleans, scale: Floats, weight: float) -> None:
+        self._free, self._scale = free, scale
+        damped = np.concatenate([by[:, free] / scale, np.sqrt(weight) * np.eye(len(scale))])
+        self._basis, self._triangle = np.linalg.qr(damped)
+
+    def step(self, sides: Floats) -> Floats:
+        """The step (k,) by which the residuals change as nearly as may be by sides (r,)."""
+        found = np.zeros(len(self._free))
+        along = np.linalg.solve(self._triangle, self._basis[: len(sides)].T @ sides)
+        found[self._free] = along / self._scale
+        return found
+
+    def length(self, step: Floats) -> float:
+        """The length of a step in its units."""
+        return float(np.linalg.norm(step[self._free] * self._scale))
+
+
 def nearest_least(
-    residuals: Callable[[Floats], tuple[Floats, Floats] | None],
+    residuals: Callable[[Floats], Floats | None],
+    slopes: Callable[[Floats], Floats | None],
     start: Floats,
     low: Floats,
     high: Floats,
     *,
     evaluations: int,
     first: float,
-    taken: Callable[[Floats], None],
-) -> Floats | None:
-    """The unknowns (k,) of the nearest least sum of squares; `None` where there is none at the start.
+) -> Nearest | None:
+    """The nearest least sum of squares within so many `evaluations`; `None` where there is none at the start.
 
-    `residuals` gives residuals (r,) and slopes (r, k), `None` where there are none: a step never leads there.
-    `first` is the first l; `taken` is called with each place that a step has led to.
+    `residuals` gives residuals (r,) of unknowns that are tried, `slopes` (r, k) those of unknowns that a step
+    has led to; either is `None` where there are none: a step never leads there. `first` is the first l.
     """
     z = np.clip(start, low, high)
-    now = residuals(z)
-    if now is None:
+    left, by = residuals(z), slopes(z)
+    if left is None or by is None:
         return None
-    left, by = now
     cost = float(left @ left)
     sizes = np.linalg.norm(by, axis=0)
     weight, growth = first, 2.0
-    for number in range(evaluations):
+    steps, tried = 0, 1
+    while tried < evaluations:
         pull = by.T @ left
         free = ~(((z <= low) & (pull > 0)) | ((z >= high) & (pull < 0)))
         if not free.any() or cost < NOTHING:
             break
         scale = np.maximum(sizes, LEAST * max(float(sizes.max()), LEAST))[free]
-        step = np.zeros(len(z))
-        matrix = np.concatenate([by[:, free] / scale, np.sqrt(weight) * np.eye(len(scale))])
-        sides = np.concatenate([-left, np.zeros(len(scale))])
-        step[free] = np.linalg.lstsq(matrix, sides, rcond=None)[0] / scale
+        damped = _Damped(by, free, scale, weight)
+        step = damped.step(-left)
         step *= min(1.0, FARTHEST / max(float(np.abs(step).max()), 1e-300))
-        straight = cost - float(((left + by @ step) ** 2).sum())
-        if number >= STRAIGHT:
-            step = _bent(residuals, z, left, by, step, free, scale, matrix)
+        straight = -np.inf
+        if steps >= STRAIGHT:
+            straight = cost - float(((left + by @ step) ** 2).sum())
+            step = _bent(residuals, z, left, by, step, damped)
+            tried += 1
+        steps += 1
         then_z = np.clip(z + step, low, high)
         step = then_z - z
         if np.abs(step).max() <= STEP * (1 + float(np.abs(z).max())):
             break
-        promised = cost - float(((left + by @ step) ** 2).sum())
-        if number >= STRAIGHT:
-            promised = max(promised, straight)
+        promised = max(cost - float(((left + by @ step) ** 2).sum()), straight)
         then = residuals(then_z) if promised > 0 else None
-        gained = -np.inf if then is None else cost - float(then[0] @ then[0])
-        if then is None or not gained > KEPT * promised:
+        tried += 1
+        gained = -np.inf if then is None else cost - float(then @ then)
+        then_by = slopes(then_z) if gained > KEPT * promised else None
+        if then is None or then_by is None:
             weight *= growth
             growth *= 2
             if weight > MOST:
                 break
             continue
-        taken(then_z)
-        z, (left, by) = then_z, then
+        z, left, by = then_z, then, then_by
         sizes = np.maximum(sizes, np.linalg.norm(by, axis=0))
-        weight *= max(1 / 3, 1 - (2 * gained / promised - 1) ** 3)
+        weight = max(weight * max(1 / 3, 1 - (2 * gained / promised - 1) ** 3), SLIGHTEST)
         growth = 2.0
         if gained <= FALL * cost:
             break
         cost -= gained
-    return z
+    return Nearest(z, stuck=growth > 2.0 and tried < evaluations)
 
 
 def _bent(
-    residuals: Callable[[Floats], tuple[Floats, Floats] | None],
+    residuals: Callable[[Floats], Floats | None],
     z: Floats,
     left: Floats,
     by: Floats,
     step: Floats,
-    free: npt.NDArray[np.bool_],
-    scale: Floats,
-    matrix: Floats,
+    damped: _Damped,
 ) -> Floats:
     """A step with its second order, by which it follows a valley that bends; without it where it is large."""
     ahead = residuals(z + SHARE * step)
     if ahead is None:
         return step
-    second = 2 / SHARE * ((ahead[0] - left) / SHARE - by @ step)
-    sides = np.concatenate([-second, np.zeros(len(scale))])
-    bend = np.zeros(len(z))
-    bend[free] = np.linalg.lstsq(matrix, sides, rcond=None)[0] / scale / 2
-    small = np.linalg.norm(bend[free] * scale) <= MOST_BENT * np.linalg.norm(step[free] * scale)
-    return step + bend if small else step
+    bend = damped.step(((left - ahead) / SHARE + by @ step) / SHARE)
+    return step + bend if damped.length(bend) <= MOST_BENT * damped.length(step) else step

@@ -9,16 +9,22 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
+from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.following import Following
+from sevenbar.kinematics.motion import Motion
 from sevenbar.kinematics.sensitivity import NumberedLoop, Numbers
 from sevenbar.kinematics.word import Carried
+
+#: Inputs of a turn at which circuits are measured and wants begun: what lies between rows is found there.
+SAMPLES = 72
 
 
 @dataclass(frozen=True, eq=False)
 class Here:
     """A loop at closed poses (n, columns): columns and points (n, points, 3), with slopes (.., k + 1).
 
-    Slopes are by the k free numbers, then by the input. A ball's columns are its rotation in their slopes.
+    Slopes are by the k free numbers, then by the input, or (.., 0) by nothing. A ball's columns are its
+    rotation in their slopes.
     """
 
     q: Floats
@@ -34,6 +40,8 @@ class Here:
         """The same with slopes by free numbers and unknowns, by which the inputs change so (n, unknowns)."""
 
         def chained(by: Floats) -> Floats:
+            if not by.shape[-1]:
+                return by
             own = inputs_by.reshape(len(inputs_by), *(1,) * (by.ndim - 2), -1)
             return np.concatenate([by[..., :-1], by[..., -1:] * own], axis=-1)
 
@@ -60,6 +68,7 @@ class TaskLoop:
         self.scales = self.numbers.units[self.free]
         self.coupler = Following.among(self.numbers.dimensions, self.free)
         self._loop: tuple[bytes, NumberedLoop] | None = None
+        self._motion: tuple[bytes, Motion | None] | None = None
 
     @property
     def start(self) -> Floats:
@@ -108,8 +117,11 @@ class TaskLoop:
         """The poses (n, columns) at inputs x (n,), by Newton's method from those nearby; NaN where lost."""
         return np.asarray(self.at(values).followed(x, q)[0][0])
 
-    def here(self, values: Floats, q: Floats) -> Here:
-        """What is at closed poses (n, columns); NaN at dead centres of the input."""
+    def here(self, values: Floats, q: Floats, *, slopes: bool = True) -> Here:
+        """What is at closed poses (n, columns); slopes are NaN at dead centres of the input."""
+        if not slopes:
+            points = self.at(values).places(q)
+            return Here(q, np.empty((*q.shape, 0)), points, np.empty((*points.shape, 0)))
         found = self.at(values).slopes(q, 0)
         by_q = np.moveaxis(found.by_number[:, 0], 1, 2)
         by_points = np.moveaxis(found.points_by_number[:, :, 0], 2, 3)
@@ -143,5 +155,15 @@ class TaskLoop:
 
     def drawn(self, values: Floats) -> Draft:
         """The draft with these values (k,)."""
-        names = [self.numbers.names[i] for i in self.free]
-        return self.draft.with_values(dict(zip(names, map(float, values), strict=True)))
+        own = [(self.numbers.dimensions[i], float(x)) for i, x in zip(self.free, values, strict=True)]
+        return self.draft.with_places({d.place: self.draft.written(d, x) for d, x in own})
+
+    def motion(self, values: Floats) -> Motion | None:
+        """The motion at these values (k,), kept for the next question; `None` where they make no linkage."""
+        key = values.tobytes()
+        if self._motion is None or self._motion[0] != key:
+            try:
+                self._motion = key, self.drawn(values).linkage.motion(SAMPLES)
+            except (DescriptionError, RequestError, NotCoveredError):
+                self._motion = key, None
+        return self._motion[1]

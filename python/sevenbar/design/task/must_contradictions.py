@@ -21,14 +21,24 @@ from sevenbar.design.task.task import (
     PathWant,
 )
 from sevenbar.errors import RequestError, no_joint, shown, suggestion
+from sevenbar.kinematics.circuit_extents import chosen
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.measures import FORCE_MEASURES, JOINT_MEASURES, MEASURES, measures_named
+from sevenbar.kinematics.measures import (
+    EXTENT_MEASURES,
+    FORCE_MEASURES,
+    JOINT_EXTENTS,
+    JOINT_MEASURES,
+    MEASURES,
+    OF_JOINTS,
+    measures_named,
+)
+from sevenbar.kinematics.stops import Cone
 
 #: Messages, each with the key that it is of; "" for a whole table.
 Flaws = Iterator[tuple[str, str]]
 
-#: Kinds of joints that have a cone.
-BENDING = ("S", "U")
+#: Inputs of a turn that show whether a measure has a meaning.
+FEW = 12
 
 
 def of_must(task: DesignTask, must: Must) -> Flaws:
@@ -55,7 +65,7 @@ def figure_flaw(linkage: Linkage, name: str) -> str:
         (measure,) = measures_named([name])
     except RequestError:
         numbers = [n for n, m in MEASURES.items() if m.quantity != "word"]
-        known = [*numbers, *FORCE_MEASURES, *(f"{kind}:JOINT" for kind in JOINT_MEASURES)]
+        known = [*numbers, *FORCE_MEASURES, *EXTENT_MEASURES, *(f"{kind}:JOINT" for kind in OF_JOINTS)]
         return f"{shown(name)} is not a measure; {suggestion(name, known)}give one of {', '.join(known)}"
     if measure.quantity == "word":
         return f"'{name}' is a word, not a number; give limits.motion_type"
@@ -67,12 +77,18 @@ def figure_flaw(linkage: Linkage, name: str) -> str:
         return "nothing acts on the linkage: no body, load or spring; write them into its file"
     if name.startswith("transmission") and linkage.form != "rssr" and not _transmits(linkage):
         return "this linkage has no transmission angle; leave it out"
+    if kind in JOINT_EXTENTS:
+        for circuit in linkage.motion(FEW).circuits[:1]:
+            try:
+                measure.value(circuit)
+            except RequestError as error:
+                return str(error).removeprefix("measure: ")
     return ""
 
 
 def _transmits(linkage: Linkage) -> bool:
     """Whether the linkage has a transmission angle: as its circuits have it."""
-    return any(circuit.transmission is not None for circuit in linkage.motion(12).circuits)
+    return any(circuit.transmission is not None for circuit in linkage.motion(FEW).circuits)
 
 
 def _range(task: DesignTask, must: InRange) -> Flaws:
@@ -99,18 +115,11 @@ def _range(task: DesignTask, must: InRange) -> Flaws:
 
 
 def _cone(linkage: Linkage, must: InCone) -> Flaws:
-    kinds = {joint.name: joint.kind for joint in linkage.joints}
-    bending = [name for name, kind in kinds.items() if kind in BENDING]
-    if must.joint not in kinds:
-        yield "joint", no_joint(must.joint, list(kinds))
-    elif must.joint not in bending:
-        has = f"give one of {', '.join(bending)}" if bending else "this linkage has none; give a range"
-        yield "joint", f"'{must.joint}' is neither a ball nor a U joint, so it has no cone; {has}"
-    if not 0 < must.angle < math.pi:
-        yield "angle", f"{math.degrees(must.angle):g} deg is no cone; give an angle above 0 and below 180 deg"
-    for key, direction in (("seat", must.seat), ("stud", must.stud)):
-        if direction is not None and not math.hypot(*direction) > 0:
-            yield key, "has no direction; give three numbers, not all 0"
+    try:
+        chosen(linkage, must.joint, Cone(must.angle, must.seat, must.stud))
+    except RequestError as error:
+        key, _, message = str(error).partition(": ")
+        yield {"cone": "angle"}.get(key, key), message
 
 
 def _box(task: DesignTask, must: InBox) -> Flaws:

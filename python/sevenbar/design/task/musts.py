@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.candidates import Fault
 from sevenbar.design.task.loop import Here, TaskLoop
-from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must
-from sevenbar.kinematics.rods import nearest_shares
+from sevenbar.design.task.task import Apart, InBox, InCone, InRange, Must, PoseMust
+from sevenbar.kinematics.ball_angle import has_length, line_angles, rod
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.rods import distance_slopes
+from sevenbar.kinematics.stops import Three
 
 #: Rooms (n, r) at n poses, and their slopes (n, r, unknowns).
 Rooms = tuple[Floats, Floats]
 
-#: Below this sine an angle has a kink; its slopes there are none.
-TIP = 1e-12
+#: What is at fault where a must about poses is missed.
+FAULTS: Mapping[type, Fault] = {InRange: "range", InCone: "cone", InBox: "box", Apart: "distance"}
 
 
 def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callable[[Here], Rooms]]]:
@@ -24,17 +29,13 @@ def pose_rooms(loop: TaskLoop, musts: Sequence[Must]) -> list[tuple[int, Callabl
 
     Angles [rad], lengths relative to the size.
     """
-    found: list[tuple[int, Callable[[Here], Rooms]]] = []
-    for place, must in enumerate(musts):
-        if isinstance(must, InRange):
-            found.append((place, _range(loop, must)))
-        elif isinstance(must, InCone):
-            found.append((place, _cone(loop, must)))
-        elif isinstance(must, InBox):
-            found.append((place, _box(loop, must)))
-        elif isinstance(must, Apart):
-            found.append((place, _apart(loop, must)))
-    return found
+    return [(i, _ROOMS[type(must)](loop, must)) for i, must in enumerate(musts) if type(must) in _ROOMS]
+
+
+def room_unit(must: PoseMust, linkage: Linkage) -> str:
+    """The unit in which people read the room of a must about poses: "deg", or the length unit."""
+    turns = isinstance(must, InCone) or (isinstance(must, InRange) and linkage.turns(must.column))
+    return "deg" if turns else linkage.length_unit
 
 
 def _range(loop: TaskLoop, must: InRange) -> Callable[[Here], Rooms]:
@@ -57,62 +58,48 @@ def _range(loop: TaskLoop, must: InRange) -> Callable[[Here], Rooms]:
 
 
 def _cone(loop: TaskLoop, must: InCone) -> Callable[[Here], Rooms]:
-    count = len(loop.linkage.joints)
     place = [joint.name for joint in loop.linkage.joints].index(must.joint)
-    zero = (0.0, 0.0, 0.0)
-    before, after = place or count, place + 1
-    # both rods go from this joint to the other joint of the link
-    if must.seat is None:
-        seat = (loop.joint(place, ahead=False), loop.joint((place - 1) % count, ahead=True))
-    else:
-        seat = (loop.place(before, zero), loop.place(before, must.seat))
-    if must.stud is None:
-        stud = (loop.joint(place, ahead=True), loop.joint((place + 1) % count, ahead=False))
-    else:
-        stud = (loop.place(after, zero), loop.place(after, must.stud))
+    before, after = place or len(loop.linkage.joints), place + 1
+    ends = [*_line(loop, before, place, must.seat), *_line(loop, after, place, must.stud)]
 
     def rooms(here: Here) -> Rooms:
-        (u, u_by), (v, v_by) = (_way(here, ends) for ends in (seat, stud))
-        cross = np.cross(u, v)
-        sine, cosine = np.linalg.norm(cross, axis=1), (u * v).sum(axis=1)
-        # d angle = (cos . d|u x v| - |u x v| d(u . v)) for unit vectors
-        with np.errstate(divide="ignore", invalid="ignore"):
-            axis = np.where(sine[:, None] > TIP, cross / sine[:, None], 0.0)
-        by_u, by_v = np.cross(v, axis), np.cross(axis, u)
-        by = np.einsum("ni,nik->nk", by_u, u_by) + np.einsum("ni,nik->nk", by_v, v_by)
-        # the part of both along the two directions adds nothing to the sine at unit length
-        slopes = cosine[:, None] * by - sine[:, None] * (
-            np.einsum("ni,nik->nk", v, u_by) + np.einsum("ni,nik->nk", u, v_by)
-        )
-        return (must.angle - np.arctan2(sine, cosine))[:, None], -slopes[:, None]
+        angles, by = line_angles(here.points[:, ends], here.points_by[:, ends])
+        return (must.angle - angles)[:, None], -np.nan_to_num(by)[:, None]
 
     return rooms
 
 
-def _way(here: Here, ends: tuple[int, int]) -> tuple[Floats, Floats]:
-    """The direction (n, 3) from one point to another, of length 1, and its slopes (n, 3, unknowns)."""
-    way = here.points[:, ends[1]] - here.points[:, ends[0]]
-    by = here.points_by[:, ends[1]] - here.points_by[:, ends[0]]
-    size = np.linalg.norm(way, axis=1)[:, None]
-    way = way / size
-    by = (by - way[:, :, None] * np.einsum("ni,nik->nk", way, by)[:, None]) / size[:, :, None]
-    return way, by
+def _line(loop: TaskLoop, link: int, place: int, given: Three | None) -> tuple[int, int]:
+    """The numbers of two places on a direction of a link, or on its rod, away from one of its joints."""
+    linkage, count = loop.linkage, len(loop.linkage.joints)
+    if given is None and has_length(linkage, link):
+        ends = loop.joint((link - 1) % count, ahead=True), loop.joint(link % count, ahead=False)
+        return ends if place == link - 1 else ends[::-1]
+    way = rod(linkage, link, place) if given is None else np.asarray(given)
+    x, y, z = map(float, loop.size / np.linalg.norm(way) * way)
+    return loop.place(link, (0.0, 0.0, 0.0)), loop.place(link, (x, y, z))
 
 
-def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
+def places_in(loop: TaskLoop, must: InBox) -> list[int]:
+    """The numbers of the points and joints that stay in a box."""
     joints = [joint.name for joint in loop.linkage.joints]
     points = [point.name for point in loop.linkage.points]
-    numbers = [
+    return [
         loop.named(name) if name in points else loop.joint(joints.index(name), ahead=True)
         for name in must.names
     ]
+
+
+def _box(loop: TaskLoop, must: InBox) -> Callable[[Here], Rooms]:
+    numbers = places_in(loop, must)
     low, high = np.array(must.low), np.array(must.high)
 
     def rooms(here: Here) -> Rooms:
         places, by = here.points[:, numbers], here.points_by[:, numbers]
         values = np.concatenate([places - low, high - places], axis=1) / loop.size
         slopes = np.concatenate([by, -by], axis=1) / loop.size
-        return values.reshape(len(values), -1), slopes.reshape(len(values), -1, by.shape[-1])
+        rooms = values.reshape(len(values), -1)
+        return rooms, slopes.reshape(*rooms.shape, by.shape[-1])
 
     return rooms
 
@@ -121,15 +108,18 @@ def _apart(loop: TaskLoop, must: Apart) -> Callable[[Here], Rooms]:
     count = len(loop.linkage.joints)
     rods = [(loop.joint(k - 1, ahead=True), loop.joint(k % count, ahead=False)) for k in must.links]
 
+    ends = [*rods[0], *rods[1]]
+
     def rooms(here: Here) -> Rooms:
-        (a, b), (c, d) = ((here.points[:, i], here.points[:, j]) for i, j in rods)
-        s, t = nearest_shares(a, b, c, d)
-        shares = ((rods[0][0], 1 - s), (rods[0][1], s), (rods[1][0], t - 1), (rods[1][1], -t))
-        way = sum(share[:, None] * here.points[:, i] for i, share in shares)
-        by = sum(share[:, None, None] * here.points_by[:, i] for i, share in shares)
-        size = np.linalg.norm(way, axis=1)
-        # an extreme over the shares follows the places alone
-        slopes = np.einsum("ni,nik->nk", way, by) / np.maximum(size, TIP)[:, None]
-        return (size - must.least)[:, None] / loop.size, slopes[:, None] / loop.size
+        apart, by = distance_slopes(here.points[:, ends], here.points_by[:, ends])
+        return (apart - must.least)[:, None] / loop.size, by[:, None] / loop.size
 
     return rooms
+
+
+_ROOMS: Mapping[type, Callable[[TaskLoop, Any], Callable[[Here], Rooms]]] = {
+    InRange: _range,
+    InCone: _cone,
+    InBox: _box,
+    Apart: _apart,
+}

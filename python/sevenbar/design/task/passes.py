@@ -47,16 +47,21 @@ class InputPass:
         """Where a named point is along the rows (m, 3)."""
         return self.circuit.point(point).position[self.rows]
 
-    def nearest(self, inputs: Floats) -> Integers | None:
-        """The rows of the pass (n,) nearest to inputs (n,); `None` where one lies beyond its ends."""
+    def begins(self, timing: Floats, *, free: bool) -> tuple[Floats, Integers]:
+        """What may be added to inputs (n,) so that they lie within the pass (p,), and their rows (p, n).
+
+        Any is tried where it is `free`, else whole turns.
+        """
         own = self.inputs
+        phases = np.fromiter(self._phases(timing, free=free), dtype=np.float64)
+        inputs = timing + phases[:, None]
+        if not self.closed:
+            within = ((inputs >= own.min()) & (inputs <= own.max())).all(axis=1)
+            phases, inputs = phases[within], inputs[within]
+        gap = inputs[:, :, None] - own
         if self.closed:
-            gap = np.abs((inputs[:, None] - own + self.period / 2) % self.period - self.period / 2)
-        elif inputs.min() < own.min() or inputs.max() > own.max():
-            return None
-        else:
-            gap = np.abs(inputs[:, None] - own)
-        return np.asarray(gap.argmin(axis=1))
+            gap = (gap + self.period / 2) % self.period - self.period / 2
+        return phases, np.abs(gap).argmin(axis=2)
 
     def unwound(self, rows: Integers) -> Floats:
         """The inputs (n,) at rows in the order they are passed, a round's gain added where it begins anew."""
@@ -67,8 +72,7 @@ class InputPass:
             inputs[1:] += way * self.period * np.cumsum(way * steps < 0)
         return inputs
 
-    def phases(self, timing: Floats, *, free: bool) -> Iterator[float]:
-        """What may be added to inputs (n,) so that they lie within the pass: any, or whole turns."""
+    def _phases(self, timing: Floats, *, free: bool) -> Iterator[float]:
         own = self.inputs
         if free:
             if self.closed:

@@ -12,17 +12,18 @@ Source: docs/theory_design.md, (29).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.design.candidates import Fault
 from sevenbar.design.limits import INPUT_TURNS, transmission_room, turning_room
 from sevenbar.design.task.loop import Here, TaskLoop
 from sevenbar.design.task.match import STILL, Placing, placed
-from sevenbar.design.task.musts import pose_rooms
+from sevenbar.design.task.musts import FAULTS, pose_rooms
 from sevenbar.design.task.small_moves import left_jacobian, rigid_moves, rotation_of_vector
 from sevenbar.design.task.task import (
     DesignTask,
@@ -46,6 +47,9 @@ LONGEST_STEP = 1.2
 #: Poses of a want, with those between its stations, at which musts are held.
 HELD = 73
 
+#: By how much the transmission angle is held with room, since it may be less between two stations [sin^2].
+TRANSMISSION = 1e-4
+
 #: Columns of the slopes that a small rigid motion leaves, below this part of the greatest.
 FLAT = 1e-9
 
@@ -55,7 +59,7 @@ class TaskSeed:
     """A start: numbers (k,), each want's unknowns, poses of all its stations (n, columns), and how far off.
 
     `anchor` (columns,) is a row of the circuit; `error` the sum of weighted mean squares; `period` what the
-    input gains in a round of the circuit, 0 where it does not go round.
+    input gains in a round of the circuit, 0 where it does not go round; `circuit` is its number where begun.
     """
 
     values: Floats
@@ -65,17 +69,22 @@ class TaskSeed:
     error: float
     placing: Placing = STILL
     period: float = 0.0
+    circuit: int = 0
 
 
 @dataclass(frozen=True, eq=False)
 class TaskValues:
-    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes, and the placing."""
+    """Residuals (r,) and rooms (c,) at unknowns z, with their slopes (.., unknowns or 0), and the placing.
+
+    `least` has the least room of each kind of must, by what is at fault where it is missed.
+    """
 
     left: Floats
     left_by: Floats
     room: Floats
     room_by: Floats
     placing: Placing
+    least: Mapping[Fault, float]
 
 
 class TaskModel:
@@ -144,7 +153,7 @@ class TaskProblem:
         ]
         self._periods = [way * seed.period for way in self._senses]
         self._stations = self._all_stations()
-        if len(self._poses) < len(self._stations.fixed):
+        if model.rooms and len(self._poses) < len(self._stations.fixed):
             self._poses = self._between(seed)
         places = [one.places.reshape(-1, 3) for _, one in self._places()]
         self._middle = np.concatenate(places).mean(axis=0) if places else np.zeros(3)
@@ -205,10 +214,14 @@ class TaskProblem:
         return [inputs[rows] for rows in self._rows]
 
     def poses(self, z: Floats) -> Floats | None:
-        """The closed poses (n, columns) of all stations, from those last taken; `None` off the branch."""
+        """The closed poses (n, columns) of all stations, from those last taken; `None` off the branch.
+
+        Those between the wants' are left out where only the closed form is asked there.
+        """
         key = z.tobytes()
         if self._asked is None or self._asked[0] != key:
-            poses = self.loop.closed(self.values(z), self._stations.inputs(z), self._poses)
+            inputs = self._stations.inputs(z)[: len(self._poses)]
+            poses = self.loop.closed(self.values(z), inputs, self._poses)
             step = np.abs(poses - self._poses) / self.loop.units
             step[:, self.loop.input] = 0.0
             good = bool(np.isfinite(poses).all()) and bool((step <= LONGEST_STEP).all())
@@ -251,36 +264,43 @@ class TaskProblem:
             self._known = key, self._at(z)
         return self._known[1]
 
-    def _at(self, z: Floats) -> TaskValues | None:
+    def tried(self, z: Floats) -> TaskValues | None:
+        """Residuals and rooms at z without their slopes, which cost the most."""
+        return self._at(z, slopes=False)
+
+    def _at(self, z: Floats, *, slopes: bool = True) -> TaskValues | None:
         poses = self.poses(z)
         if poses is None:
             return None
         values, own = self.values(z), self.own(z)
-        here = self.loop.here(values, poses)
+        here = self.loop.here(values, poses, slopes=slopes)
         parts = []
         for one, u, rows, place in zip(self.model.wanted, own, self._rows, self._own, strict=True):
             left, by = one.left(here.part(rows).along(one.stations.by), u)
-            wide = np.zeros((*by.shape[:-1], len(z)))
-            wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
-            parts.append((left, wide * self.scales))
+            if slopes:
+                wide = np.zeros((*by.shape[:-1], len(z)))
+                wide[..., : self._k], wide[..., place] = by[..., : self._k], by[..., self._k :]
+                by = wide * self.scales
+            parts.append((left, by))
         placing = self._placing(z, [left for left, _ in parts])
-        lefts, slopes = self._placed(z, parts, placing)
-        rooms, rooms_by = self._rooms(z, here, list(zip(lefts, slopes, strict=True)))
-        figures = self._figures(values)
+        lefts, lefts_by = self._placed(z, parts, placing)
+        rooms = self._rooms(z, here, list(zip(lefts, lefts_by, strict=True)))
+        figures = self._figures(values, slopes=slopes)
         if figures is None:
             return None
-        room = np.concatenate([*rooms, figures[2]])
-        room_by = np.concatenate([*rooms_by, self._wide(figures[3])])
+        least: dict[Fault, float] = {"figure": float(figures[2].min(initial=math.inf))}
+        for fault, own_room, _ in rooms:
+            least[fault] = min(least.get(fault, math.inf), float(own_room.min(initial=math.inf)))
         weights = [one.weight / math.sqrt(one.count) for one in self.model.wanted]
-        found = TaskValues(
-            np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]]),
-            np.concatenate([*(w * r for w, r in zip(weights, slopes, strict=True)), self._wide(figures[1])]),
-            room,
-            room_by,
-            placing,
-        )
-        good = all(np.isfinite(part).all() for part in (found.left, found.left_by, room, room_by))
-        return found if good else None
+        left = np.concatenate([*(w * r for w, r in zip(weights, lefts, strict=True)), figures[0]])
+        room = np.concatenate([*(own_room for _, own_room, _ in rooms), figures[2]])
+        left_by, room_by = np.empty((len(left), 0)), np.empty((len(room), 0))
+        if slopes:
+            by_all = (w * r for w, r in zip(weights, lefts_by, strict=True))
+            left_by = np.concatenate([*by_all, self._wide(figures[1])])
+            room_by = np.concatenate([*(by for _, _, by in rooms), self._wide(figures[3])])
+        good = all(np.isfinite(part).all() for part in (left, left_by, room, room_by))
+        return TaskValues(left, left_by, room, room_by, placing, least) if good else None
 
     def _wide(self, by: Floats) -> Floats:
         """Slopes (r, k) by the free numbers as those by all unknowns."""
@@ -313,11 +333,11 @@ class TaskProblem:
         for i, one in own:
             put = placing.put(left[i])
             by = np.einsum("ij,njk->nik", placing.rotation, slopes[i])
-            if self._turned:
+            if self._turned and by.shape[-1]:
                 by[..., -6:] = self._by_moves(z, put)
             left[i] = (put - one.places.reshape(-1, 3)).ravel() / one.unit
-            slopes[i] = by.reshape(-1, len(z)) / one.unit
-        if self.model.placed and not self._turned:
+            slopes[i] = by.reshape(left[i].size, -1) / one.unit
+        if self.model.placed and not self._turned and slopes[own[0][0]].size:
             self._project(own, parts, placing, slopes)
         return left, slopes
 
@@ -366,28 +386,24 @@ class TaskProblem:
 
     def _rooms(
         self, z: Floats, here: Here, wants: Sequence[tuple[Floats, Floats]]
-    ) -> tuple[list[Floats], list[Floats]]:
-        rooms, slopes = [np.empty(0)], [np.empty((0, len(z)))]
+    ) -> list[tuple[Fault, Floats, Floats]]:
+        """Rooms with their slopes, each with what is at fault where it is missed."""
+        rooms: list[tuple[Fault, Floats, Floats]] = []
         if self.model.rooms:
             wide = here.along(self._stations.by)
-            for _, room in self.model.rooms:
+            for place, room in self.model.rooms:
                 values, by = room(wide)
-                rooms.append(values.ravel())
-                slopes.append(self._joined(by.reshape(-1, by.shape[-1])))
+                fault = FAULTS[type(self.model.task.musts[place])]
+                rooms.append((fault, values.ravel(), self._joined(by.reshape(values.size, -1))))
         if self.model.transmits or self.model.turns:
-            for values, by in self._transmission(z):
-                rooms.append(values)
-                slopes.append(by)
+            rooms += self._transmission(z)
         for i, one in enumerate(self.model.wanted):
             if one.stations.free:
-                values, by = self._order(z, i)
-                rooms.append(values)
-                slopes.append(by)
+                rooms.append(("order", *self._order(z, i)))
         for i, most in self.model.most.items():
             left, by = wants[i]
-            rooms += [most - left, most + left]
-            slopes += [-by, by]
-        return rooms, slopes
+            rooms += [("error", most - left, -by), ("error", most + left, by)]
+        return rooms
 
     def _order(self, z: Floats, number: int) -> tuple[Floats, Floats]:
         """The ways between free inputs that follow each other, a round at most, in the seed's sense."""
@@ -402,11 +418,13 @@ class TaskProblem:
 
     def _joined(self, by: Floats) -> Floats:
         """Slopes (r, k + all unknowns), those by the free numbers and through the inputs, by all unknowns."""
+        if not by.size:
+            return by
         found = by[:, self._k :].copy()
         found[:, : self._k] += by[:, : self._k] * self.scales[: self._k]
         return found
 
-    def _transmission(self, z: Floats) -> list[tuple[Floats, Floats]]:
+    def _transmission(self, z: Floats) -> list[tuple[Fault, Floats, Floats]]:
         """The transmission angle of an RSSR over what is used, and that its input turns."""
         loop, limits = self.loop, self.model.task.limits
         places = {d.place[1]: i for i, d in enumerate(loop.numbers.dimensions) if d.place[0] == "rssr"}
@@ -418,31 +436,32 @@ class TaskProblem:
             every[:, columns] = by_row
             return self._wide(loop.all_slopes(self.values(z), every))
 
-        found = []
+        found: list[tuple[Fault, Floats, Floats]] = []
         if self.model.transmits and len(self._stations.fixed):
             room, by_row, by_input = transmission_room(row, self._stations.inputs(z), limits)
-            found.append((room, wide(by_row) + by_input[:, None] * self._stations.by))
+            by = wide(by_row) + by_input[:, None] * self._stations.by
+            found.append(("transmission", room - TRANSMISSION, by))
         if self.model.turns:
             room, by_row = turning_room(row)
-            found.append((room, wide(by_row)))
+            found.append(("motion type", room, wide(by_row)))
         return found
 
-    def _figures(self, values: Floats) -> tuple[Floats, Floats, Floats, Floats] | None:
+    def _figures(self, values: Floats, *, slopes: bool) -> tuple[Floats, Floats, Floats, Floats] | None:
         """Residuals of figures, rooms of figures, each with its slopes by the free numbers."""
         model = self.model
         none = np.empty((0, self._k))
         if not model.figures.names:
             return np.empty(0), none, np.empty(0), none
-        found = model.figures.at(values, self._anchor)
+        found = model.figures.at(values, self._anchor, slopes=slopes)
         if found is None:
             return None
         read, by = found
         place = {name: i for i, name in enumerate(model.figures.names)}
-        left, slopes, rooms, rooms_by = [], [none], [], [none]
+        left, left_by, rooms, rooms_by = [], [none], [], [none]
         for want in model.figure_wants:
             value, own = figure_left(want, read[place[want.name]], by[place[want.name]])
             left.append(want.weight * value)
-            slopes.append(want.weight * own[None])
+            left_by.append(want.weight * own[None])
         for must in model.figure_musts:
             value, own = read[place[must.name]], by[place[must.name]]
             for way, end in ((1.0, must.least), (-1.0, must.most)):
@@ -450,7 +469,7 @@ class TaskProblem:
                     unit = max(abs(end), 1e-3)
                     rooms.append(way * (value - end) / unit)
                     rooms_by.append(way * own[None] / unit)
-        return np.array(left), np.concatenate(slopes), np.array(rooms), np.concatenate(rooms_by)
+        return np.array(left), np.concatenate(left_by), np.array(rooms), np.concatenate(rooms_by)
 
 
 def _sense(inputs: Floats) -> float:

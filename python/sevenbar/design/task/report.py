@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -17,28 +17,10 @@ from sevenbar.design.task.along import DesignAlong
 from sevenbar.design.task.check import TaskDesign
 from sevenbar.design.task.figures import musts_figure, want_figure
 from sevenbar.design.task.search import DesignsFound
-from sevenbar.design.task.task import DesignTask, DwellWant, FigureWant, FunctionWant
+from sevenbar.design.task.task import DesignTask, DwellWant, FunctionWant, PoseMust
 from sevenbar.design.task.words import must_words, task_facts, want_words
-from sevenbar.errors import RequestError
 from sevenbar.reporting.files import Report, figure_files
 from sevenbar.reporting.page import Facts, number_table
-
-#: What may be given up where a kind of fault is the commonest.
-EASE = {
-    "assembly": "wider bounds, more starts, or another start",
-    "circuit": "wider bounds, or more starts: the poses lie on two circuits",
-    "dead centre": "another joint as the input, or wider bounds",
-    "order": "more starts, or another order",
-    "error": "a greater `most`, fewer exact points, or more free numbers",
-    "transmission": "a smaller least transmission angle",
-    "size": "a wider range of sizes",
-    "motion type": "another motion type, or any",
-    "range": "a wider range of the joint",
-    "cone": "a wider cone, or another seat",
-    "box": "a larger box",
-    "distance": "a smaller distance of the links",
-    "figure": "other ends of the measure",
-}
 
 #: Numbers in a printed table, side by side.
 ACROSS = 7
@@ -49,13 +31,18 @@ ON_BOUND = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class TaskDesigns:
-    """What a search found, with the name and source of the task and what the search was given."""
+    """What a search found, with the name and source of the task and what the search was given.
+
+    `survey` has what a survey says that went before, by labels, and `plain` the same as plain values.
+    """
 
     found: DesignsFound
     name: str
     source: str
     starts: int
     seed: int
+    survey: Sequence[tuple[str, str]] = ()
+    plain: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def task(self) -> DesignTask:
@@ -76,29 +63,6 @@ class TaskDesigns:
                 claim=replace(one.candidate.claim, figures=design_figures(self.task, one)),
             )
             for one in self.found.designs
-        )
-
-    def required(self) -> None:
-        """Raises `RequestError` where nothing was found: what was nearest, and what to ease."""
-        if self.found.designs:
-            return
-        tried = f"{self.starts + 1} linkage{'s' * (self.starts > 0)}"
-        if not self.found.starts:
-            raise RequestError(
-                f"design: none of {tried} within the bounds can begin: no pass of a circuit has what is "
-                "wanted without a dead centre of the input; give wider bounds, more starts, or another joint "
-                "as the input"
-            )
-        if not self.found.refusals:
-            raise RequestError(
-                f"design: {tried} gave {self.found.starts} ways to begin, and none could be followed; give "
-                "wider bounds, or more starts"
-            )
-        faults = list(dict.fromkeys(refusal.fault for refusal in self.found.refusals))
-        ease = "; or ".join(dict.fromkeys(EASE[fault] for fault in faults))
-        raise RequestError(
-            f"design: nothing does what is asked; of {tried} {len(self.found.refusals)} were solved, "
-            f"refused: {self.found.refused}; the nearest: {self.found.refusals[0].detail}; give {ease}"
         )
 
 
@@ -135,23 +99,18 @@ def task_report(
     task: DesignTask, count: int, command: str, formats: Sequence[str] = ("png",)
 ) -> Report[TaskDesigns]:
     """How at most `count` designs of a task are reported; the heads of their files name the `command`."""
-    drawn = [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
     files: dict[str, Any] = {}
-    toml = design_files(count, (), head=partial(_head, command), figure=_none, as_dict=as_dict)
+    toml = design_files(count, (), head=partial(_head, command), as_dict=as_dict)
     for place in range(count):
         name = f"design_{place + 1}"
         files[f"{name}.toml"] = toml[f"{name}.toml"]
-        for number, want in enumerate(drawn):
+        for number, (want, _) in enumerate(task.sampled):
             files |= figure_files(
                 f"{name}_want_{want + 1}", formats, partial(_of_want, place=place, number=number)
             )
-        if any(type(must).__name__ in ("InRange", "InCone", "InBox", "Apart") for must in task.musts):
+        if any(isinstance(must, PoseMust) for must in task.musts):
             files |= figure_files(f"{name}_musts", formats, partial(_of_musts, place=place))
     return Report(text, as_dict, files | {name: toml[name] for name in ("summary.csv", "summary.json")})
-
-
-def _none(found: TaskDesigns, candidate: Candidate) -> Any:
-    raise AssertionError((found, candidate))
 
 
 def _of_want(found: TaskDesigns, *, place: int, number: int) -> Any:
@@ -168,10 +127,13 @@ def _of_musts(found: TaskDesigns, *, place: int) -> Any:
 
 def _facts(found: TaskDesigns) -> list[tuple[str, str]]:
     facts = task_facts(found.task)
-    begun = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
-    facts.append(("searched", begun))
+    if found.survey:
+        facts += [("drawn", f"{found.starts} linkages, seed {found.seed}"), *found.survey]
+    else:
+        begun = f"{found.found.starts} ways to begin from {found.starts + 1} linkages, seed {found.seed}"
+        facts.append(("searched", begun))
     if found.found.refusals:
-        facts.append(("refused", found.found.refused))
+        facts.append(("of the best" if found.survey else "refused", found.found.refused))
     return facts
 
 
@@ -186,17 +148,17 @@ def text(found: TaskDesigns) -> RenderableType:
     """The designs for people."""
     facts = Facts()
     for label, words in _facts(found):
-        facts.add(label, words, "bold" if label == "wanted" else "")
+        facts.add(label, words, "bold" if label in ("wanted", "answer") else "")
     if found.unfinished:
         facts.add("unfinished", found.unfinished, "bold yellow")
     parts: list[RenderableType] = [
         Text(f"Design: {found.name}", style="bold underline"),
         facts.grid,
     ]
-    for table in _tables(found):
+    for table in _tables(found) if found.found.designs else ():
         parts += [Text(), table]
     free = found.task.free
-    for begin in range(0, len(free), ACROSS):
+    for begin in range(0, len(free) if found.found.designs else 0, ACROSS):
         some = free[begin : begin + ACROSS]
         units = [found.task.draft.dimension(one.name).unit for one in some]
         heads = [f"{one.name}\n[{unit}]" if unit else one.name for one, unit in zip(some, units, strict=True)]
@@ -224,7 +186,7 @@ def _tables(found: TaskDesigns) -> list[RenderableType]:
     """Tables with a line for each design: how well each want is met; the musts, the optimum, what it is."""
     task, designs, unit = found.task, found.found.designs, found.task.draft.linkage.length_unit
     met: list[tuple[str, list[str]]] = []
-    for number, place in enumerate(_sampled(task)):
+    for number, (place, _) in enumerate(task.sampled):
         mets = [design.met[number] for design in designs]
         own, scale = ("deg", 180 / math.pi) if mets[0].unit == "rad" else (mets[0].unit, 1.0)
         met += [
@@ -278,7 +240,7 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                 **candidate.columns,
                 "wants": [
                     {"want": place + 1, "greatest": met.greatest, "rms": met.rms, "unit": met.unit}
-                    for place, met in zip(_sampled(task), design.met, strict=True)
+                    for (place, _), met in zip(task.sampled, design.met, strict=True)
                 ],
                 "musts": _rooms(task, design),
                 "values": dict(zip(task.names, map(float, design.values), strict=True)),
@@ -287,11 +249,8 @@ def as_dict(found: TaskDesigns) -> dict[str, Any]:
                 zip(found.found.designs, found.candidates, strict=True), 1
             )
         ],
+        **found.plain,
     }
-
-
-def _sampled(task: DesignTask) -> list[int]:
-    return [i for i, want in enumerate(task.wants) if not isinstance(want, FigureWant)]
 
 
 def _rooms(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
@@ -301,10 +260,5 @@ def _rooms(task: DesignTask, design: TaskDesign) -> list[Mapping[str, Any]]:
     for place, _, _, values in along.rooms():
         least[place] = min(least.get(place, math.inf), float(values.min()))
     return [
-        {
-            "must": place + 1,
-            "room": math.degrees(room) if along.room_unit(task.musts[place]) == "deg" else room,
-            "unit": along.room_unit(task.musts[place]),
-        }
-        for place, room in least.items()
+        {"must": place + 1, "room": room, "unit": along.room_unit(place)} for place, room in least.items()
     ]

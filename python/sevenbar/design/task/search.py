@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from sevenbar.design.candidates import Refusal, likeness, tally
+from sevenbar.design.candidates import Candidate, Refusal, least_error, likeness, tally
 from sevenbar.design.course import SearchCourse
 from sevenbar.design.task.check import TaskDesign, checked_design
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.solve import LOOK, Solved, solved
 from sevenbar.design.task.starts import apart, seeds, seeds_at
 from sevenbar.design.task.task import DesignTask
+from sevenbar.errors import RequestError
 from sevenbar.text.progress import Progress, silent
 
 #: Starts by default.
@@ -26,8 +28,30 @@ TRIED, TAKEN = 8, 3
 #: Two designs are one where no dimension, relative to the longest [or rad], differs by more.
 SAME = 0.05
 
+#: A look leads to a design that is kept where no dimension differs by more; and it is left where its least
+#: squares are more than so many times those of the designs that are kept.
+ONE, HOPELESS = 1e-3, 2.0
+
 #: A cost below which a task is met exactly: no other start can be better.
 EXACT = 1e-11
+
+
+#: What may be given up where a kind of fault is the commonest.
+EASE = {
+    "assembly": "wider bounds, more starts, or another start",
+    "circuit": "wider bounds, or more starts: the poses lie on two circuits",
+    "dead centre": "another joint as the input, or wider bounds",
+    "order": "more starts, or another order",
+    "error": "a greater `most`, fewer exact points, or more free numbers",
+    "transmission": "a smaller least transmission angle",
+    "size": "a wider range of sizes",
+    "motion type": "another motion type, or any",
+    "range": "a wider range of the joint",
+    "cone": "a wider cone, or another seat",
+    "box": "a larger box",
+    "distance": "a smaller distance of the links",
+    "figure": "other ends of the measure",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +69,37 @@ class DesignsFound:
     unfinished: str
 
     @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """What the ordinary analysis says of each design."""
+        return tuple(design.candidate for design in self.designs)
+
+    @property
     def refused(self) -> str:
         """What was refused, the commonest first: "12 by cone, 3 by order"."""
         return tally(self.refusals)
+
+    def required(self, starts: int) -> None:
+        """Raises `RequestError` where nothing was found of so many starts: what was nearest, what to ease."""
+        if self.designs:
+            return
+        tried = f"{starts + 1} linkage{'s' * (starts > 0)}"
+        if not self.starts:
+            raise RequestError(
+                f"design: none of {tried} within the bounds can begin: no pass of a circuit has what is "
+                "wanted without a dead centre of the input; give wider bounds, more starts, or another joint "
+                "as the input"
+            )
+        if not self.refusals:
+            raise RequestError(
+                f"design: {tried} gave {self.starts} ways to begin, and none could be followed; give "
+                "wider bounds, or more starts"
+            )
+        faults = list(dict.fromkeys(refusal.fault for refusal in self.refusals))
+        ease = "; or ".join(dict.fromkeys(EASE[fault] for fault in faults))
+        raise RequestError(
+            f"design: nothing does what is asked; of {tried} {len(self.refusals)} were solved, "
+            f"refused: {self.refused}; the nearest: {self.refusals[0].detail}; give {ease}"
+        )
 
 
 def designed(
@@ -94,7 +146,7 @@ def designed(
             raise
         unfinished = course.unfinished
     best = distinct_designs(kept)[:count]
-    return DesignsFound(task, tuple(_named(task, best)), tuple(refusals), found, unfinished)
+    return DesignsFound(task, tuple(named(task, best)), tuple(refusals), found, unfinished)
 
 
 def _search(
@@ -106,27 +158,59 @@ def _search(
     refusals: list[Refusal],
 ) -> None:
     tried: list[Solved] = []
+    nearest = math.inf
     for one in apart(model, begun, TRIED * count):
         look = _first_look(model, one)
         if look is not None:
-            tried.append(look)
-        nearest = min((look.cost for look in tried), default=None)
-        course.step("" if nearest is None else f"nearest: {nearest:.3g}")
+            nearest = min(nearest, look.cost)
+            if look.cost < EXACT:
+                _take(model, look, count, kept, refusals)
+            else:
+                tried.append(look)
+        course.step(f"nearest: {nearest:.3g}" if look else "")
+        if _worst(kept, count) < EXACT:
+            return
     tried.sort(key=lambda look: (look.room < -0.01, look.cost))
     for i, look in enumerate(tried):
         if len(distinct_designs(kept)) >= count and (i >= TAKEN * count or kept[0].cost < EXACT):
             break
-        solution = solved(model, look.seed)
-        if solution is None:
-            refusals.append(Refusal("assembly", "the linkage is lost on the way to its optimum"))
-            continue
-        answer = checked_design(model, solution)
-        if isinstance(answer, Refusal):
-            refusals.append(answer)
-        else:
-            kept.append(answer)
-            kept.sort(key=lambda design: design.cost)
-        course.step(f"best: {kept[0].cost:.3g}" if kept else "", done=int(course.done < course.total))
+        _take(model, look, count, kept, refusals)
+        course.step(_best(model.task, kept), done=int(course.done < course.total))
+
+
+def _best(task: DesignTask, kept: Sequence[TaskDesign]) -> str:
+    """The best so far: the error of a single want in its unit, the cost of several."""
+    if len(task.wants) > 1 and kept:
+        return f"best: {kept[0].cost:.3g}"
+    return least_error([design.candidate for design in kept])
+
+
+def _worst(kept: Sequence[TaskDesign], count: int) -> float:
+    """The cost of the last of so many distinct designs; infinite while there are fewer."""
+    found = distinct_designs(kept)[:count]
+    return found[-1].cost if len(found) == count else math.inf
+
+
+def _take(
+    model: TaskModel, look: Solved, count: int, kept: list[TaskDesign], refusals: list[Refusal]
+) -> None:
+    """Solves a first look to the end, and keeps it or tells why not; one without prospects is left."""
+    own = likeness(model.loop.drawn(look.seed.values), scale_free=False)
+    if any(np.abs(own - likeness(one.draft, scale_free=False)).max() < ONE for one in kept):
+        return
+    most = HOPELESS * _worst(kept, count)
+    solution = solved(model, look.seed, most=most)
+    if solution is None:
+        refusals.append(Refusal("assembly", "the linkage is lost on the way to its optimum"))
+        return
+    if solution.cost > most:
+        return
+    answer = checked_design(model, solution)
+    if isinstance(answer, Refusal):
+        refusals.append(answer)
+    else:
+        kept.append(answer)
+        kept.sort(key=lambda design: design.cost)
 
 
 def _first_look(model: TaskModel, one: TaskSeed) -> Solved | None:
@@ -150,7 +234,7 @@ def distinct_designs(designs: Sequence[TaskDesign]) -> list[TaskDesign]:
     return kept
 
 
-def _named(task: DesignTask, designs: Sequence[TaskDesign]) -> list[TaskDesign]:
+def named(task: DesignTask, designs: Sequence[TaskDesign]) -> list[TaskDesign]:
     """The designs with the names `title, design 1`, .. in their order."""
     title = task.draft.linkage.name
     return [

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from sevenbar.arrays import Floats
+from sevenbar.kinematics.rigid import cross_matrix
 
 #: A turn [rad] below which the first terms of its series stand for the rest.
 SMALL = 1e-4
@@ -23,8 +24,7 @@ def rigid_moves(places: Floats) -> Floats:
 
 def rotation_of_vector(turn: Floats) -> Floats:
     """The rotation (3, 3) about an axis by its length [rad]."""
-    angle = float(np.linalg.norm(turn))
-    own = _crossed(turn)
+    angle, own = float(np.linalg.norm(turn)), cross_matrix(turn)
     half = 0.5 * np.sinc(angle / math.tau) ** 2
     return np.asarray(np.eye(3) + np.sinc(angle / math.pi) * own + half * own @ own)
 
@@ -33,10 +33,5 @@ def left_jacobian(turn: Floats) -> Floats:
     """J (3, 3): rotations near that of a turn (3,) are a turn by `J d` of it, where the turn changes by d."""
     angle = float(np.linalg.norm(turn))
     third = 1 / 6 - angle**2 / 120 if angle < SMALL else (angle - math.sin(angle)) / angle**3
-    own = _crossed(turn)
+    own = cross_matrix(turn)
     return np.asarray(np.eye(3) + 0.5 * np.sinc(angle / math.tau) ** 2 * own + third * own @ own)
-
-
-def _crossed(vector: Floats) -> Floats:
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

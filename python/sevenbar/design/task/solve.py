@@ -24,8 +24,8 @@ from sevenbar.design.task.problem import TaskModel, TaskProblem, TaskSeed, TaskV
 from sevenbar.design.task.programs import MinimaxValues, lowered
 from sevenbar.design.task.wants.places import PlacesWanted
 
-#: Evaluations of a first look, and of a design that is kept.
-LOOK, WHOLE = 40, 1000
+#: Evaluations of a first look, of a design that is kept, and of one that comes near to what is wanted.
+LOOK, WHOLE, LONG = 40, 400, 1200
 
 #: How much the first steps are held back, relative to the unknowns' sizes; and where that failed.
 FIRST = (1e-3, 1.0)
@@ -52,14 +52,15 @@ DESCENTS, MOST_UNKNOWNS, MOST_REACH, SHORTEST, FLAT, HALVINGS = 12, 60, 0.5, 1e-
 #: Most steps of sequential quadratic programs.
 PROGRAMS = 200
 
-#: Residuals below this leave the second derivatives of the squares to the slopes alone.
-EXACT = 1e-7
+#: Residuals below this leave the second derivatives of the squares to the slopes alone: what is wanted can be
+#: met exactly, down to rounding.
+EXACT, NOTHING = 1e-7, 1e-13
+
+#: Below this of the conditions least squares have found an optimum, which Newton's method makes exact.
+ENDED = 1e-7
 
 #: Below this the conditions of an optimum are met.
 MET = 1e-11
-
-
-Squares = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,28 +93,47 @@ class Conditions:
 
 
 def solved(
-    model: TaskModel, seed: TaskSeed, evaluations: int = WHOLE, *, whole: bool = True
+    model: TaskModel,
+    seed: TaskSeed,
+    evaluations: int = WHOLE,
+    *,
+    whole: bool = True,
+    most: float = math.inf,
 ) -> Solved | None:
-    """The nearest optimum of a seed; `None` where its linkage does not close. `whole`: to the last digit."""
+    """The nearest optimum of a seed; `None` where its linkage does not close.
+
+    `whole`: to the last digit, unless least squares leave more than `most`.
+    """
     found = _least_squares(model, seed, evaluations, FIRST[0])
-    if whole and (found is None or found[0].size(found[1]) > EXACT):
+    if whole and (found is None or (found.stuck and not _ended(found.problem, found.z))):
         # a first step too far may have led into a corner where the linkage hardly closes
         other = _least_squares(model, seed, evaluations, FIRST[1])
-        if found is None or (other is not None and other[0].size(other[1]) < found[0].size(found[1])):
+        if found is None or (other is not None and other.size < found.size):
             found = other
+    if whole and found is not None and NOTHING < found.size <= EXACT:
+        found = _least_squares(model, found.problem.seed(found.z), LONG, FIRST[0])
     if found is None:
         return None
-    problem, z = found
-    if not whole:
+    problem, z = found.problem, found.z
+    if not whole or found.size > most:
         return _as_solved(problem, z, math.nan, minimax=False)
     minimax = model.task.goal == "minimax"
     if minimax:
         problem = TaskProblem(model, problem.seed(z), minimax=True)
         z = _lowered(problem)
-    elif problem.size(z) > EXACT:
-        z = _descended(problem, _programmed(problem, z))
+    elif not _ended(problem, z):
+        problem, z = _programmed(problem, z)
+        z = _descended(problem, z)
     z, missed = settled(problem, z, minimax=minimax)
     return _as_solved(problem, z, missed, minimax=minimax)
+
+
+def _ended(problem: TaskProblem, z: Floats) -> bool:
+    """Whether least squares have come to an end: nothing is left, or (1) is met as far as slopes tell."""
+    if problem.size(z) <= EXACT:
+        return True
+    at = _conditions(problem, z, minimax=False)
+    return at is not None and _multipliers(at)[2] < ENDED
 
 
 def _as_solved(problem: TaskProblem, z: Floats, missed: float, *, minimax: bool) -> Solved | None:
@@ -125,40 +145,52 @@ def _as_solved(problem: TaskProblem, z: Floats, missed: float, *, minimax: bool)
     return Solved(problem.seed(z), tuple(problem.inputs(z)), cost, missed, room)
 
 
-def _least_squares(
-    model: TaskModel, seed: TaskSeed, evaluations: int, first: float
-) -> tuple[TaskProblem, Floats] | None:
-    """The problem about its least squares, missed rooms as penalties, and the unknowns there."""
+@dataclass(frozen=True, eq=False)
+class _Squares:
+    """A problem about its least squares, the unknowns there and their root; `stuck`: no step led on."""
+
+    problem: TaskProblem
+    z: Floats
+    stuck: bool
+
+    @property
+    def size(self) -> float:
+        return self.problem.size(self.z)
+
+
+def _least_squares(model: TaskModel, seed: TaskSeed, evaluations: int, first: float) -> _Squares | None:
+    """Least squares with missed rooms as penalties."""
     problem = TaskProblem(model, seed)
     z = np.clip(problem.start, problem.low, problem.high)
     here = problem.at(problem.start)
     if here is None:
         return None
-    for weight in WEIGHTS if len(here.room) else WEIGHTS[:1]:
+    for weight in WEIGHTS:
 
-        def residuals(z: Floats, problem: TaskProblem = problem, weight: float = weight) -> Squares | None:
+        def residuals(z: Floats, weight: float = weight) -> Floats | None:
+            here = problem.tried(z)
+            if here is None:
+                return None
+            return np.concatenate([here.left, weight * np.minimum(here.room - KEPT, 0.0)])
+
+        def slopes(z: Floats, weight: float = weight) -> Floats | None:
             here = problem.at(z)
             if here is None:
                 return None
+            problem.take(z)
             missed = here.room < KEPT
-            return (
-                np.concatenate([here.left, weight * np.where(missed, here.room - KEPT, 0.0)]),
-                np.concatenate([here.left_by, weight * missed[:, None] * here.room_by]),
-            )
+            return np.concatenate([here.left_by, weight * missed[:, None] * here.room_by])
 
         nearest = nearest_least(
-            residuals,
-            z,
-            problem.low,
-            problem.high,
-            evaluations=evaluations,
-            first=first,
-            taken=problem.take,
+            residuals, slopes, z, problem.low, problem.high, evaluations=evaluations, first=first
         )
         if nearest is None:
             return None
-        z = nearest
-    return problem, z
+        z, stuck = nearest
+        here = problem.at(z)
+        if here is not None and not (here.room < KEPT).any():
+            break
+    return _Squares(problem, z, stuck)
 
 
 # ---- the greatest residual
@@ -209,12 +241,14 @@ def _lowered(problem: TaskProblem) -> Floats:
     return lowered(heights, np.clip(problem.start, problem.low, problem.high), worth=1e-9)
 
 
-def _programmed(problem: TaskProblem, z: Floats) -> Floats:
+def _programmed(begun: TaskProblem, z: Floats) -> tuple[TaskProblem, Floats]:
     """The unknowns after sequential quadratic programs, which hold the rooms: better ones, or the same."""
     from scipy.optimize import minimize
 
-    here = problem.at(z)
+    here = begun.at(z)
     assert here is not None
+    # what was begun stays at its poses, which may not be found again from others
+    problem = TaskProblem(begun.model, begun.seed(z))
     unit = float(here.left @ here.left)
     last = [here]
 
@@ -249,10 +283,8 @@ def _programmed(problem: TaskProblem, z: Floats) -> Floats:
             options={"maxiter": PROGRAMS, "ftol": 1e-14},
         )
     then = problem.at(found.x)
-    if then is None:
-        return z
-    better = (_lack(then), float(then.left @ then.left)) < (_lack(here), unit)
-    return np.asarray(found.x) if better else z
+    better = then is not None and (_lack(then), float(then.left @ then.left)) < (_lack(here), unit)
+    return (problem, np.asarray(found.x)) if better else (begun, z)
 
 
 def _descended(problem: TaskProblem, z: Floats) -> Floats:
@@ -264,7 +296,7 @@ def _descended(problem: TaskProblem, z: Floats) -> Floats:
     reach = FARTHEST
     at = _conditions(problem, z, minimax=False)
     for _ in range(DESCENTS):
-        if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or _multipliers(at)[2] < MET:
+        if at is None or reach < SHORTEST or not len(z) <= MOST_UNKNOWNS or _multipliers(at)[2] < ENDED:
             break
         low, high = z <= problem.low + ROUNDING, z >= problem.high - ROUNDING
         free = ~((low & (at.gradient > 0)) | (high & (at.gradient < 0)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
@@ -14,11 +13,8 @@ from sevenbar.design.task.passes import InputPass, passes
 from sevenbar.design.task.problem import TaskModel, TaskSeed
 from sevenbar.design.task.wants.figures import figure_left
 from sevenbar.design.task.wants.wanted import Begun
-from sevenbar.errors import DescriptionError, MissingExtraError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Circuit
-
-#: Inputs of a turn at which a start's circuits are checked.
-SAMPLES = 72
+from sevenbar.sweep.sampling import sobol_points
 
 #: Of the starts one in so many lies near the description's own numbers, within this part of the bounds.
 NEAR_ONE_IN, NEAR = 4, 0.12
@@ -42,21 +38,14 @@ def seeds(
 
 
 def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -> Iterator[Floats]:
-    try:
-        from scipy.stats import qmc
-    except ImportError:
-        raise MissingExtraError(
-            "a design needs scipy; install it with: pip install 'sevenbar[design]'"
-        ) from None
     low, high = model.task.low, model.task.high
     own = model.loop.start
     yield from (np.clip(values, low, high) for values in given)
     yield np.clip(own, low, high)
     if not count:
         return
-    sobol = qmc.Sobol(len(own), rng=np.random.default_rng(seed))
     random = np.random.default_rng([seed, 1])
-    for i, share in enumerate(sobol.random_base2(math.ceil(math.log2(count)))[:count]):
+    for i, share in enumerate(sobol_points(seed, len(own), 0, count).T):
         if i % NEAR_ONE_IN:
             yield low + share * (high - low)
         else:
@@ -66,12 +55,9 @@ def _numbers(model: TaskModel, count: int, seed: int, given: Sequence[Floats]) -
 
 def seeds_at(model: TaskModel, values: Floats) -> list[TaskSeed]:
     """How the task may begin with a linkage of these numbers (k,)."""
-    try:
-        motion = model.loop.drawn(values).linkage.motion(SAMPLES)
-    except (DescriptionError, RequestError, NotCoveredError):
-        return []
+    motion = model.loop.motion(values)
     found: list[TaskSeed] = []
-    for circuit in motion.circuits:
+    for circuit in () if motion is None else motion.circuits:
         if not model.wanted:
             found += _of_figures(model, values, circuit)
             continue
@@ -85,7 +71,9 @@ def _of_figures(model: TaskModel, values: Floats, circuit: Circuit) -> list[Task
     good = np.flatnonzero(np.isfinite(circuit.q).all(axis=1))
     if not good.size:
         return []
-    seed = TaskSeed(values, (), np.empty((0, circuit.q.shape[1])), circuit.q[good[0]], 0.0)
+    seed = TaskSeed(
+        values, (), np.empty((0, circuit.q.shape[1])), circuit.q[good[0]], 0.0, circuit=circuit.index
+    )
     return _with_figures(model, seed)
 
 
@@ -127,7 +115,14 @@ def _seed(
     q = one.circuit.q[one.rows[rows]]
     error = sum(want.weight**2 * own.error for want, own in zip(model.wanted, begun, strict=True))
     seed = TaskSeed(
-        values, tuple(own.u for own in begun), model.loop.poses(values, q), q[0], error, placing, one.period
+        values,
+        tuple(own.u for own in begun),
+        model.loop.poses(values, q),
+        q[0],
+        error,
+        placing,
+        one.period,
+        one.circuit.index,
     )
     return _with_figures(model, _scaled(model, seed) if placing.scale != 1.0 else seed)
 

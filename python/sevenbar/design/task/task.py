@@ -20,6 +20,8 @@ import numpy as np
 from sevenbar.arrays import Floats
 from sevenbar.description.draft import Draft
 from sevenbar.design.limits import Limits
+from sevenbar.kinematics.linkage import Linkage
+from sevenbar.kinematics.sensitivity import Numbers
 
 #: What is made least of the residuals.
 Goal = Literal["least squares", "minimax"]
@@ -94,7 +96,8 @@ class FigureWant:
     """A measure of the circuit by its name ("swing", "time_ratio", "peak_torque", ..): a value, or the most.
 
     `value` is in the unit that the measure is read in (degrees, N m, ..), or "small" or "great". The residual
-    is what it is off, relative to `unit`; for "small" the figure itself and for "great" `unit / figure`.
+    is what it is off, relative to `unit`; for "small" the figure itself, and for "great" `unit / figure`,
+    below the unit `2 - figure / unit`.
     """
 
     name: str
@@ -196,7 +199,9 @@ class Most:
     most: float
 
 
-Must = InRange | InCone | InBox | Apart | FigureMust | Most
+#: Musts about poses, and all.
+PoseMust = InRange | InCone | InBox | Apart
+Must = PoseMust | FigureMust | Most
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,3 +245,30 @@ class DesignTask:
     def names(self) -> tuple[str, ...]:
         """The names of the free numbers."""
         return tuple(one.name for one in self.free)
+
+    @property
+    def sampled(self) -> list[tuple[int, SampledWant]]:
+        """The wants at poses, each with its place among all."""
+        return [(i, want) for i, want in enumerate(self.wants) if not isinstance(want, FigureWant)]
+
+
+def residual_unit(want: Want, linkage: Linkage) -> float:
+    """What a want's residuals are relative to [rad, or length; of a measure as it is read]."""
+    match want:
+        case FigureWant():
+            return want.unit
+        case PathWant():
+            return float(np.ptp(want.places, axis=0).max())
+        case PoseWant():
+            return want.arm
+        case StraightWant(length=length) if length is not None:
+            return length
+        case FunctionWant() | DwellWant() if linkage.turns(linkage.drive.output):
+            return 1.0
+        case _:
+            return linkage_size(linkage)
+
+
+def linkage_size(linkage: Linkage) -> float:
+    """The longest dimension of a description [length]."""
+    return float(Numbers(linkage).size)

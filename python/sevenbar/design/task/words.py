@@ -76,8 +76,9 @@ def want_words(want: Want, linkage: Linkage) -> str:
         case PoseWant():
             return f"link {want.link} in {len(want.poses)} poses, arm {want.arm:.4g} {unit}{_timed(want)}"
         case FigureWant():
-            value = want.value if isinstance(want.value, str) else f"{want.value:g}"
-            return f"{want.name} {value}{_unit_of(want.name, linkage) if value == f'{want.value}' else ''}"
+            if isinstance(want.value, str):
+                return f"{want.name} {want.value}"
+            return f"{want.name} {want.value:g}{_unit_of(want.name, linkage)}"
         case DwellWant():
             level = "" if want.level is None else f" at {_value(want.level, linkage, drive.output)}"
             return f"{drive.output} still{level} over {_ends(np.array(want.inputs), linkage, drive.joint)}"
@@ -117,16 +118,14 @@ def _timed(want: PathWant | PoseWant) -> str:
 
 
 def _ends(values: Floats, linkage: Linkage, column: str) -> str:
-    first, last = (_number(v, linkage, column) for v in values)
-    return f"{first} to {_value(float(values[1]), linkage, column)}" if first != last else last
-
-
-def _number(value: float, linkage: Linkage, column: str) -> str:
-    return f"{math.degrees(value) if linkage.turns(column) else value:.6g}"
+    first, last = (_value(float(v), linkage, column) for v in values)
+    return f"{first.split()[0]} to {last}" if first != last else last
 
 
 def _value(value: float, linkage: Linkage, column: str) -> str:
-    return f"{_number(value, linkage, column)} {'deg' if linkage.turns(column) else linkage.length_unit}"
+    if linkage.turns(column):
+        return f"{math.degrees(value):.6g} deg"
+    return f"{value:.6g} {linkage.length_unit}"
 
 
 def _unit_of(name: str, linkage: Linkage) -> str:

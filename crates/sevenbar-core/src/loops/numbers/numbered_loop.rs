@@ -194,6 +194,19 @@ impl NumberedLoop {
         self.held.len() + self.spins
     }
 
+    /// The points (rows, points, 3) at poses (rows, columns).
+    pub fn places(&self, values: &[f64]) -> Vec<f64> {
+        let mut around = Around::default();
+        let mut places = Vec::with_capacity(values.len() / self.columns * self.points.len() * 3);
+        for at in values.chunks(self.columns) {
+            self.walk(&self.nominal, &self.state(at), &mut around);
+            for point in &self.points {
+                places.extend(around.behind(point.joints).carry(point.at));
+            }
+        }
+        places
+    }
+
     pub(crate) fn state(&self, values: &[f64]) -> State {
         let balls = self
             .joints

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from matplotlib.figure import Figure
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -14,6 +15,7 @@ from sevenbar.design.candidates import Candidate
 from sevenbar.design.files import design_files
 from sevenbar.design.synthesis.path.figures import path_figure
 from sevenbar.design.synthesis.path.task import PathTask
+from sevenbar.design.task.search import DesignsFound
 from sevenbar.reporting.files import Report
 from sevenbar.reporting.page import Facts, number_table
 from sevenbar.text.words import retold, retold_parts, say
@@ -30,11 +32,19 @@ class PathDesigns:
     """The designs of a task, best first; the `source` of the wanted points and the seed of the search."""
 
     task: PathTask
-    candidates: Sequence[Candidate]
+    found: DesignsFound
     source: str
     seed: int
-    #: The remark about a search that was stopped; empty for one that ended by itself.
-    unfinished: str = ""
+
+    @property
+    def candidates(self) -> Sequence[Candidate]:
+        """What the ordinary analysis says of each design."""
+        return self.found.candidates
+
+    @property
+    def unfinished(self) -> str:
+        """The remark about a search that was stopped; empty for one that ended by itself."""
+        return self.found.unfinished
 
 
 def _facts(task: PathTask, source: str) -> list[tuple[str, str]]:
@@ -68,10 +78,15 @@ def path_report(count: int, command: str, figures: Sequence[str] = ("png",)) -> 
         count,
         figures,
         head=partial(_head, command),
-        figure=lambda found, design: path_figure(found.task, design),
+        figure=_figure,
         as_dict=as_dict,
     )
     return Report(text, as_dict, files, spoken=True)
+
+
+def _figure(found: PathDesigns, candidate: Candidate) -> Figure:
+    design = next(one for one in found.found.designs if one.candidate is candidate)
+    return path_figure(found.task, design)
 
 
 def _head(command: str, found: PathDesigns) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from functools import cached_property
 
@@ -16,7 +16,9 @@ from sevenbar.description.draft import Draft
 from sevenbar.description.held import HeldDimensions, held_of
 from sevenbar.design.idle_link import refuse_idle_link
 from sevenbar.design.limits import Limits
-from sevenbar.design.synthesis.path.point import PointLoop
+from sevenbar.design.task.contradictions import OPENINGS, closed_poses
+from sevenbar.design.task.loop import TaskLoop
+from sevenbar.design.task.task import DesignTask, FreeNumber, PathWant, Placement
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.errors import RequestError, shown, suggestion
 from sevenbar.kinematics.dimensions import Dimension
@@ -33,9 +35,6 @@ DRAWN, TILT = 0.5, 1.0
 #: Angles may go half a turn to each side where no bounds are given [rad].
 HALF_TURN = math.pi
 
-#: Inputs of a turn at which dimensions that open the loop are looked for.
-LOOKED_AT = 12
-
 
 @dataclass(frozen=True, eq=False)
 class PathTask:
@@ -43,7 +42,7 @@ class PathTask:
 
     `wanted` (n, 3) [length] are the points in order, the first not repeated where the path is `closed`;
     `timing` (n,) [rad, or length] the inputs at which they shall be reached, counted from an unknown start
-    with `phase`. `varied` are the numbers of the dimensions that may change, `low` and `high` (k,) their
+    with `phase`. `varied` are the names of the dimensions that may change, `low` and `high` (k,) their
     bounds in the file's units. With `place` the linkage may stand anywhere in space.
     """
 
@@ -54,25 +53,37 @@ class PathTask:
     timing: Floats | None
     phase: bool
     place: bool
-    varied: tuple[int, ...]
+    varied: tuple[str, ...]
     low: Floats
     high: Floats
     limits: Limits
 
     @cached_property
-    def closure(self) -> PointLoop:
+    def loop(self) -> TaskLoop:
         """The loop of the linkage, with the point."""
-        return PointLoop(self.draft, self.point, self.varied)
+        return TaskLoop(self.draft, self.varied)
 
     @property
     def dimensions(self) -> tuple[Dimension, ...]:
         """The dimensions that may change."""
-        return tuple(self.closure.dimensions[number] for number in self.varied)
+        return tuple(self.loop.numbers.dimensions[number] for number in self.loop.free)
+
+    @property
+    def design(self) -> DesignTask:
+        """The task as the search for designs takes it."""
+        free = (FreeNumber(*one) for one in zip(self.varied, self.low, self.high, strict=True))
+        want = PathWant(self.point.name, self.wanted, self.closed, self.timing, self.phase)
+        anywhere: Placement = "free with scale" if self.scale_free else "free"
+        follow = tuple(d.name for d in self.loop.numbers.dimensions if d.follows)
+        placement: Placement = anywhere if self.place else "fixed"
+        return DesignTask(
+            self.draft, tuple(free), (want,), placement=placement, limits=self.limits, follow=follow
+        )
 
     @property
     def held(self) -> HeldDimensions:
         """What does not change."""
-        return held_of(self.draft, [dimension.name for dimension in self.dimensions])
+        return held_of(self.draft, self.varied)
 
     @cached_property
     def extent(self) -> float:
@@ -82,28 +93,8 @@ class PathTask:
     @cached_property
     def scale_free(self) -> bool:
         """Whether the linkage may be made larger as a whole, since every length may change."""
-        lengths = {i for i, d in enumerate(self.closure.dimensions) if d.kind in ("length", "pitch")}
-        own = {
-            i
-            for i, d in enumerate(self.closure.dimensions)
-            if d.place[0] == "point" and self.draft.raw["point"][int(d.place[1])]["name"] != self.point.name
-        }
-        return lengths - own <= set(self.varied) and not (self._following & lengths - set(self.varied))
-
-    @cached_property
-    def _following(self) -> set[int]:
-        return {i for i, d in enumerate(self.closure.dimensions) if d.follows}
-
-    def values(self, varied: Floats) -> Floats:
-        """The values of all dimensions, (all,), from those that vary (k,)."""
-        values = self.closure.start.copy()
-        values[list(self.varied)] = varied
-        return values
-
-    def drawn(self, varied: Floats) -> Draft:
-        """The draft with other values (k,) of what varies."""
-        names = [dimension.name for dimension in self.dimensions]
-        return self.draft.with_values(dict(zip(names, map(float, varied), strict=True)))
+        lengths = {d.name for d in self.loop.numbers.dimensions if d.kind in ("length", "pitch")}
+        return lengths - _of_other_points(self.draft, self.point) <= set(self.varied)
 
 
 Where = str | tuple[int, Sequence[float]]
@@ -142,13 +133,25 @@ def path_task(
             "transmission: its angle is that of an RSSR given by its dimensions, [rssr]; leave the limit out"
         )
     refuse_idle_link(draft.linkage, own.link, "a path on it")
-    task = PathTask(draft, own, wanted, closed, inputs, phase, place, (), np.empty(0), np.empty(0), limits)
-    numbers = _varied(task, vary)
-    task = replace(task, varied=numbers)
-    low, high = _bounds(task, bounds or {})
-    task = replace(task, low=low, high=high)
+    varied = _varied(draft, own, vary)
+    low, high = _bounds(draft, varied, limits, float(np.ptp(wanted, axis=0).max()), bounds or {})
+    names = tuple(dimension.name for dimension in varied)
+    task = PathTask(draft, own, wanted, closed, inputs, phase, place, names, low, high, limits)
     _refuse_unreachable(task)
     return task
+
+
+def _dimensions(draft: Draft) -> list[Dimension]:
+    return [d for d in draft.dimensions if d.kind != "speed"]
+
+
+def _of_other_points(draft: Draft, point: Point) -> set[str]:
+    """The names of the coordinates of other points than that whose path is wanted."""
+    return {
+        d.name
+        for d in _dimensions(draft)
+        if d.place[0] == "point" and draft.raw["point"][int(d.place[1])]["name"] != point.name
+    }
 
 
 def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
@@ -189,15 +192,12 @@ def _with_point(draft: Draft, point: Where) -> tuple[Draft, Point]:
     return made, next(p for p in made.linkage.points if p.name == name)
 
 
-def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
-    """The numbers of the dimensions that may change."""
-    every = task.closure.dimensions
+def _varied(draft: Draft, point: Point, vary: Sequence[str] | None) -> list[Dimension]:
+    """The dimensions that may change."""
+    every = _dimensions(draft)
     names = [dimension.name for dimension in every]
-    others = {
-        i
-        for i, d in enumerate(every)
-        if d.place[0] == "point" and task.draft.raw["point"][int(d.place[1])]["name"] != task.point.name
-    }
+    aside = _of_other_points(draft, point)
+    others = {i for i, name in enumerate(names) if name in aside}
     follow = {i for i, d in enumerate(every) if d.follows}
     if vary is None:
         chosen = [i for i in range(len(every)) if i not in others | follow]
@@ -213,16 +213,23 @@ def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
             if named := [names[i] for i in found if i in follow and pattern in (names[i], every[i].key)]:
                 raise RequestError(f"vary: {named[0]} is to follow from the others; leave one of the two out")
             chosen += [i for i in found if i not in chosen and i not in follow]
-        aside = [names[i] for i in chosen if i in others]
-        if aside:
+        if wrong := [names[i] for i in chosen if i in others]:
             raise RequestError(
-                f"vary: {aside[0]} is of another point than '{task.point.name}', whose path it does not "
+                f"vary: {wrong[0]} is of another point than '{point.name}', whose path it does not "
                 "change; leave it out"
             )
     if not chosen:
         raise RequestError(f"vary: no dimension may change; give some of {', '.join(names)}")
     chosen.sort()
-    opening = _opening(replace(task, varied=tuple(chosen)))
+    motion = draft.linkage.motion(OPENINGS)
+    loop = TaskLoop(draft, [names[i] for i in chosen])
+    q = closed_poses(loop, motion.circuits)
+    if q is None:
+        raise RequestError(
+            f"linkage: {motion.motion_type}, the loop moves nowhere as it is described, so it cannot be a "
+            "start; give dimensions with which it moves"
+        )
+    opening = [chosen[k] for k in loop.openings(loop.start, q)]
     if vary is None:
         # the point's own coordinates open nothing
         chosen = [i for i in chosen if i not in opening]
@@ -232,36 +239,23 @@ def _varied(task: PathTask, vary: Sequence[str] | None) -> tuple[int, ...]:
             f"vary: {listed} cannot change alone without opening the loop; leave "
             f"{'it' if len(opening) == 1 else 'them'} out"
         )
-    return tuple(chosen)
+    return [every[i] for i in chosen]
 
 
-def _opening(task: PathTask) -> tuple[int, ...]:
-    """Dimensions that open the loop as soon as they change, at the description's own poses."""
-    motion = task.draft.linkage.motion(LOOKED_AT)
-    for circuit in motion.circuits:
-        good = np.flatnonzero((circuit.status == "ok") & np.isfinite(circuit.q).all(axis=1))
-        if good.size:
-            start = task.closure.start
-            q = task.closure.closed(start, circuit.input[good], task.closure.poses(start, circuit.q[good]))
-            q = q[np.isfinite(q).all(axis=1)]
-            if len(q):
-                return task.closure.openings(task.closure.start, q)
-    raise RequestError(
-        f"linkage: {motion.motion_type}, the loop moves nowhere as it is described, so it cannot be a start; "
-        "give dimensions with which it moves"
-    )
-
-
-def _bounds(task: PathTask, given: Mapping[str, tuple[float | str, float | str]]) -> tuple[Floats, Floats]:
+def _bounds(
+    draft: Draft,
+    dimensions: Sequence[Dimension],
+    limits: Limits,
+    extent: float,
+    given: Mapping[str, tuple[float | str, float | str]],
+) -> tuple[Floats, Floats]:
     """Bounds of what varies (k,) each, those of the size held too."""
-    dimensions = task.dimensions
-    lengths = [abs(d.value) for d in task.closure.dimensions if d.kind == "length"]
-    size = max(*lengths, task.extent)
+    size = max([extent, *(abs(d.value) for d in _dimensions(draft) if d.kind == "length")])
     low, high = np.empty(len(dimensions)), np.empty(len(dimensions))
     for i, d in enumerate(dimensions):
         low[i], high[i] = _usual(d, size, drawn=d.place[0] == "joint")
-        if task.limits.size is not None and d.kind == "length":
-            least, most = task.limits.size
+        if limits.size is not None and d.kind == "length":
+            least, most = limits.size
             low[i], high[i] = max(low[i], least if d.positive else -most), min(high[i], most)
             if not low[i] <= d.value <= high[i]:
                 raise RequestError(
@@ -325,10 +319,7 @@ def _usual(d: Dimension, size: float, *, drawn: bool) -> tuple[float, float]:
 
 def _refuse_unreachable(task: PathTask) -> None:
     """`RequestError` for a path that is larger than the linkage can reach within the bounds."""
-    values = {number: (low, high) for number, low, high in zip(task.varied, task.low, task.high, strict=True)}
-    most = {number: abs(value) for number, value in enumerate(task.closure.start)}
-    most |= {number: max(abs(low), abs(high)) for number, (low, high) in values.items()}
-    reach = task.closure.reach(most)
+    reach = _reach(task)
     if reach is None:
         return
     unit = task.draft.linkage.length_unit
@@ -347,3 +338,22 @@ def _refuse_unreachable(task: PathTask) -> None:
             f"points: the path is {across:.4g} {unit} across, and the linkage reaches {2 * reach:.4g} {unit} "
             "at most within the bounds; widen them"
         )
+
+
+def _reach(task: PathTask) -> float | None:
+    """How far the point can be from the origin within the bounds; `None` if that is open.
+
+    It is open where joints slide, and of a drawing.
+    """
+    numbers = task.loop.numbers
+    word, point = numbers.word, numbers.points[task.loop.named(task.point.name)]
+    letters = {step.letter for step in word.steps[: point.steps]}
+    if task.draft.linkage.form == "drawn" or letters & {"P", "H"}:
+        return None
+    places = {d.place: k for k, d in enumerate(numbers.dimensions)}
+    most = np.abs(numbers.nominal)
+    for d, low, high in zip(task.dimensions, task.low, task.high, strict=True):
+        most[places[d.place]] = max(abs(low), abs(high))
+    slides = [k for product in (*word.fixed[: point.steps], point.frame) for k in product.slides]
+    coordinates = point.at if point.place is None else most[list(point.place)].tolist()
+    return float(most[slides].sum()) + math.hypot(*coordinates)

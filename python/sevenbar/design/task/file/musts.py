@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from sevenbar.design.task.file.schema import (
     ApartMust,
     BoxMust,
@@ -15,28 +13,22 @@ from sevenbar.design.task.file.schema import (
     MustForm,
     RangeMust,
 )
-from sevenbar.design.task.file.units import figure_value, reading, reading_span
-from sevenbar.design.task.file.values import Given
+from sevenbar.design.task.file.units import amount, figure_value, reading, reading_span
 from sevenbar.design.task.task import (
     Apart,
     DwellWant,
     FigureMust,
+    FigureWant,
     FunctionWant,
     InBox,
     InCone,
     InRange,
     Most,
     Must,
-    PathWant,
-    PoseWant,
-    StraightWant,
     Want,
+    residual_unit,
 )
-from sevenbar.errors import RequestError, shown
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.sensitivity import Numbers
-from sevenbar.text.amounts import amount_in
-from sevenbar.text.units import examples_of
 
 
 def must_of(form: MustForm, linkage: Linkage, wants: Sequence[Want]) -> Must:
@@ -72,29 +64,13 @@ def _most(form: MostMust, linkage: Linkage, wants: Sequence[Want]) -> float:
     if form.want > len(wants):
         # the task is checked for it
         return 1.0
-    match wants[form.want - 1]:
+    want = wants[form.want - 1]
+    unit = residual_unit(want, linkage)
+    match want:
         case FunctionWant() | DwellWant():
-            column = linkage.columns.index(linkage.drive.output)
-            value = reading("most", form.most, linkage, column)
-            return value if linkage.turns(column) else value / linkage_size(linkage)
-        case PathWant(places=places):
-            return _length("most", form.most, linkage) / float(np.ptp(places, axis=0).max())
-        case PoseWant(arm=arm):
-            return _length("most", form.most, linkage) / arm
-        case StraightWant(length=length):
-            return _length("most", form.most, linkage) / (length or linkage_size(linkage))
-        case _:
+            return reading("most", form.most, linkage, linkage.columns.index(linkage.drive.output)) / unit
+        case FigureWant():
+            # the task is checked for it
             return 1.0
-
-
-def linkage_size(linkage: Linkage) -> float:
-    """The longest dimension of a description [length], to which residuals of lengths are relative."""
-    return float(Numbers(linkage).size)
-
-
-def _length(key: str, value: Given, linkage: Linkage) -> float:
-    unit = linkage.length_unit
-    found = amount_in(value, unit) if isinstance(value, str) else value
-    if found is None:
-        raise RequestError(f"{key}: {shown(value)} is not a length; give {examples_of(unit)}")
-    return found
+        case _:
+            return amount("most", form.most, linkage.length_unit) / unit

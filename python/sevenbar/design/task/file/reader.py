@@ -18,7 +18,7 @@ from sevenbar.design.limits import Limits
 from sevenbar.design.task.contradictions import EXACT, contradictions, start_flaws
 from sevenbar.design.task.file.musts import must_of
 from sevenbar.design.task.file.schema import LimitsForm, TaskForm, check_form
-from sevenbar.design.task.file.units import length_span
+from sevenbar.design.task.file.units import amount
 from sevenbar.design.task.file.wants import want_of
 from sevenbar.design.task.task import DesignTask, FreeNumber, Most, Must, Want
 from sevenbar.errors import (
@@ -71,7 +71,9 @@ def task_of_text(text: str, source: str, *, agree: float | None = None) -> TaskF
         draft = draft.holding(form.follow or ())
     free = _free(draft, form, mistakes)
     wants, exact = _wants(draft.linkage, form, folder, mistakes)
-    musts = [*_musts(draft.linkage, form, wants, mistakes), *exact]
+    # a want that is wrong moves the places of those behind it
+    known = wants if len(wants) == len(form.want) else []
+    musts = [*_musts(draft.linkage, form, known, mistakes), *exact]
     limits = Limits()
     with mistakes.of("limits", LimitsForm):
         limits = _limits(form.limits, draft.linkage)
@@ -115,9 +117,11 @@ def _draft(raw: dict[str, Any], source: str, folder: Path, agree: float | None) 
     """The linkage that a task is about; `DescriptionError` where there is none."""
     given = raw.get("linkage")
     if isinstance(given, dict):
-        import tomlkit
-
-        return Draft.of(tomlkit.dumps(given), f"{source}: [linkage]", agree=agree)
+        try:
+            return Draft.of_tables(given, source, agree=agree)
+        except DescriptionError as error:
+            problems = [Problem(f"linkage.{p.place}".rstrip("."), p.message) for p in error.problems]
+            raise DescriptionError(problems, source) from None
     if not isinstance(given, str) or not given.strip():
         what = "is missing" if given is None else f"{shown(given)} is none"
         hint = (
@@ -195,5 +199,6 @@ def _musts(linkage: Linkage, form: TaskForm, wants: list[Want], mistakes: _Mista
 
 
 def _limits(form: LimitsForm, linkage: Linkage) -> Limits:
-    size = None if form.size is None else length_span("size", form.size, linkage.length_unit)
-    return Limits(form.transmission, size, form.motion_type)
+    unit = linkage.length_unit
+    ends = form.size and (amount("size", form.size[0], unit), amount("size", form.size[1], unit))
+    return Limits(form.transmission, ends, form.motion_type)

@@ -21,11 +21,6 @@ def reading_span(key: str, ends: tuple[Given, Given], linkage: Linkage, column: 
     return reading(key, ends[0], linkage, column), reading(key, ends[1], linkage, column)
 
 
-def length_span(key: str, ends: tuple[Given, Given], unit: str) -> tuple[float, float]:
-    """Two lengths [unit]."""
-    return _amount(key, ends[0], unit), _amount(key, ends[1], unit)
-
-
 def figure_value(key: str, value: Given, linkage: Linkage, name: str) -> float:
     """A value of a measure in the unit that it is read in; a number stays as it is."""
     if not isinstance(value, str):
@@ -36,10 +31,11 @@ def figure_value(key: str, value: Given, linkage: Linkage, name: str) -> float:
         # the name is checked with the task
         return 0.0
     unit = measure.unit(linkage, linkage.drive.output)
-    return _amount(key, value, unit if unit in ("deg", linkage.length_unit) else "")
+    return amount(key, value, unit if unit in ("deg", linkage.length_unit) else "")
 
 
-def _amount(key: str, value: Given, unit: str) -> float:
+def amount(key: str, value: Given, unit: str) -> float:
+    """A value in a unit; a number stays as it is."""
     found = amount_in(value, unit) if isinstance(value, str) else value
     if found is None:
         raise RequestError(f"{key}: {shown(value)} does not fit; give {examples_of(unit)}")

@@ -6,18 +6,17 @@ import math
 from functools import partial
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
-from sevenbar.description.values import FORMULA, POSITIVE, Vector, number_for, refuse, three
+from sevenbar.description.values import POSITIVE, number_for, refuse, three
 from sevenbar.errors import shown
+from sevenbar.kinematics.rigid import flaw_of_rotation
 from sevenbar.text.expression import constant_of
 from sevenbar.text.ranges import split_range
 
 #: A number, or a text with a unit, as it is written: what it belongs to decides its unit.
 Given = str | float
-
-#: How far the product of a rotation and its transpose may be from 1: figures written with four decimals pass.
-ROUNDED = 1e-3
 
 
 def _given(value: object, *, what: str = "a value", example: str = "30, '30deg' or '12mm'") -> Given:
@@ -50,17 +49,6 @@ def _positive(value: object, info: ValidationInfo, what: str) -> float:
     if not number > 0:
         raise refuse(f"{shown(value)} is not {what}; give a number > 0")
     return number
-
-
-def _length(value: object, info: ValidationInfo) -> float:
-    number = number_for(value, info, "length")
-    if not number > 0:
-        raise refuse(f"{shown(value)} is not a length; give a number > 0")
-    return number
-
-
-def _angle(value: object, info: ValidationInfo) -> float:
-    return math.radians(number_for(value, info, "angle"))
 
 
 def _flag(value: object) -> bool:
@@ -108,23 +96,9 @@ def _matrix(value: object, info: ValidationInfo) -> tuple[tuple[float, float, fl
     if not isinstance(value, list) or len(value) != 3:
         raise refuse(f"{shown(value)} is no matrix; give three rows of three numbers")
     rows = tuple(three(row, info, "number") for row in value)
-    if flaw := flaw_of_rotation(rows):
+    if flaw := flaw_of_rotation(np.array(rows)):
         raise refuse(flaw)
     return rows
-
-
-def flaw_of_rotation(rows: tuple[tuple[float, ...], ...]) -> str:
-    """Why a matrix is no rotation; empty for one that is, to the digits of `ROUNDED`."""
-    products = [[sum(x * y for x, y in zip(a, b, strict=True)) for b in rows] for a in rows]
-    off = max(abs(products[i][j] - (i == j)) for i in range(3) for j in range(3))
-    if off > ROUNDED:
-        return (
-            f"is no rotation: its rows are not of length 1 and at right angles (off by {off:.2g}); "
-            "give a rotation, or axis and angle"
-        )
-    a, b, c = rows
-    turned = sum(c[i] * (a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2]) for i in range(3))
-    return "is no rotation: it mirrors; change the sign of one row" if turned < 0 else ""
 
 
 def _links(value: object) -> tuple[int, int]:
@@ -160,8 +134,6 @@ Span = Annotated[tuple[Given, Given], BeforeValidator(_span), _ENDS]
 Numbers = Annotated[tuple[float, float], BeforeValidator(_numbers), _ENDS]
 Weight = Annotated[float, BeforeValidator(partial(_positive, what="a weight")), POSITIVE]
 Unit = Annotated[float, BeforeValidator(partial(_positive, what="a unit")), POSITIVE]
-Positive = Annotated[float, BeforeValidator(_length), POSITIVE]
-Radians = Annotated[float, BeforeValidator(_angle), WithJsonSchema(FORMULA)]
 Flag = Annotated[bool, BeforeValidator(_flag), WithJsonSchema({"type": "boolean"})]
 Pairs = Annotated[tuple[tuple[Given, Given], ...], BeforeValidator(_pairs), _ROWS]
 Places = Annotated[tuple[tuple[float, float, float], ...], BeforeValidator(_places), _ROWS]
@@ -176,4 +148,3 @@ Link = Annotated[int, *_counted(1, 1000, "a link")]
 Samples = Annotated[int, *_counted(3, 1000, "a number of samples")]
 Points = Annotated[int, *_counted(3, 100, "a number of points")]
 WantNumber = Annotated[int, *_counted(1, 100, "a want")]
-Place = Vector

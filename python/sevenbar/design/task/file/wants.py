@@ -11,7 +11,6 @@ import numpy as np
 
 from sevenbar.arrays import Floats
 from sevenbar.design.curve_table import read_curve
-from sevenbar.design.task.file.musts import linkage_size
 from sevenbar.design.task.file.pose_table import read_poses
 from sevenbar.design.task.file.schema import (
     DwellForm,
@@ -33,12 +32,13 @@ from sevenbar.design.task.task import (
     PoseWant,
     StraightWant,
     Want,
+    linkage_size,
 )
 from sevenbar.design.task.wanted_path import wanted_inputs, wanted_places
 from sevenbar.design.wish import chebyshev, read_pairs, wish_of_function
 from sevenbar.errors import RequestError, TableError
 from sevenbar.kinematics.linkage import Linkage
-from sevenbar.kinematics.rigid import inverse, pose
+from sevenbar.kinematics.rigid import inverse, pose, turns_about, unit
 from sevenbar.text.expression import function_of
 
 T = TypeVar("T")
@@ -175,13 +175,12 @@ def _poses(form: PosesForm, linkage: Linkage, folder: Path) -> PoseWant:
 
 def _pose(key: str, form: PoseForm) -> Floats:
     """A pose (4, 4)."""
-    from scipy.spatial.transform import Rotation
-
     if form.matrix is None:
-        axis = np.array(form.axis) / math.hypot(*form.axis)
-        return pose(Rotation.from_rotvec(form.angle * axis).as_matrix(), form.at)
+        return pose(turns_about(unit(form.axis), np.array([form.angle]))[0], form.at)
     if {"axis", "angle"} & form.model_fields_set:
         raise RequestError(f"{key}: a matrix, and axis or angle; give one of the two")
+    from scipy.spatial.transform import Rotation
+
     # to all digits what was written with some
     return pose(Rotation.from_matrix(np.array(form.matrix)).as_matrix(), form.at)
 

@@ -9,13 +9,9 @@ import numpy as np
 from sevenbar.arrays import Floats, short_way
 from sevenbar.design.task.loop import TaskLoop
 from sevenbar.design.task.task import FigureWant
-from sevenbar.errors import DescriptionError, NotCoveredError, RequestError
 from sevenbar.kinematics.circuits import Circuit
 from sevenbar.kinematics.measures import gradient, measures_named
 from sevenbar.kinematics.motion import Motion
-
-#: Inputs of a turn at which circuits are measured: these are found between rows.
-SAMPLES = 72
 
 #: Step of the differences that stand in for slopes where a measure has none of its own [of a unit].
 STEP = 1e-5
@@ -79,9 +75,8 @@ class Figures:
 
     def circuit(self, values: Floats, anchor: Floats) -> tuple[Motion, Circuit] | None:
         """The motion at numbers (k,), and its circuit near a row (columns,); `None` where there is none."""
-        try:
-            motion = self._loop.drawn(values).linkage.motion(SAMPLES)
-        except (DescriptionError, RequestError, NotCoveredError):
+        motion = self._loop.motion(values)
+        if motion is None:
             return None
         best, least = None, SAME_CIRCUIT
         turning = self._loop.numbers.turns[self._columns]
@@ -100,5 +95,8 @@ def figure_left(want: FigureWant, value: float, by: Floats) -> tuple[float, Floa
     if want.value == "small":
         return value / want.unit, by / want.unit
     if want.value == "great":
+        if value < want.unit:
+            # a gap may be negative: less is worse there, too
+            return 2 - value / want.unit, -by / want.unit
         return want.unit / value, -want.unit / value**2 * by
     return (value - want.value) / want.unit, by / want.unit

@@ -26,7 +26,7 @@ class ReadingsWanted:
         else:
             inputs = np.linspace(*want.inputs, want.samples)
             self.readings, first, second = np.zeros(want.samples), 0.0, want.level
-        self._turns = bool(loop.numbers.turns[loop.output])
+        self.turns = bool(loop.numbers.turns[loop.output])
         self.unit = float(loop.units[loop.output])
         self._column = loop.output
         self._input_free, self._output_free = first is None, second is None
@@ -38,14 +38,14 @@ class ReadingsWanted:
         self.count = len(inputs)
 
     def _apart(self, values: Floats) -> Floats:
-        return short_way(values) if self._turns else values
+        return short_way(values) if self.turns else values
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """What the output is off (n,) at its stations, and the slopes (n, k + m)."""
         zero = u[-1] if self._output_free else self._zero
         by = here.q_by[:, self._column].copy()
         if self._output_free:
-            by[:, -1] -= 1.0
+            by[:, -1:] -= 1.0
         return self._apart(here.q[:, self._column] - self.readings - zero) / self.unit, by / self.unit
 
     def begun(
@@ -56,23 +56,24 @@ class ReadingsWanted:
         scaled: bool,  # noqa: ARG002
     ) -> list[Begun]:
         """From the best starts of the inputs."""
-        found: list[Begun] = []
-        fixed = self.stations.fixed
-        for phase in one.phases(fixed, free=self._input_free):
-            rows = one.nearest(fixed + phase)
-            if rows is None:
-                continue
-            off = one.outputs[rows] - self.readings
-            slope = np.gradient(one.outputs, one.inputs)[rows]
-            gap = fixed + phase - one.inputs[rows]
-            off = off + slope * (short_way(gap) if one.turns else gap)
-            zero = self._zero
-            if self._output_free:
-                zero = off[0] + float(self._apart(off - off[0]).mean())
-            error = float(((self._apart(off - zero) / self.unit) ** 2).mean())
-            u = np.array([phase] * self._input_free + [zero] * self._output_free)
-            found.append(Begun(u, rows, error, placing))
-        return sorted(found, key=lambda begun: begun.error)[:TRIED]
+        fixed, inputs, outputs = self.stations.fixed, one.inputs, one.outputs
+        phases, rows = one.begins(fixed, free=self._input_free)
+        gap = fixed + phases[:, None] - inputs[rows]
+        slope = np.gradient(outputs, inputs)[rows]
+        off = outputs[rows] - self.readings + slope * (short_way(gap) if one.turns else gap)
+        zeros = np.full((len(rows), 1), self._zero)
+        if self._output_free:
+            zeros = off[:, :1] + self._apart(off - off[:, :1]).mean(axis=1, keepdims=True)
+        errors = ((self._apart(off - zeros) / self.unit) ** 2).mean(axis=1)
+        return [
+            Begun(
+                np.array([phases[k]] * self._input_free + [zeros[k, 0]] * self._output_free),
+                rows[k],
+                float(errors[k]),
+                placing,
+            )
+            for k in np.argsort(errors, kind="stable")[:TRIED]
+        ]
 
     def errors(
         self,

@@ -27,6 +27,8 @@ FIRST_AT = 2
 class PlacesWanted:
     """Places (n, p, 3) that p points of one link shall take at n stations, relative to a `unit` [length]."""
 
+    turns = False
+
     def __init__(self, loop: TaskLoop, want: PathWant | PoseWant) -> None:
         self._loop = loop
         self.weight = want.weight
@@ -56,7 +58,8 @@ class PlacesWanted:
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:  # noqa: ARG002
         """Where the points are (r / 3, 3) at its stations, and their slopes (r / 3, 3, k + m)."""
         found, by = here.points[:, self.numbers], here.points_by[:, self.numbers]
-        return found.reshape(-1, 3), by.reshape(-1, 3, by.shape[-1])
+        left = found.reshape(-1, 3)
+        return left, by.reshape(*left.shape, by.shape[-1])
 
     def curve(self, one: InputPass) -> Floats:
         """The points along a pass (rows, p, 3)."""
@@ -78,11 +81,9 @@ class PlacesWanted:
     def _timed(self, one: InputPass, curve: Floats, placing: Placing | None) -> list[Begun]:
         assert self.timing is not None
         found: list[Begun] = []
-        for phase in one.phases(self.timing, free=self.phase):
-            rows = one.nearest(self.timing + phase)
-            if rows is not None:
-                u = np.array([phase] if self.phase else [])
-                found.append(self._begun(u, rows, curve, placing))
+        for phase, rows in zip(*one.begins(self.timing, free=self.phase), strict=True):
+            u = np.array([phase] if self.phase else [])
+            found.append(self._begun(u, rows, curve, placing))
         return sorted(found, key=lambda begun: begun.error)[:1]
 
     def _begun(self, u: Floats, rows: Integers, curve: Floats, placing: Placing | None) -> Begun:

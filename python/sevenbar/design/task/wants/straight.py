@@ -21,9 +21,11 @@ class LineWanted:
     and what the point's way from first to last lacks of the length, where one is given.
     """
 
+    turns = False
+
     def __init__(self, loop: TaskLoop, want: StraightWant) -> None:
         self.weight = want.weight
-        self._number, self._name = loop.named(want.point), want.point
+        self.numbers, self._name = [loop.named(want.point)], want.point
         self._length = want.length
         self.unit = loop.size if want.length is None else want.length
         inputs = np.linspace(*want.inputs, want.samples)
@@ -32,23 +34,27 @@ class LineWanted:
 
     def left(self, here: Here, u: Floats) -> tuple[Floats, Floats]:
         """The residuals (r,), and their slopes (r, k + 6)."""
-        p, by = here.points[:, self._number], here.points_by[:, self._number]
+        p, by = here.points[:, self.numbers[0]], here.points_by[:, self.numbers[0]]
         a, way = u[:3], u[3:] - u[:3]
         square = float(way @ way)
         off = p - a
         t = off @ way / square
         across = np.eye(3) - np.outer(way, way) / square
+        left = (off - t[:, None] * way).ravel()
+        gone = p[-1] - p[0]
+        size = float(np.linalg.norm(gone)) or 1.0
+        if self._length is not None:
+            left = np.append(left, min(size - self._length, 0.0))
+        if not by.shape[-1]:
+            return left / self.unit, np.empty((len(left), 0))
         slopes = np.einsum("ij,njk->nik", across, by)
         t_a = (-way - off + 2 * t[:, None] * way) / square
         t_b = (off - 2 * t[:, None] * way) / square
         slopes[:, :, -6:-3] += (t[:, None, None] - 1) * np.eye(3) - np.einsum("i,nj->nij", way, t_a)
         slopes[:, :, -3:] += -t[:, None, None] * np.eye(3) - np.einsum("i,nj->nij", way, t_b)
-        left, slopes = (off - t[:, None] * way).ravel(), slopes.reshape(3 * len(p), -1)
+        slopes = slopes.reshape(3 * len(p), -1)
         if self._length is not None:
-            gone = p[-1] - p[0]
-            size = float(np.linalg.norm(gone)) or 1.0
             short = size < self._length
-            left = np.append(left, min(size - self._length, 0.0))
             slopes = np.concatenate([slopes, (short * gone @ (by[-1] - by[0]) / size)[None]])
         return left / self.unit, slopes / self.unit
 
@@ -62,10 +68,7 @@ class LineWanted:
         """On a pass that has the range of inputs, with the best line of its rows."""
         curve = one.named(self._name)
         found = []
-        for turn in one.phases(self.stations.fixed, free=False):
-            rows = one.nearest(self.stations.fixed + turn)
-            if rows is None:
-                continue
+        for rows in one.begins(self.stations.fixed, free=False)[1][:1]:
             p = curve[rows]
             middle = p.mean(axis=0)
             way = np.linalg.svd(p - middle)[2][0]
@@ -73,7 +76,7 @@ class LineWanted:
             error = float(((p - middle - along[:, None] * way) ** 2).sum() / p.size / self.unit**2)
             u = np.concatenate([middle + along.min() * way, middle + along.max() * way])
             found.append(Begun(u, rows, error, placing))
-        return found[:1]
+        return found
 
     def errors(
         self,

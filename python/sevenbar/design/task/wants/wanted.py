@@ -47,6 +47,9 @@ class Wanted(Protocol):
 
     stations: Stations
     weight: float
+    #: What residuals are relative to, and whether errors are angles.
+    unit: float
+    turns: bool
 
     @property
     def count(self) -> int:

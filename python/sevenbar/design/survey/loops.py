@@ -1,0 +1,207 @@
+"""Surveys of any loop: linkages drawn within the bounds of a design task, each judged by what that asks.
+
+Each is followed round all its circuits. Where a pass has what is wanted, what is left of it and what must
+hold are measured at the poses that are used, those between too. With the best hundred the search of
+`designed` begins, so a linkage may be among them that is near and lacks something.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any, get_args
+
+import numpy as np
+
+from sevenbar.arrays import Floats
+from sevenbar.design.candidates import Fault, size_fault
+from sevenbar.design.survey.drawn import Drawn
+from sevenbar.design.survey.tally import BEST, Kept, SurveyTally
+from sevenbar.design.task.problem import TaskModel, TaskProblem
+from sevenbar.design.task.search import DesignsFound, designed
+from sevenbar.design.task.starts import seeds_at
+from sevenbar.design.task.task import DesignTask
+from sevenbar.sweep.sampling import MOST_SOBOL, sobol_points
+from sevenbar.text.progress import Progress, silent
+
+#: The format of a survey's description.
+FORMAT = 1
+
+#: Linkages of a part: what a processor judges in some seconds.
+PART = 256
+
+#: What may be said of a linkage; the first is that it does what is wanted.
+VERDICTS: tuple[str, ...] = ("found", *get_args(Fault))
+
+#: Of the ways in which a linkage may begin so many are judged, the nearest first, until one does it.
+TRIED = 4
+
+#: By how much a must may be missed through rounding [rad, or relative to the size].
+ROUNDING = 1e-9
+
+#: Parts into which the range of each number is divided where linkages are distinguished.
+CELLS = 3
+
+#: Cells of the spread of a measure, the last for all beyond, and the width of each.
+SPREAD = 36
+STEPS = {"error": 0.02, "swing": math.radians(10), "time_ratio": 0.1, "transmission": math.radians(2.5)}
+
+
+@dataclass(frozen=True, eq=False)
+class LoopSurvey(Drawn):
+    """Linkages within the bounds of a design task: what is wanted, what must hold and the limits are its.
+
+    One does it that keeps what must hold as it is drawn. The figure by which they are ranked is the root of
+    the weighted mean squares of what is left and of what the musts lack. Raises `RequestError`.
+    """
+
+    task: DesignTask
+    count: int = 10**5
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        self.check_counts(MOST_SOBOL)
+
+    @property
+    def part_size(self) -> int:
+        """Linkages of a part."""
+        return PART
+
+    @property
+    def verdicts(self) -> tuple[str, ...]:
+        """What may be said of a linkage; the first is that it does what is wanted."""
+        return VERDICTS
+
+    @property
+    def heading(self) -> str:
+        """What it is."""
+        return f"Survey of {self.task.draft.linkage.heading}"
+
+    def values(self, first: int, stop: int) -> Floats:
+        """The free numbers (n, k) of linkages by their indices."""
+        low, high = self.task.low, self.task.high
+        return low + sobol_points(self.seed, len(low), first, stop).T * (high - low)
+
+    def tally(self, part: int) -> SurveyTally:
+        """The tally of a part."""
+        linkages = self.linkages(part)
+        model = TaskModel(self.task)
+        verdicts, types, limits = dict.fromkeys(VERDICTS, 0), Counter[str](), Counter[str]()
+        spreads: dict[str, list[float]] = {name: [] for name in STEPS}
+        best: dict[int, Kept] = {}
+        nearest: dict[int, Kept] = {}
+        for index, values in zip(linkages, self.values(linkages.start, linkages.stop), strict=True):
+            motion = model.loop.motion(values)
+            verdict, kept = _judged(model, index, values)
+            verdicts[verdict] += 1
+            types["cannot-assemble" if motion is None else motion.motion_type] += 1
+            limits["0" if motion is None else str(len(motion.limits))] += 1
+            if motion is None or kept is None:
+                continue
+            circuit = motion.circuits[kept.branch]
+            swing = circuit.swing if motion.linkage.turns(model.loop.linkage.drive.output) else None
+            measured = (kept.error, swing, circuit.time_ratio, kept.transmission)
+            for own, value in zip(spreads.values(), measured, strict=True):
+                if value is not None and math.isfinite(value):
+                    own.append(value)
+            place = self._cell(values)
+            if place not in best or kept.order < best[place].order:
+                best[place] = _at(kept, place)
+            number = VERDICTS.index(verdict)
+            if number and (number not in nearest or kept.order < nearest[number].order):
+                nearest[number] = _at(kept, number)
+        return SurveyTally(
+            verdicts,
+            dict(sorted(types.items())),
+            dict(sorted(limits.items())),
+            {name: (STEPS[name], _spread(own, STEPS[name])) for name, own in spreads.items()},
+            tuple(sorted(best.values(), key=lambda kept: kept.order)[:BEST]),
+            dict(sorted(nearest.items())),
+        )
+
+    def _cell(self, values: Floats) -> int:
+        """The part of the space that a linkage lies in: the low, middle or high third of each number."""
+        width = np.maximum(self.task.high - self.task.low, np.finfo(float).tiny)
+        thirds = np.minimum(CELLS * (values - self.task.low) / width, CELLS - 1).astype(int)
+        return sum(int(third) * CELLS**k for k, third in enumerate(thirds))
+
+    def request(self) -> dict[str, Any]:
+        """What the survey is, as plain values: two surveys with one request have the same answer."""
+        task = self.task
+        asked = {
+            "format": FORMAT,
+            "linkage": dict(task.draft.raw),
+            "agree": task.draft.agree,
+            "free": {one.name: [one.low, one.high] for one in task.free},
+            "wanted": [{"kind": type(one).__name__, **asdict(one)} for one in task.wants],
+            "must_hold": [{"kind": type(one).__name__, **asdict(one)} for one in task.musts],
+            "placement": task.placement,
+            "goal": task.goal,
+            "limits": asdict(task.limits),
+            "follow": task.follow,
+            "count": self.count,
+            "seed": self.seed,
+            "part_size": PART,
+        }
+        plain: dict[str, Any] = json.loads(json.dumps(asked, default=np.ndarray.tolist))
+        return plain
+
+    def words_of(self, verdict: str, kept: Kept) -> str:  # noqa: ARG002
+        """A linkage that came nearest to pass a verdict: its figures and its numbers."""
+        (row,) = self.values(kept.index, kept.index + 1)
+        numbers = (f"{name} {value:.4g}" for name, value in zip(self.task.names, row, strict=True))
+        lack = math.sqrt(max(kept.figure**2 - kept.error**2, 0.0))
+        return f"error {kept.error:.3g}, musts lack {lack:.3g}: linkage {kept.index}, {', '.join(numbers)}"
+
+    def designs(self, tally: SurveyTally, count: int, progress: Progress = silent) -> DesignsFound:
+        """Up to `count` designs of the search that begins with the best linkages of a tally."""
+        if not count:
+            return DesignsFound(self.task, (), (), 0, "")
+        given = [self.values(kept.index, kept.index + 1)[0] for kept in tally.best]
+        try:
+            return designed(self.task, count=count, starts=0, given=given, progress=progress)
+        except KeyboardInterrupt:
+            return DesignsFound(self.task, (), (), 0, "stopped before the first design")
+
+
+def _at(kept: Kept, place: int) -> Kept:
+    return replace(kept, place=place)
+
+
+def _spread(values: Sequence[float], step: float) -> tuple[int, ...]:
+    """How many values lie in each cell."""
+    cells = np.minimum(np.array(values) / step, SPREAD - 1).astype(int)
+    return tuple(np.bincount(cells, minlength=SPREAD).tolist())
+
+
+def _judged(model: TaskModel, index: int, values: Floats) -> tuple[str, Kept | None]:
+    """The verdict of a linkage, and its best way to begin where it has one."""
+    motion, limits = model.loop.motion(values), model.task.limits
+    if motion is None or not motion.circuits:
+        return "assembly", None
+    if limits.motion_type not in (None, motion.motion_type):
+        return "motion type", None
+    best: tuple[str, Kept] | None = None
+    for seed in sorted(seeds_at(model, values), key=lambda seed: seed.error)[:TRIED]:
+        problem = TaskProblem(model, seed)
+        here = problem.at(problem.start)
+        if here is None:
+            continue
+        missed: list[str] = [fault for fault, room in here.least.items() if room < -ROUNDING]
+        if limits.size and size_fault(model.loop.drawn(seed.values), limits) is not None:
+            missed.insert(0, "size")
+        verdict = missed[0] if missed else "found"
+        error = float(np.linalg.norm(here.left))
+        figure = math.hypot(error, *np.minimum(here.room, 0.0))
+        start = seed.anchor[model.loop.input]
+        lowest = motion.circuits[seed.circuit].transmission
+        angle = math.nan if lowest is None else lowest.lowest
+        kept = Kept(index, 0, figure, error, angle, (math.nan, math.nan), float(start), seed.circuit, 1.0)
+        if best is None or (verdict != "found", kept.order) < (best[0] != "found", best[1].order):
+            best = verdict, kept
+        if not missed:
+            break
+    return best or ("dead centre", None)
