@@ -138,7 +138,7 @@ def solved(
 
 
 def _ended(problem: TaskProblem, z: Floats) -> bool:
-    """Whether least squares have come to an end: nothing is left, or (1) is met as far as slopes tell."""
+    """Whether least squares are done: nothing is left, or (1) is met as nearly as slopes alone lead to."""
     if problem.size(z) <= EXACT:
         return True
     at = _conditions(problem, z, minimax=False)
